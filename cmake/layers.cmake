@@ -1,0 +1,28 @@
+# The layers: a folder may include itself and the folders in its row, and the public headers that
+# belong to those. The test `layers` reads every #include of the tree against these two tables.
+set(CREASE_FOLDERS base mesh hierarchy io generate measure simplify codec pipeline runtime render)
+
+set(CREASE_LAYER_base      )
+set(CREASE_LAYER_mesh      base)
+set(CREASE_LAYER_hierarchy base mesh)
+set(CREASE_LAYER_io        base mesh)
+set(CREASE_LAYER_generate  base mesh)
+set(CREASE_LAYER_measure   base mesh)
+set(CREASE_LAYER_simplify  base mesh hierarchy)
+set(CREASE_LAYER_codec     base mesh hierarchy)
+set(CREASE_LAYER_pipeline  base mesh hierarchy io simplify codec)
+set(CREASE_LAYER_runtime   base mesh hierarchy codec)
+set(CREASE_LAYER_render    base mesh runtime)
+
+# Which folder a public header belongs to.
+set(CREASE_HEADERS_base      vec.h ids.h result.h progress.h)
+set(CREASE_HEADERS_mesh      mesh.h shading.h)
+set(CREASE_HEADERS_hierarchy contraction.h progressive_arrays.h)
+set(CREASE_HEADERS_io        import.h export.h)
+set(CREASE_HEADERS_generate  generate.h)
+set(CREASE_HEADERS_measure   compare.h)
+set(CREASE_HEADERS_simplify  simplify.h)
+set(CREASE_HEADERS_codec     file.h)
+set(CREASE_HEADERS_pipeline  build.h)
+set(CREASE_HEADERS_runtime   draw_list.h progressive_mesh.h)
+set(CREASE_HEADERS_render    render.h)

@@ -1,0 +1,82 @@
+# One object library per folder of src/, so that a test can link the folders it needs and the two
+# installed libraries are put together from them (cmake/libraries.cmake).
+#
+#   crease_module(mesh SOURCES check_mesh.cpp snap.cpp DEPENDS base)
+#   crease_module(measure SOURCES compare.cpp DEPENDS base mesh LIBRARIES embree)
+#
+# Floating point follows the source to the letter everywhere (no contraction into FMA), so that the
+# same input gives the same bytes with every compiler.
+function(crease_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
+  add_library(crease_${name}_objects OBJECT ${ARG_SOURCES})
+  target_include_directories(crease_${name}_objects
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_compile_options(crease_${name}_objects PRIVATE -ffp-contract=off)
+  target_link_libraries(crease_${name}_objects PUBLIC ${ARG_LIBRARIES})
+  foreach(dependency IN LISTS ARG_DEPENDS)
+    target_link_libraries(crease_${name}_objects PUBLIC crease_${dependency}_objects)
+  endforeach()
+  set_property(GLOBAL PROPERTY crease_${name}_depends "${ARG_DEPENDS}")
+  set_property(GLOBAL PROPERTY crease_${name}_libraries "${ARG_LIBRARIES}")
+endfunction()
+
+# A static library out of several folders. The libraries that the folders need come along.
+function(crease_library target)
+  add_library(${target} STATIC)
+  foreach(folder IN LISTS ARGN)
+    if(NOT TARGET crease_${folder}_objects)
+      continue()  # until every folder is there
+    endif()
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:crease_${folder}_objects>)
+    get_property(libraries GLOBAL PROPERTY crease_${folder}_libraries)
+    target_link_libraries(${target} PUBLIC ${libraries})
+  endforeach()
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:include>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+endfunction()
+
+# The folders that `folder` needs, itself included.
+function(crease_closure folder result)
+  set(all ${folder})
+  get_property(direct GLOBAL PROPERTY crease_${folder}_depends)
+  foreach(dependency IN LISTS direct)
+    crease_closure(${dependency} more)
+    list(APPEND all ${more})
+  endforeach()
+  list(REMOVE_DUPLICATES all)
+  set(${result} ${all} PARENT_SCOPE)
+endfunction()
+
+# A program for development (test, fuzzer, benchmark) that links folders of src/ and may include
+# their private headers.
+#
+#   crease_program(test_io SOURCES obj_test.cpp FOLDERS io)
+function(crease_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;FOLDERS;LIBRARIES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_options(${name} PRIVATE -ffp-contract=off)
+  set(folders)
+  foreach(folder IN LISTS ARG_FOLDERS)
+    crease_closure(${folder} closure)
+    list(APPEND folders ${closure})
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder IN LISTS folders)
+    target_link_libraries(${name} PRIVATE crease_${folder}_objects)
+  endforeach()
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES})
+endfunction()
+
+# A test program of doctest cases; tests/support has its main, the mesh zoo and the real models.
+#
+#   crease_test(io SOURCES obj_test.cpp ply_test.cpp FOLDERS io)
+function(crease_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;FOLDERS;LIBRARIES" ${ARGN})
+  crease_program(test_${name} SOURCES ${ARG_SOURCES} FOLDERS ${ARG_FOLDERS} mesh
+                 LIBRARIES crease_test_support ${ARG_LIBRARIES})
+  add_test(NAME ${name} COMMAND test_${name})
+endfunction()

@@ -1,0 +1,27 @@
+// Meshes out: .obj, .ply (binary little-endian), .stl (binary), .glb, told from the name.
+//
+//   Status done = export_mesh(mesh, "level.glb");
+//
+// Normals are always written. In OBJ hard edges are separate vn indices; in PLY and GLB they are
+// split vertices, as those formats want. Positions are written in double precision where the format has text
+// or doubles (OBJ, PLY), and in GLB as floats relative to a node translation, so that 10^6 m
+// offsets lose nothing visible. The file appears under its name only when it is complete.
+#pragma once
+
+#include "crease/mesh.h"
+#include "crease/result.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace crease {
+
+// Fails with NotSupported for another ending and WriteFailed with the system's reason.
+Status export_mesh(const Mesh& mesh, const std::filesystem::path& path);
+
+// The file's bytes; `extension` is ".obj", ".ply", ".stl" or ".glb".
+Result<std::vector<std::byte>> export_bytes(const Mesh& mesh, std::string_view extension);
+
+}  // namespace crease

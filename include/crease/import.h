@@ -1,0 +1,80 @@
+// Other people's files in: OBJ, PLY, STL, OFF, glTF/GLB (also inside .b3dm), CityJSON.
+//
+//   Result<Imported> in = import_mesh("city.obj.xz", {});
+//   if (!in.ok()) ...in.failure().message names the file, the place and the reason
+//
+// The result keeps hard and soft edges as the file has them: OBJ's v/vt/vn indices and smoothing
+// groups are kept; formats that store split vertices (glTF, PLY, STL) are welded by bit-equal
+// positions and bit-equal attribute values. Scene transforms are baked, in doubles.
+// Input that cannot be meant is refused; input that is merely ugly is accepted and counted.
+#pragma once
+
+#include "crease/mesh.h"
+#include "crease/progress.h"
+#include "crease/result.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace crease {
+
+// Where a mesh without normals gets them from, and whether given ones are used.
+struct NormalPolicy {
+  enum class Kind { Keep, Flat, Smooth, Crease };
+  Kind kind = Kind::Keep;         // Keep: the file's; without any, the format's default (below)
+  double crease_angle_deg = 30;   // Crease: edges sharper than this are hard
+};
+// "keep", "flat", "smooth" or "crease:ANGLE".
+Result<NormalPolicy> parse_normal_policy(std::string_view text);
+
+struct ImportOptions {
+  NormalPolicy normals;
+  // Normals at one vertex that differ by no more than this, in degrees, become one (exporter noise
+  // is not a crease). 0 joins bit-equal values only.
+  double same_normal_deg = 0;
+  ProgressCallback progress;
+};
+
+// What was ugly, and what was done about it. Printed by the command line tool.
+struct ImportReport {
+  std::string format;                     // "OBJ", "binary STL", ...
+  std::string normals;                    // where the normals come from, in words
+  std::size_t polygons = 0;               // faces with more than three corners, triangulated
+  std::size_t degenerate_triangles = 0;   // two equal corners: dropped
+  std::size_t duplicate_triangles = 0;    // kept
+  std::size_t zero_area_triangles = 0;    // kept
+  std::size_t isolated_vertices = 0;      // dropped
+  std::size_t welded_vertices = 0;        // stored vertices less distinct positions
+  std::size_t zero_normals = 0;           // replaced by the geometric normal
+  std::size_t bad_attribute_values = 0;   // attribute values that were not finite: set to zero
+  std::size_t joined_normals = 0;         // by same_normal_deg
+  std::vector<std::string> notes;         // anything else worth a line: ignored elements, ...
+};
+
+struct Imported {
+  Mesh mesh;  // with a normal layer first; check_mesh() holds
+  ImportReport report;
+};
+
+// Reads one file; `.zst` and `.xz` are unpacked on the way. The format is told from the name and,
+// where that says nothing, from the first bytes. Formats' own default for absent normals:
+// glTF, CityJSON and OFF polygons flat; STL crease 30 degrees; OBJ smoothing groups, without them and for
+// PLY and OFF crease 30 degrees. Time O(n log n), memory about three times the mesh.
+Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options);
+
+// The same for bytes in memory; `name` tells the format and appears in messages. Files that a glTF
+// refers to are looked for beside `name` only when `folder` is given.
+Result<Imported> import_bytes(std::span<const std::byte> bytes, std::string_view name,
+                              const ImportOptions& options,
+                              const std::filesystem::path* folder = nullptr);
+
+// Several files as one mesh: vertices at bit-equal positions are shared, each file is a part.
+Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
+                               const ImportOptions& options);
+
+}  // namespace crease

@@ -1,0 +1,108 @@
+// A triangle mesh with corner attributes: DB03's four arrays, generalised to any number of layers.
+//
+//   mesh.positions[index_of(mesh.triangles[t][c])]                 the position of corner c of t
+//   normal->of_corner[3 * t + c]                                   its normal's index
+//   normal->value(normal->of_corner[3 * t + c])                    its normal
+//
+// Any set of triangles is a mesh: open, non-manifold, non-orientable, disconnected. Two promises:
+//  (1) the three vertices of a triangle differ; import drops the others and counts them;
+//  (2) every index is in range, every number finite. check_mesh() tests both.
+#pragma once
+
+#include "crease/ids.h"
+#include "crease/result.h"
+#include "crease/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+// How values between two given ones come about.
+enum class Interpolation : std::uint8_t {
+  Direction,    // unit vectors, blended on the sphere
+  Linear,       // blended component by component
+  Categorical,  // never blended: where the value changes, there is a crease
+};
+
+enum class AttributeRole : std::uint8_t {
+  Normal,    // dimension 3, Direction. At most one layer has this role
+  TexCoord,  // dimension 2, v up as in OBJ
+  Color,     // dimension 3 or 4, linear, 0..1
+  Other,     // whatever the source had; the name tells
+};
+
+// One attribute: its values and, for every corner, which value it carries. Two corners share an
+// attribute iff their indices are equal, whatever the values are (DB03 section 3).
+struct AttributeLayer {
+  std::string name;  // "normal", "uv", "color", or the source's own word
+  AttributeRole role = AttributeRole::Other;
+  Interpolation interpolation = Interpolation::Linear;
+  std::uint32_t dimension = 1;         // floats per value, 1 to 4
+  std::vector<float> values;           // dimension * value_count()
+  std::vector<AttributeId> of_corner;  // 3 * triangle_count
+
+  std::size_t value_count() const { return dimension == 0 ? 0 : values.size() / dimension; }
+  std::span<const float> value(AttributeId a) const {
+    return std::span<const float>(values).subspan(index_of(a) * dimension, dimension);
+  }
+};
+
+struct Material {
+  std::string name;
+  std::array<float, 4> base_color{1, 1, 1, 1};  // linear RGBA
+  std::string base_color_texture;               // the source's reference to an image; may be empty
+  bool operator==(const Material&) const = default;
+};
+
+using Triangle = std::array<VertexId, 3>;
+
+struct Mesh {
+  std::vector<Vec3d> positions;                  // vertex_count, model units
+  std::vector<Triangle> triangles;               // triangle_count, counter-clockwise from outside
+  std::vector<AttributeLayer> layers;            // any number, normals first if there are any
+  std::vector<MaterialId> material_of_triangle;  // triangle_count, or empty: no materials
+  std::vector<PartId> part_of_triangle;          // triangle_count, or empty: one part
+  std::vector<Material> materials;
+  std::vector<std::string> parts;                // names of objects, groups or scene nodes
+
+  std::size_t vertex_count() const { return positions.size(); }
+  std::size_t triangle_count() const { return triangles.size(); }
+  // The layer with AttributeRole::Normal, or null.
+  const AttributeLayer* normals() const;
+  AttributeLayer* normals();
+};
+
+// The first promise that does not hold, in words. Time O(corners).
+Status check_mesh(const Mesh& mesh);
+
+// The grid that positions are snapped to before simplification; one for the whole asset, so that
+// nothing cracks. Position of a grid point g: origin + step * g, in doubles, exactly as written.
+struct Grid {
+  Vec3d origin;     // model units
+  double step = 1;  // model units per grid unit, > 0
+
+  Vec3d position(const Vec3i& g) const {
+    return {origin.x + step * g.x, origin.y + step * g.y, origin.z + step * g.z};
+  }
+  Vec3i nearest(const Vec3d& p) const;
+  bool operator==(const Grid&) const = default;
+};
+
+// What --precision asks for: a length, or bits over the longest side of the bounding box (1 to 30).
+struct Precision {
+  double length = 0;  // model units; 0: use bits
+  int bits = 24;
+};
+
+// The origin is the bounding box's centre, rounded to a multiple of the step, so that a grid of
+// whole millimetres stays on whole millimetres.
+Grid make_grid(const Mesh& mesh, const Precision& precision);
+
+// Every position on the grid, in place. Vertices are not merged.
+void snap(Mesh& mesh, const Grid& grid);
+
+}  // namespace crease

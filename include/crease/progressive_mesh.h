@@ -1,0 +1,70 @@
+// The linear progressive mesh of DB03: arrays partitioned by shading kind, ordered by the
+// contraction sequence, so that a level is a prefix of every section.
+//
+//   ProgressiveMesh pm(arrays);                   // arrays from build_progressive_arrays() or a file
+//   pm.set_triangle_count(50'000);                // O(change), forwards and backwards
+//   for (Range r : pm.changes().positions) upload(r);
+//   draw(pm.draw_list());
+#pragma once
+
+#include "crease/contraction.h"
+#include "crease/draw_list.h"
+#include "crease/mesh.h"
+#include "crease/progressive_arrays.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace crease {
+
+struct Range {  // [first, first + count), in elements
+  std::uint32_t first = 0, count = 0;
+};
+
+// What the last switch of level wrote, for a renderer that keeps copies: sorted, disjoint, in
+// elements of the DrawList arrays. Counts of triangles need no upload.
+struct DrawChanges {
+  std::vector<Range> positions, vertex_normals;
+  std::vector<Range> sn_indices, fn_indices, nsn_indices;  // in triangles
+  std::vector<Range> fn_normals, nsn_normals;              // in triangles
+  std::vector<Range> sn_colors, fn_colors, nsn_colors;     // in triangles
+};
+
+class ProgressiveMesh {
+ public:
+  explicit ProgressiveMesh(ProgressiveArraysPtr arrays);  // starts at full resolution
+  ~ProgressiveMesh();
+  ProgressiveMesh(ProgressiveMesh&&) noexcept;
+
+  std::size_t contraction_count() const;
+  std::size_t applied() const;  // contractions in force, 0 = full resolution
+  // The move itself. Time O(corners that change). count <= contraction_count().
+  void set_applied(std::size_t count);
+
+  // The finest level with at most `count` triangles (the coarsest one if there is none).
+  void set_triangle_count(std::size_t count);
+  // The coarsest level whose surface error is at most `surface_error`, model units.
+  void set_error(float surface_error);
+
+  std::size_t triangle_count() const;
+  std::size_t vertex_count() const;       // active
+  std::size_t full_triangle_count() const;
+  std::size_t base_triangle_count() const;
+  LevelError error() const;               // the largest of each along the prefix in force
+
+  DrawList draw_list() const;
+  const DrawChanges& changes() const;     // of the last set_ call
+
+  // The level as a mesh of its own, all attribute layers, materials and parts; vertices and
+  // attribute values that are used only. Time O(mesh).
+  Mesh extract() const;
+
+  const ProgressiveArrays& arrays() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace crease

@@ -1,0 +1,67 @@
+// How the outside world fails: a value or a Failure that says what, where and what to do.
+//
+//   Result<Mesh> mesh = import_mesh("model.obj");
+//   if (!mesh.ok()) return report(mesh.failure());  // "model.obj:17: face index 9 of 8 vertices"
+//   use(*mesh);
+//
+// A broken promise inside the program fails through CREASE_ASSERT instead.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace crease {
+
+// Values appear in logs and replies: add, never renumber.
+enum class Error : std::uint16_t {
+  CommandLine = 1,
+  NotFound = 10,
+  ReadFailed = 11,
+  WriteFailed = 12,
+  NotCrease = 20,
+  VersionTooNew = 21,
+  Truncated = 22,
+  BadChecksum = 23,
+  OverLimit = 24,
+  BadFormat = 25,      // the bytes are not what the format says
+  BadValue = 26,       // a number that cannot be meant: NaN, infinite, index out of range
+  NoTriangles = 27,    // readable, but nothing to work on
+  NotSupported = 30,
+  TargetNotMet = 40,
+  Invalid = 50,        // an invariant does not hold
+  Interrupted = 60,
+};
+
+struct Failure {
+  Error error{};
+  std::string message;  // one line: what, where (file, line, byte offset or block), what to do
+};
+
+template <typename T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::move(value)) {}
+  Result(Failure failure) : state_(std::move(failure)) {}
+
+  bool ok() const { return state_.index() == 0; }
+  // ok() must hold.
+  T& operator*() & { return *std::get_if<0>(&state_); }
+  const T& operator*() const& { return *std::get_if<0>(&state_); }
+  T&& operator*() && { return std::move(*std::get_if<0>(&state_)); }
+  T* operator->() { return std::get_if<0>(&state_); }
+  const T* operator->() const { return std::get_if<0>(&state_); }
+  // !ok() must hold.
+  const Failure& failure() const { return *std::get_if<1>(&state_); }
+
+ private:
+  std::variant<T, Failure> state_;
+};
+
+struct Done {};
+using Status = Result<Done>;
+
+inline Failure fail(Error error, std::string message) { return {error, std::move(message)}; }
+
+}  // namespace crease

@@ -1,0 +1,46 @@
+// Mesh -> contractions: quadric pair contraction in error bands and patches (DESIGN 4).
+//
+//   ContractionSequence sequence = *simplify(snapped, grid, {});
+//
+// Goes all the way down; any prefix of the result is a level of detail.
+#pragma once
+
+#include "crease/contraction.h"
+#include "crease/mesh.h"
+#include "crease/progress.h"
+#include "crease/result.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace crease {
+
+struct SimplifyOptions {
+  Placement placement = Placement::Optimal;
+  std::uint32_t patch_triangles = 16'000;
+  int threads = 0;  // 0: all. The result does not depend on it
+  // How much a wrong normal costs beside a wrong distance: a normal that is off by one radian over
+  // an area costs as much as a distance of normal_weight mean edge lengths there.
+  double normal_weight = 0.5;
+  ProgressCallback progress;
+};
+
+struct BandStatistics {
+  std::uint32_t patches = 0;
+  std::uint32_t contractions = 0;
+  std::uint32_t triangles_after = 0;
+  float surface_error = 0;  // the largest so far, model units
+};
+
+struct SimplifyStatistics {
+  std::vector<BandStatistics> bands;
+};
+
+// `snapped` must lie on `grid` and hold check_mesh(). The result is the same to the bit for any
+// number of threads. Memory beside the input: at most 200 bytes a triangle. Fails only when
+// interrupted. `statistics` may be null.
+Result<ContractionSequence> simplify(const Mesh& snapped, const Grid& grid,
+                                     const SimplifyOptions& options,
+                                     SimplifyStatistics* statistics = nullptr);
+
+}  // namespace crease
