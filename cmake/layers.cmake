@@ -26,3 +26,20 @@ set(CREASE_HEADERS_codec     file.h)
 set(CREASE_HEADERS_pipeline  build.h)
 set(CREASE_HEADERS_runtime   draw_list.h progressive_mesh.h)
 set(CREASE_HEADERS_render    render.h)
+
+# What goes into crease_runtime. These are compiled without exceptions and RTTI and need no library.
+set(CREASE_RUNTIME_FOLDERS base mesh hierarchy codec runtime)
+
+# Third-party headers that live in one place only: <prefix...> may be included by these folders.
+set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h lzma.h tbb oneapi nlohmann CLI zstd.h)
+set(CREASE_THIRD_PARTY_embree3  measure)
+set(CREASE_THIRD_PARTY_epoxy    render)
+set(CREASE_THIRD_PARTY_EGL      render)
+set(CREASE_THIRD_PARTY_GL       render)
+set(CREASE_THIRD_PARTY_png.h    render)
+set(CREASE_THIRD_PARTY_lzma.h   io)
+set(CREASE_THIRD_PARTY_zstd.h   io)
+set(CREASE_THIRD_PARTY_tbb      simplify pipeline measure io generate)
+set(CREASE_THIRD_PARTY_oneapi   simplify pipeline measure io generate)
+set(CREASE_THIRD_PARTY_nlohmann io render cli)
+set(CREASE_THIRD_PARTY_CLI      cli)

@@ -1,6 +1,8 @@
-# What others link. crease_runtime: what an engine or a browser needs, without a line of the build.
-# crease: all of it.
-crease_library(crease_runtime base mesh hierarchy codec runtime)
-crease_library(crease ${CREASE_FOLDERS})
-add_library(crease::runtime ALIAS crease_runtime)
-add_library(crease::crease ALIAS crease)
+# What others link. crease_runtime: what an engine or a browser needs, without a line of the build
+# side. crease: all of it; it brings crease_runtime along.
+crease_library(crease_runtime NAME runtime FOLDERS ${CREASE_RUNTIME_FOLDERS})
+if(NOT CREASE_RUNTIME_ONLY)
+  set(build_side ${CREASE_FOLDERS})
+  list(REMOVE_ITEM build_side ${CREASE_RUNTIME_FOLDERS})
+  crease_library(crease NAME crease FOLDERS ${build_side} LINKS crease_runtime)
+endif()

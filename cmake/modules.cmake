@@ -8,11 +8,22 @@
 # same input gives the same bytes with every compiler.
 function(crease_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
+  foreach(dependency IN LISTS ARG_DEPENDS)
+    if(NOT dependency IN_LIST CREASE_LAYER_${name})
+      message(FATAL_ERROR "${name} depends on ${dependency}, which cmake/layers.cmake forbids")
+    endif()
+  endforeach()
   add_library(crease_${name}_objects OBJECT ${ARG_SOURCES})
+  target_compile_features(crease_${name}_objects PUBLIC cxx_std_20)
+  set_target_properties(crease_${name}_objects PROPERTIES
+    CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_include_directories(crease_${name}_objects
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_compile_options(crease_${name}_objects PRIVATE -ffp-contract=off)
+  if(name IN_LIST CREASE_RUNTIME_FOLDERS AND CREASE_RUNTIME_ONLY)
+    target_compile_options(crease_${name}_objects PRIVATE -fno-exceptions -fno-rtti)
+  endif()
   target_link_libraries(crease_${name}_objects PUBLIC ${ARG_LIBRARIES})
   foreach(dependency IN LISTS ARG_DEPENDS)
     target_link_libraries(crease_${name}_objects PUBLIC crease_${dependency}_objects)
@@ -21,10 +32,15 @@ function(crease_module name)
   set_property(GLOBAL PROPERTY crease_${name}_libraries "${ARG_LIBRARIES}")
 endfunction()
 
-# A static library out of several folders. The libraries that the folders need come along.
+# A static library out of several folders, exported as crease::NAME. The libraries that the folders
+# need come along.
+#
+#   crease_library(crease NAME crease FOLDERS io measure LINKS crease_runtime)
 function(crease_library target)
+  cmake_parse_arguments(ARG "" "NAME" "FOLDERS;LINKS" ${ARGN})
   add_library(${target} STATIC)
-  foreach(folder IN LISTS ARGN)
+  add_library(crease::${ARG_NAME} ALIAS ${target})
+  foreach(folder IN LISTS ARG_FOLDERS)
     if(NOT TARGET crease_${folder}_objects)
       continue()  # until every folder is there
     endif()
@@ -32,10 +48,13 @@ function(crease_library target)
     get_property(libraries GLOBAL PROPERTY crease_${folder}_libraries)
     target_link_libraries(${target} PUBLIC ${libraries})
   endforeach()
+  target_link_libraries(${target} PUBLIC ${ARG_LINKS})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:include>)
   target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES
+    LINKER_LANGUAGE CXX EXPORT_NAME ${ARG_NAME} CXX_EXTENSIONS OFF)
 endfunction()
 
 # The folders that `folder` needs, itself included.
@@ -72,11 +91,17 @@ function(crease_program name)
 endfunction()
 
 # A test program of doctest cases; tests/support has its main, the mesh zoo and the real models.
+# THREADED ones also run under the thread sanitizer (scripts/test.sh tsan).
 #
 #   crease_test(io SOURCES obj_test.cpp ply_test.cpp FOLDERS io)
+#   crease_test(simplify SOURCES bands_test.cpp FOLDERS simplify THREADED)
 function(crease_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;FOLDERS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "THREADED" "" "SOURCES;FOLDERS;LIBRARIES" ${ARGN})
   crease_program(test_${name} SOURCES ${ARG_SOURCES} FOLDERS ${ARG_FOLDERS} mesh
                  LIBRARIES crease_test_support ${ARG_LIBRARIES})
   add_test(NAME ${name} COMMAND test_${name})
+  if(ARG_THREADED)
+    set_tests_properties(${name} PROPERTIES LABELS threads)
+    add_dependencies(threaded_tests test_${name})
+  endif()
 endfunction()

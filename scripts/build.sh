@@ -1,0 +1,16 @@
+#!/bin/sh
+# Configures a preset and builds targets of it (all without a name), with ccache when it is there.
+#
+#   scripts/build.sh release crease
+set -eu
+cd "$(dirname "$0")/.."
+preset=$1
+shift
+launcher=
+command -v ccache > /dev/null && launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+cmake --preset "$preset" $launcher > "/tmp/crease-configure.$$" 2>&1 || {
+  cat "/tmp/crease-configure.$$" >&2
+  exit 1
+}
+rm -f "/tmp/crease-configure.$$"
+exec cmake --build --preset "$preset" ${1:+--target} "$@"

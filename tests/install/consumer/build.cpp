@@ -1,0 +1,19 @@
+// What a tool does: takes a mesh, builds its levels, and reads the bytes back.
+#include "crease/build.h"
+#include "crease/generate.h"
+#include "crease/progressive_mesh.h"
+
+#include <cstdio>
+
+int main() {
+  crease::Result<crease::Built> built =
+      crease::build_model(crease::generate_city({.triangles = 3000}), {});
+  if (!built.ok()) return 1;
+  crease::Result<crease::CreaseFile> file = crease::decode_crease(built->file_bytes, {});
+  if (!file.ok()) return 1;
+  crease::ProgressiveMesh mesh(file->arrays);
+  const std::size_t full = mesh.triangle_count();
+  mesh.set_triangle_count(full / 10);
+  std::printf("levels: %zu to %zu triangles\n", full, mesh.triangle_count());
+  return mesh.triangle_count() < full ? 0 : 1;
+}

@@ -1,0 +1,3 @@
+#include "codec/decode_block.h"
+#include "cli/own.h"
+#include "crease/words.h"

@@ -1,0 +1,1 @@
+#include <crease/words.h>

@@ -1,0 +1,1 @@
+#include "codec/encode_block.h"

@@ -1,0 +1,3 @@
+#include <embree3/rtcore.h>
+#include "crease/compare.h"
+#include "encode_block.h"

@@ -1,0 +1,3 @@
+#include <embree3/rtcore.h>
+#include "base/words.h"
+#include "crease/words.h"
