@@ -1,0 +1,269 @@
+// A patch's own copy of its part of the mesh, with the quadrics of the band's start.
+#include "simplify/patch_simplifier.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crease::simplification {
+
+namespace {
+
+// A triangle so thin that its attribute gradient is noise.
+constexpr double kThin = 1e-4;
+
+// Edges between two flat triangles are lines of their own only where the surface really bends: on
+// a faceted sphere every edge is hard, and none of them is a feature.
+constexpr double kFlatLineCosine = 0.866;  // 30 degrees
+
+// Two sheets folded onto each other: the planes agree, so only a line can hold the edge.
+constexpr double kFoldCosine = -0.5;
+
+}  // namespace
+
+PatchSimplifier::PatchSimplifier(WorkMesh& work, std::span<const std::uint32_t> triangles,
+                                 std::uint32_t patch_id, const Steering& steering,
+                                 std::vector<std::uint32_t>& local_of_vertex)
+    : work_(work), steering_(steering) {
+  load(triangles, patch_id, local_of_vertex);
+  load_wedges();
+  load_quadrics();
+  load_edges();
+  if (steering_.virtual_distance > 0) find_virtual_pairs();
+}
+
+void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
+                           std::vector<std::uint32_t>& local_of_vertex) {
+  const std::size_t n = triangles.size();
+  global_triangle_.assign(triangles.begin(), triangles.end());
+  vertex_of_corner_.resize(3 * n);
+  triangle_alive_.assign(n, 1);
+  derived_.resize(n);
+  flat_.assign(n, 0);
+  live_triangles_ = n;
+
+  Vec3i low{INT32_MAX, INT32_MAX, INT32_MAX}, high{INT32_MIN, INT32_MIN, INT32_MIN};
+  for (std::size_t t = 0; t < n; ++t) {
+    derived_[t] = work_.derived[triangles[t]];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index global = work_.vertex_of_corner[3 * triangles[t] + c];
+      Index& local = local_of_vertex[global];
+      if (local == kNone) {
+        local = static_cast<Index>(vertices_.size());
+        Vertex vertex;
+        vertex.global = global;
+        vertex.locked = work_.owner_of_vertex[global] != patch_id;
+        vertex.base = vertex.error = work_.error_of_vertex[global];
+        vertices_.push_back(vertex);
+        const Vec3i& p = work_.positions[global];
+        for (int i = 0; i < 3; ++i) {
+          low[i] = std::min(low[i], p[i]);
+          high[i] = std::max(high[i], p[i]);
+        }
+      }
+      vertex_of_corner_[3 * t + c] = local;
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    center_grid_[i] = static_cast<std::int32_t>((std::int64_t(low[i]) + high[i]) / 2);
+  }
+  for (Vertex& vertex : vertices_) {
+    local_of_vertex[vertex.global] = kNone;  // leave the scratch as it was
+    const Vec3i p = work_.positions[vertex.global] - center_grid_;
+    vertex.position = {double(p.x), double(p.y), double(p.z)};
+  }
+
+  // Triangles around each vertex: counts, then slots.
+  for (Index v : vertex_of_corner_) ++vertices_[v].triangles.count;
+  Index next = 0;
+  for (Vertex& vertex : vertices_) {
+    vertex.triangles.first = next;
+    next += vertex.triangles.count;
+    vertex.triangles.count = 0;
+  }
+  triangle_pool_.reserve(2 * std::size_t(next));
+  triangle_pool_.resize(next);
+  for (std::size_t corner = 0; corner < 3 * n; ++corner) {
+    Slice& around = vertices_[vertex_of_corner_[corner]].triangles;
+    triangle_pool_[around.first + around.count++] = static_cast<Index>(corner / 3);
+  }
+  mark_.assign(vertices_.size(), 0);
+
+  if (!work_.represented.empty()) {
+    represented_.resize(n);
+    for (std::size_t t = 0; t < n; ++t) {
+      const Vec3f& r = work_.represented[triangles[t]];
+      represented_[t] = {r.x, r.y, r.z};
+    }
+  }
+}
+
+void PatchSimplifier::load_wedges() {
+  wedges_.resize(layer_count());
+  wedge_slices_.resize(layer_count());
+  wedge_of_corner_.resize(layer_count());
+  for (std::size_t l = 0; l < layer_count(); ++l) {
+    const WorkLayer& layer = work_.layers[l];
+    std::vector<Wedge>& wedges = wedges_[l];
+    wedges.reserve(vertices_.size() + vertices_.size() / 2);
+    wedge_slices_[l].resize(vertices_.size());
+    wedge_of_corner_[l].resize(vertex_of_corner_.size());
+
+    const auto id_of_corner = [&](Index t, int c) {
+      return layer.of_corner[3 * global_triangle_[t] + static_cast<Index>(c)];
+    };
+    for (Index v = 0; v < vertices_.size(); ++v) {
+      Slice& slice = wedge_slices_[l][v];
+      slice.first = static_cast<Index>(wedges.size());
+      for (Index t : triangles_of(v)) {
+        const int c = corner_of(t, v);
+        const Index id = id_of_corner(t, c);
+        Index w = slice.first;
+        while (w < wedges.size() && wedges[w].id != id) ++w;
+        if (w == wedges.size()) {
+          Wedge wedge{};
+          wedge.id = id;
+          const float* value = layer.value(id);
+          for (int j = 0; j < layer.dimension; ++j) wedge.value[j] = double(value[j]);
+          wedges.push_back(wedge);
+        }
+        wedge_of_corner_[l][3 * t + static_cast<Index>(c)] = w;
+        const bool one = id_of_corner(t, 0) == id_of_corner(t, 1) &&
+                         id_of_corner(t, 1) == id_of_corner(t, 2);
+        if (one && !(layer.is_normal && derived_[t])) {
+          wedges[w].pinned = true;
+          if (layer.is_normal) flat_[t] = 1;
+        }
+      }
+      slice.count = static_cast<Index>(wedges.size()) - slice.first;
+    }
+  }
+}
+
+void PatchSimplifier::load_quadrics() {
+  surface_.assign(vertices_.size(), Quadric{});
+  for (Index t = 0; t < global_triangle_.size(); ++t) {
+    const Index* v = &vertex_of_corner_[3 * t];
+    const Vec3d& p0 = vertices_[v[0]].position;
+    const Vec3d e1 = vertices_[v[1]].position - p0, e2 = vertices_[v[2]].position - p0;
+    const Vec3d twice = cross(e1, e2);
+    const double twice_area = length(twice);
+    if (!(twice_area > 0)) continue;
+    const double area = 0.5 * twice_area;
+    const Vec3d n = twice * (1 / twice_area);
+
+    Quadric plane;
+    plane.add_plane(n, -dot(n, p0), area);
+    plane.weight = area;
+    for (int c = 0; c < 3; ++c) surface_[v[c]].add(plane);
+
+    const double longest = std::max({dot(e1, e1), dot(e2, e2), dot(e2 - e1, e2 - e1)});
+    const bool thin = twice_area < kThin * longest;
+    const double inverse = 1 / (twice_area * twice_area);
+    const Vec3d toward1 = cross(e2, twice) * inverse, toward2 = cross(twice, e1) * inverse;
+    for (std::size_t l = 0; l < layer_count(); ++l) {
+      if (!work_.layers[l].blends) continue;
+      Index w[3];
+      for (Index c = 0; c < 3; ++c) w[c] = wedge_of_corner_[l][3 * t + c];
+      AttributeQuadric quadric;
+      quadric.own.weight = area;
+      for (int j = 0; j < work_.layers[l].dimension; ++j) {
+        const double s0 = wedges_[l][w[0]].value[j];
+        const double d1 = wedges_[l][w[1]].value[j] - s0, d2 = wedges_[l][w[2]].value[j] - s0;
+        const Vec3d gradient = thin ? Vec3d{} : toward1 * d1 + toward2 * d2;
+        const double offset = thin ? s0 + (d1 + d2) / 3 : s0 - dot(gradient, p0);
+        quadric.add_linear(j, gradient, offset, area);
+      }
+      for (int c = 0; c < 3; ++c) wedges_[l][w[c]].quadric.add(quadric, work_.layers[l].dimension);
+    }
+  }
+}
+
+void PatchSimplifier::load_edges() {
+  line_of_vertex_.assign(vertices_.size(), kNone);
+  struct Side {
+    Index other, triangle;
+  };
+  std::vector<Side> sides;
+  for (Index v = 0; v < vertices_.size(); ++v) {
+    sides.clear();
+    for (Index t : triangles_of(v)) {
+      for (Index c = 0; c < 3; ++c) {
+        const Index w = vertex_of_corner_[3 * t + c];
+        if (w > v) sides.push_back({w, t});
+      }
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+      return a.other != b.other ? a.other < b.other : a.triangle < b.triangle;
+    });
+    for (std::size_t i = 0, next = 0; i < sides.size(); i = next) {
+      next = i + 1;
+      while (next < sides.size() && sides[next].other == sides[i].other) ++next;
+      const Index w = sides[i].other;
+      if (vertices_[v].locked && vertices_[w].locked) continue;
+      if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
+
+      bool is_line = next - i != 2;
+      if (next - i == 2) {
+        const Index t = sides[i].triangle, u = sides[i + 1].triangle;
+        if (!work_.category_of_triangle.empty()) {
+          is_line = work_.category_of_triangle[global_triangle_[t]] !=
+                    work_.category_of_triangle[global_triangle_[u]];
+        }
+        const Vec3d nt = normal_of(t), nu = normal_of(u);
+        const double bend = dot(nt, nu), scale = length(nt) * length(nu);
+        if (scale > 0 && bend < kFoldCosine * scale) is_line = true;
+        for (std::size_t l = 0; l < layer_count() && !is_line; ++l) {
+          const auto wedge_at = [&](Index triangle, Index vertex) {
+            return wedge_of_corner_[l][3 * triangle + static_cast<Index>(corner_of(triangle, vertex))];
+          };
+          if (wedge_at(t, v) == wedge_at(u, v) && wedge_at(t, w) == wedge_at(u, w)) continue;
+          const bool facets = work_.layers[l].is_normal && (flat_[t] || derived_[t]) &&
+                              (flat_[u] || derived_[u]);
+          is_line = !facets || bend < kFlatLineCosine * scale;
+        }
+      }
+      if (!is_line) continue;
+      for (std::size_t k = i; k < next; ++k) add_line(v, w, sides[k].triangle);
+    }
+  }
+}
+
+// The plane through edge a-b at a right angle to the triangle (Garland 1999, boundary constraints).
+void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
+  const Vec3d edge = vertices_[b].position - vertices_[a].position;
+  const Vec3d across = normalized(cross(edge, normal_of(triangle)));
+  if (dot(across, across) == 0) return;
+  Quadric plane;
+  const double weight = dot(edge, edge);
+  plane.add_plane(across, -dot(across, vertices_[a].position), weight);
+  plane.weight = weight;
+  for (Index v : {a, b}) {
+    if (line_of_vertex_[v] == kNone) {
+      line_of_vertex_[v] = static_cast<Index>(line_.size());
+      line_.emplace_back();
+    }
+    line_[line_of_vertex_[v]].add(plane);
+  }
+}
+
+int PatchSimplifier::corner_of(Index t, Index v) const {
+  const Index* corners = &vertex_of_corner_[3 * t];
+  return corners[0] == v ? 0 : corners[1] == v ? 1 : corners[2] == v ? 2 : -1;
+}
+
+Vec3d PatchSimplifier::normal_of(Index t) const {
+  const Index* v = &vertex_of_corner_[3 * t];
+  const Vec3d& p0 = vertices_[v[0]].position;
+  return cross(vertices_[v[1]].position - p0, vertices_[v[2]].position - p0);
+}
+
+Vec3d PatchSimplifier::normal_if_moved(Index t, Index moved, const Vec3d& target) const {
+  Vec3d p[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Index v = vertex_of_corner_[3 * t + c];
+    p[c] = v == moved ? target : vertices_[v].position;
+  }
+  return cross(p[1] - p[0], p[2] - p[0]);
+}
+
+}  // namespace crease::simplification

@@ -1,0 +1,192 @@
+// What contracting a pair costs, and where the vertex that replaces it should stand.
+#include "simplify/patch_simplifier.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace crease::simplification {
+
+namespace {
+
+// Among contractions that cost nothing, short edges go first: they make the better triangles.
+constexpr double kLengthShare = 1e-10;
+
+// The optimum stays within this many pair lengths of the pair's middle.
+constexpr double kReach = 1.0;
+
+Vec3d rounded(const Vec3d& x) { return {std::round(x.x), std::round(x.y), std::round(x.z)}; }
+
+}  // namespace
+
+double PatchSimplifier::layer_scale(std::size_t layer) const {
+  const double unit = work_.layers[layer].length_per_unit;
+  return unit * unit;
+}
+
+// Which wedges at a and b become one: those that a vanishing triangle has at its two corners, and
+// those that are the same attribute (DESIGN 6.3; equal index, same attribute). Members are indices
+// into wedges_[layer].
+void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
+                                  std::vector<Joined>& joined) {
+  joined.clear();
+  members_.clear();
+  const Slice wa = wedges_of(layer, a), wb = wedges_of(layer, b);
+  const std::vector<Wedge>& wedges = wedges_[layer];
+  const Index n = wa.count + wb.count;
+  const auto wedge_at = [&](Index i) {
+    return i < wa.count ? wa.first + i : wb.first + (i - wa.count);
+  };
+  parent_.resize(n);
+  std::iota(parent_.begin(), parent_.end(), 0u);
+  const auto root = [&](Index i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  };
+  const auto unite = [&](Index i, Index j) {
+    i = root(i);
+    j = root(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  };
+  for (Index i = 0; i < wa.count; ++i) {
+    for (Index j = 0; j < wb.count; ++j) {
+      if (wedges[wa.first + i].id == wedges[wb.first + j].id) unite(i, wa.count + j);
+    }
+  }
+  for (Index t : triangles_of(a)) {
+    const int cb = corner_of(t, b);
+    if (cb < 0) continue;
+    const Index at_a = wedge_of_corner_[layer][3 * t + static_cast<Index>(corner_of(t, a))];
+    const Index at_b = wedge_of_corner_[layer][3 * t + static_cast<Index>(cb)];
+    unite(at_a - wa.first, wa.count + (at_b - wb.first));
+  }
+
+  for (Index i = 0; i < n; ++i) {
+    if (root(i) != i) continue;
+    const Index first = static_cast<Index>(members_.size());
+    Index fixed = kNone;
+    bool several_fixed = false;
+    for (Index j = i; j < n; ++j) {
+      if (root(j) != i) continue;
+      const Index w = wedge_at(j);
+      members_.push_back(w);
+      if (!wedges[w].pinned) continue;
+      if (fixed == kNone) {
+        fixed = w;
+      } else if (wedges[fixed].id != wedges[w].id) {
+        several_fixed = true;
+      }
+    }
+    const Index end = static_cast<Index>(members_.size());
+    if (!several_fixed) {
+      joined.push_back({AttributeQuadric{}, first, end - first, fixed});
+      continue;
+    }
+    // Two face normals would become one: neither may change (DB03 rule b), so each stays as it is.
+    // Equal attributes are still one wedge.
+    std::sort(members_.begin() + first, members_.end(), [&](Index x, Index y) {
+      return wedges[x].id != wedges[y].id ? wedges[x].id < wedges[y].id : x < y;
+    });
+    for (Index k = first; k < end;) {
+      Index next = k + 1;
+      while (next < end && wedges[members_[next]].id == wedges[members_[k]].id) ++next;
+      joined.push_back({AttributeQuadric{}, k, next - k, members_[k]});
+      k = next;
+    }
+  }
+}
+
+void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
+  for (std::size_t l = 0; l < layer_count(); ++l) {
+    const WorkLayer& layer = work_.layers[l];
+    if (!layer.blends) continue;
+    const double scale = layer_scale(l);
+    const std::vector<Wedge>& wedges = wedges_[l];
+    const Slice wa = wedges_of(l, a), wb = wedges_of(l, b);
+    if (wa.count == 1 && wb.count == 1) {
+      const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
+      if ((!x.pinned && !y.pinned) || x.id == y.id) {
+        // The ordinary case: inside a smooth surface.
+        AttributeQuadric both = x.quadric;
+        both.add(y.quadric, layer.dimension);
+        if (x.pinned || y.pinned) {
+          both.add_fixed(sum, layer.dimension, x.value, scale);
+        } else {
+          both.add_reduced(sum, layer.dimension, scale);
+        }
+        continue;
+      }
+    }
+    join_wedges(l, a, b, joined_);
+    for (const Joined& joined : joined_) {
+      AttributeQuadric all;
+      for (Index k = 0; k < joined.member_count; ++k) {
+        all.add(wedges[members_[joined.first_member + k]].quadric, layer.dimension);
+      }
+      if (joined.fixed != kNone) {
+        all.add_fixed(sum, layer.dimension, wedges[joined.fixed].value, scale);
+      } else {
+        all.add_reduced(sum, layer.dimension, scale);
+      }
+    }
+  }
+}
+
+// With Placement::Endpoint the attributes are inherited from the end that stays, where it has one.
+void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum) {
+  for (std::size_t l = 0; l < layer_count(); ++l) {
+    const WorkLayer& layer = work_.layers[l];
+    if (!layer.blends) continue;
+    const std::vector<Wedge>& wedges = wedges_[l];
+    join_wedges(l, kept, removed, joined_);
+    for (const Joined& joined : joined_) {
+      AttributeQuadric all;
+      for (Index k = 0; k < joined.member_count; ++k) {
+        all.add(wedges[members_[joined.first_member + k]].quadric, layer.dimension);
+      }
+      const Index inherited =
+          joined.fixed != kNone ? joined.fixed : members_[joined.first_member];
+      all.add_fixed(sum, layer.dimension, wedges[inherited].value, layer_scale(l));
+    }
+  }
+}
+
+PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b) {
+  const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
+  const Vec3d along = pb - pa;
+  const double length2 = dot(along, along);
+  Quadric sum = surface_[a];
+  sum.add(surface_[b]);
+  for (Index v : {a, b}) {
+    if (line_of_vertex_[v] != kNone) {
+      const double area = sum.weight;
+      sum.add(line_[line_of_vertex_[v]], steering_.line_weight);
+      sum.weight = area;
+    }
+  }
+  const double tie = kLengthShare * length2 * sum.weight;
+
+  if (steering_.placement == Placement::Endpoint) {
+    Quadric at_a = sum, at_b = sum;
+    add_endpoint_attribute_costs(a, b, at_a);
+    add_endpoint_attribute_costs(b, a, at_b);
+    const double cost_a = at_a.at(pa), cost_b = at_b.at(pb);
+    return cost_a < cost_b ? Placed{cost_a + tie, pa} : Placed{cost_b + tie, pb};
+  }
+
+  add_attribute_costs(a, b, sum);
+  const double cost_a = sum.at(pa), cost_b = sum.at(pb);
+  Placed best = cost_a < cost_b ? Placed{cost_a, pa} : Placed{cost_b, pb};
+  const Vec3d middle = (pa + pb) * 0.5;
+  Vec3d x = sum.minimum(middle, steering_.pull);
+  const Vec3d away = x - middle;
+  const double away2 = dot(away, away);
+  if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
+  x = rounded(x);
+  const double cost_x = sum.at(x);
+  if (cost_x < best.cost - tie) best = {cost_x, x};
+  best.cost += tie;
+  return best;
+}
+
+}  // namespace crease::simplification

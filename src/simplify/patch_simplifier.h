@@ -1,0 +1,171 @@
+// One patch of one band: pair contractions in the order of their cost until none costs less than
+// the band's limit.
+//
+//   PatchSimplifier patch(work, triangles, patch_id, steering);
+//   PatchResult result = patch.run();
+//
+// Inside, everything is local and small enough for the second-level cache: 16,000 triangles take
+// about 3 MB. Vertices that other patches share are locked: they neither move nor vanish.
+#pragma once
+
+#include "simplify/quadric.h"
+#include "simplify/work_mesh.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease::simplification {
+
+struct Steering {
+  Placement placement = Placement::Optimal;
+  double cost_limit = 0;        // area * squared length, grid units
+  double virtual_distance = 0;  // grid units; pairs of parts nearer than this are candidates
+  double line_weight = 1;       // of creases and borders beside surfaces
+  double pull = 1e-4;           // of the optimum towards the pair's middle, see Quadric::minimum
+  double normal_scale = 0;      // what a normal off by one radian is worth, grid units
+  bool keep_one_triangle = true;
+};
+
+class PatchSimplifier {
+ public:
+  using Index = std::uint32_t;
+
+  PatchSimplifier(WorkMesh& work, std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
+                  const Steering& steering, std::vector<std::uint32_t>& local_of_vertex);
+
+  // The costs of all pairs, without contracting any: for choosing the first band's limit.
+  std::vector<double> initial_costs();
+
+  // Once.
+  PatchResult run();
+
+  // Writes triangles, positions and errors back. New attribute values keep their local numbers (at
+  // or above kLocalValue) until the band's patches are put in order.
+  void write_back();
+
+ private:
+  // A wedge of one layer at one vertex.
+  struct Wedge {
+    AttributeQuadric quadric;
+    double value[kMaxDimension];
+    Index id;     // attribute, or kLocalValue + local new value
+    bool pinned;  // some triangle has this attribute at all three corners: it never changes (DB03 b)
+  };
+  struct Slice {
+    Index first = 0, count = 0;
+  };
+  struct Vertex {
+    Vec3d position;  // grid units less center_
+    Index global = 0;
+    Index version = 0;
+    Slice triangles;  // in triangle_pool_
+    bool locked = false;
+    bool alive = true;
+    LevelError base;   // of the bands before
+    LevelError error;  // now
+  };
+  struct Placed {
+    double cost = 0;
+    Vec3d position;
+  };
+  struct Entry {
+    float cost;
+    Index a, b;
+    Index stamp;
+    bool operator<(const Entry& o) const {  // std heaps put the largest first
+      return cost != o.cost ? cost > o.cost : a != o.a ? a > o.a : b > o.b;
+    }
+  };
+  // One result wedge of a contraction: which wedges of a layer become one.
+  struct Joined {
+    AttributeQuadric quadric;
+    Index first_member = 0, member_count = 0;  // in members_
+    Index fixed = kNone;                       // the member whose value is kept, or kNone: solve
+  };
+
+  // load.cpp
+  void load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
+            std::vector<std::uint32_t>& local_of_vertex);
+  void load_wedges();
+  void load_quadrics();
+  void load_edges();
+  void add_line(Index a, Index b, Index triangle);
+
+  // virtual_pairs.cpp
+  void find_virtual_pairs();
+
+  // pair_cost.cpp
+  Placed place(Index a, Index b);
+  void join_wedges(std::size_t layer, Index a, Index b, std::vector<Joined>& joined);
+  void add_attribute_costs(Index a, Index b, Quadric& sum);
+  void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum);
+  double layer_scale(std::size_t layer) const;
+
+  // legality.cpp
+  double ring_cost(Index a, Index b, const Vec3d& target);
+  double fold_cost(Index moved, Index other, const Vec3d& target, double& vanished_area,
+                   std::size_t& survivors);
+  double coincidence_cost(Index a, Index b);
+  double flat_cost(Index t, const Vec3d& normal, double area) const;
+
+  // contract.cpp
+  void contract(Index a, Index b, const Vec3d& target, double cost);
+  void contract_layer(std::size_t layer, Index kept, Index removed, const Vec3d& target,
+                      LevelError& error);
+  Index chosen_value(std::size_t layer, const Joined& joined, Index kept_first, Index kept_end,
+                     const Vec3d& target, double* value);
+  void hand_over_represented(Index t, Index kept);
+  void derive_where_better(Index kept);
+  void push(Index a, Index b);
+  void push_ring(Index v);
+
+  Vec3d normal_of(Index t) const;  // twice the area long
+  Vec3d normal_if_moved(Index t, Index moved, const Vec3d& target) const;
+  int corner_of(Index t, Index v) const;  // -1: none
+  std::span<const Index> triangles_of(Index v) const {
+    return std::span(triangle_pool_).subspan(vertices_[v].triangles.first,
+                                             vertices_[v].triangles.count);
+  }
+  Slice& wedges_of(std::size_t layer, Index v) { return wedge_slices_[layer][v]; }
+  std::size_t layer_count() const { return work_.layers.size(); }
+
+  WorkMesh& work_;
+  const Steering steering_;
+  Vec3d center_;
+  Vec3i center_grid_;
+
+  std::vector<Vertex> vertices_;
+  std::vector<Quadric> surface_;       // per vertex
+  std::vector<Quadric> line_;          // per crease or border vertex
+  std::vector<Index> line_of_vertex_;  // kNone: on no line
+  std::vector<Index> triangle_pool_;
+
+  std::vector<Index> global_triangle_;
+  std::vector<Index> vertex_of_corner_;  // 3 a triangle
+  std::vector<char> triangle_alive_;
+  std::vector<char> flat_;     // stored normal the same at all three corners, and not derived
+  std::vector<char> derived_;
+  std::vector<Vec3d> represented_;
+  std::size_t live_triangles_ = 0;
+
+  std::vector<std::vector<Wedge>> wedges_;        // per layer, slices by vertex
+  std::vector<std::vector<Slice>> wedge_slices_;  // per layer and vertex
+  std::vector<std::vector<Index>> wedge_of_corner_;
+
+  std::vector<std::pair<Index, Index>> pairs_;  // edges, then virtual pairs
+  std::vector<Entry> heap_;
+  double last_key_ = 0;
+
+  PatchResult result_;
+
+  // Scratch of one contraction.
+  std::vector<Joined> joined_;
+  std::vector<Index> members_;
+  std::vector<Index> parent_;
+  std::vector<Index> ring_;
+  std::vector<Index> mark_;
+  Index mark_now_ = 0;
+};
+
+}  // namespace crease::simplification

@@ -1,0 +1,383 @@
+// The bands: partition, simplify every patch up to the band's limit, put the patches' contractions
+// in one order, and go on with the mesh that is left.
+#include "crease/simplify.h"
+
+#include "base/assert.h"
+#include "simplify/partition.h"
+#include "simplify/patch_simplifier.h"
+#include "simplify/work_mesh.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <optional>
+
+namespace crease {
+
+namespace simplification {
+namespace {
+
+// A band should leave about this share of its triangles; its limit is steered towards that.
+constexpr double kBandShare = 0.45;
+
+// Below this many triangles one last band goes all the way.
+constexpr std::size_t kLastBand = 64;
+
+// Positions are rounded to the grid: this much surface error is not error, grid units.
+constexpr double kGridNoise = 0.6;
+
+WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
+  WorkMesh work;
+  work.positions.reserve(mesh.vertex_count());
+  for (const Vec3d& p : mesh.positions) work.positions.push_back(grid.nearest(p));
+  work.error_of_vertex.resize(mesh.vertex_count());
+  work.vertex_of_corner.reserve(3 * mesh.triangle_count());
+  for (const Triangle& triangle : mesh.triangles) {
+    for (VertexId v : triangle) work.vertex_of_corner.push_back(static_cast<std::uint32_t>(v));
+  }
+  work.live.resize(mesh.triangle_count());
+  std::iota(work.live.begin(), work.live.end(), 0u);
+  work.derived.assign(mesh.triangle_count(), 0);
+
+  for (const AttributeLayer& source : mesh.layers) {
+    WorkLayer layer;
+    layer.source = &source;
+    layer.dimension = static_cast<int>(source.dimension);
+    layer.blends = source.interpolation != Interpolation::Categorical;
+    layer.is_direction = source.interpolation == Interpolation::Direction;
+    layer.is_normal = source.role == AttributeRole::Normal;
+    layer.of_corner.reserve(source.of_corner.size());
+    for (AttributeId a : source.of_corner) layer.of_corner.push_back(static_cast<std::uint32_t>(a));
+    work.layers.push_back(std::move(layer));
+  }
+
+  if (!mesh.material_of_triangle.empty() || !mesh.part_of_triangle.empty()) {
+    const std::uint32_t materials =
+        std::max<std::uint32_t>(1, static_cast<std::uint32_t>(mesh.materials.size()));
+    work.category_of_triangle.assign(mesh.triangle_count(), 0);
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      std::uint32_t& category = work.category_of_triangle[t];
+      if (!mesh.part_of_triangle.empty()) {
+        category = static_cast<std::uint32_t>(mesh.part_of_triangle[t]) * materials;
+      }
+      if (!mesh.material_of_triangle.empty()) {
+        category += static_cast<std::uint32_t>(mesh.material_of_triangle[t]);
+      }
+    }
+  }
+
+  // Flat triangles remember the input normals that they stand for.
+  const AttributeLayer* normals = mesh.normals();
+  const auto is_flat = [&](std::size_t t) {
+    const AttributeId* id = &normals->of_corner[3 * t];
+    return id[0] == id[1] && id[1] == id[2];
+  };
+  bool any_flat = false;
+  for (std::size_t t = 0; normals && t < mesh.triangle_count() && !any_flat; ++t) {
+    any_flat = is_flat(t);
+  }
+  if (any_flat) {
+    work.represented.resize(mesh.triangle_count());
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const std::uint32_t* v = &work.vertex_of_corner[3 * t];
+      const auto at = [&](int c) {
+        const Vec3i& p = work.positions[v[c]];
+        return Vec3d{double(p.x), double(p.y), double(p.z)};
+      };
+      const double area = 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+      const std::span<const float> n = normals->value(normals->of_corner[3 * t]);
+      work.represented[t] = {static_cast<float>(area * double(n[0])),
+                             static_cast<float>(area * double(n[1])),
+                             static_cast<float>(area * double(n[2]))};
+    }
+  }
+  return work;
+}
+
+// Area of the live triangles in space and, by layer, of their texture coordinates.
+struct Extent {
+  double area = 0;                // grid units squared
+  std::vector<double> area_of_layer;  // texture units squared; 0 for other layers
+};
+
+Extent measure_extent(const WorkMesh& work) {
+  Extent extent;
+  extent.area_of_layer.assign(work.layers.size(), 0);
+  for (std::uint32_t t : work.live) {
+    const std::uint32_t* v = &work.vertex_of_corner[3 * t];
+    const auto at = [&](int c) {
+      const Vec3i& p = work.positions[v[c]];
+      return Vec3d{double(p.x), double(p.y), double(p.z)};
+    };
+    extent.area += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+    for (std::size_t l = 0; l < work.layers.size(); ++l) {
+      const WorkLayer& layer = work.layers[l];
+      if (layer.source->role != AttributeRole::TexCoord || layer.dimension < 2) continue;
+      const float* a = layer.value(layer.of_corner[3 * t]);
+      const float* b = layer.value(layer.of_corner[3 * t + 1]);
+      const float* c = layer.value(layer.of_corner[3 * t + 2]);
+      extent.area_of_layer[l] += 0.5 * std::abs(double(b[0] - a[0]) * double(c[1] - a[1]) -
+                                                double(c[0] - a[0]) * double(b[1] - a[1]));
+    }
+  }
+  return extent;
+}
+
+// What an attribute error is worth as a distance. A texture that slides costs what the slide is
+// long; a normal or a colour costs in proportion to the triangles' size, so that the balance with
+// distance is the same at every level: distance falls with the square of the size, shading with
+// the size.
+void set_scales(WorkMesh& work, const Extent& extent, double normal_weight, double edge) {
+  for (std::size_t l = 0; l < work.layers.size(); ++l) {
+    WorkLayer& layer = work.layers[l];
+    if (layer.is_normal) {
+      layer.length_per_unit = normal_weight * edge;
+    } else if (extent.area_of_layer[l] > 0) {
+      layer.length_per_unit = 0.3 * std::sqrt(extent.area / extent.area_of_layer[l]);
+    } else {
+      layer.length_per_unit = 0.5 * normal_weight * edge;
+    }
+  }
+}
+
+void find_owners(WorkMesh& work, const Patches& patches) {
+  work.owner_of_vertex.assign(work.positions.size(), kNone);
+  for (std::size_t p = 0; p < patches.count(); ++p) {
+    for (std::uint32_t t : patches.of(p)) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::uint32_t& owner = work.owner_of_vertex[work.vertex_of_corner[3 * t + c]];
+        if (owner == kNone) {
+          owner = static_cast<std::uint32_t>(p);
+        } else if (owner != p) {
+          owner = kShared;
+        }
+      }
+    }
+  }
+}
+
+class Simplifier {
+ public:
+  Simplifier(const Mesh& mesh, const Grid& grid, const SimplifyOptions& options)
+      : options_(options), work_(make_work(mesh, grid)) {
+    sequence_.grid = grid;
+    sequence_.placement = options.placement;
+    sequence_.contractions.reserve(mesh.vertex_count());
+  }
+
+  Result<ContractionSequence> run(SimplifyStatistics* statistics) {
+    const std::size_t input_triangles = work_.live.size();
+    double limit = 0, factor = 16;
+    for (int band = 0; work_.live.size() > 1; ++band) {
+      const std::size_t before = work_.live.size();
+      const double done = 1 - double(before) / double(input_triangles);
+      if (options_.progress && !options_.progress("simplify", done)) {
+        return fail(Error::Interrupted, "simplify: interrupted");
+      }
+      const Extent extent = measure_extent(work_);
+      const double triangle_area = std::max(extent.area / double(before), 1e-9);
+      const double edge = std::sqrt(triangle_area * 2.3);  // of an equilateral triangle
+      set_scales(work_, extent, options_.normal_weight, edge);
+
+      patches_ = partition_triangles(work_.positions, work_.vertex_of_corner, work_.live,
+                                     options_.patch_triangles, band);
+      find_owners(work_, patches_);
+      Steering steering;
+      steering.placement = options_.placement;
+      steering.normal_scale = options_.normal_weight * edge;
+      const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= 3);
+      if (band == 0) limit = first_limit(steering, triangle_area);
+      steering.cost_limit = last ? HUGE_VAL : limit;
+      steering.virtual_distance =
+          last ? HUGE_VAL : 2 * std::sqrt(limit / (triangle_area * 6));
+      if (!run_band(steering, input_triangles)) {
+        return fail(Error::Interrupted, "simplify: interrupted");
+      }
+      if (statistics) statistics->bands.push_back(band_statistics());
+      if (last) break;
+
+      // Steer: a power law through the last band says which limit leaves kBandShare.
+      const double share = double(work_.live.size()) / double(before);
+      stalled_ = share > 0.98 ? stalled_ + 1 : 0;
+      const double exponent = std::log(kBandShare) / std::log(std::min(share, 0.97));
+      factor = std::clamp(std::pow(factor, std::clamp(exponent, 0.3, 3.0)), 3.0, 4096.0);
+      limit *= factor;
+    }
+    scale_errors();
+    for (WorkLayer& layer : work_.layers) sequence_.new_values.push_back(std::move(layer.new_values));
+    return std::move(sequence_);
+  }
+
+ private:
+  using Scratch = tbb::enumerable_thread_specific<std::vector<std::uint32_t>>;
+
+  std::vector<std::uint32_t>& scratch() {
+    std::vector<std::uint32_t>& local = scratch_.local();
+    if (local.empty()) local.assign(work_.positions.size(), kNone);
+    return local;
+  }
+
+  // The limit under which about a third of the pairs lie, from a sample of the patches.
+  double first_limit(const Steering& steering, double triangle_area) {
+    constexpr std::size_t kSample = 16;
+    std::vector<double> costs;
+    const std::size_t stride = std::max<std::size_t>(1, patches_.count() / kSample);
+    std::mutex append;
+    std::vector<std::size_t> chosen;
+    for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
+    tbb::parallel_for(std::size_t(0), chosen.size(), [&](std::size_t i) {
+      const std::size_t p = chosen[i];
+      PatchSimplifier patch(work_, patches_.of(p), static_cast<std::uint32_t>(p), steering, scratch());
+      const std::vector<double> own = patch.initial_costs();
+      const std::lock_guard<std::mutex> lock(append);
+      costs.insert(costs.end(), own.begin(), own.end());
+    });
+    const double noise = triangle_area * 6 * kGridNoise * kGridNoise;
+    if (costs.empty()) return noise;
+    const auto third = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 3);
+    std::nth_element(costs.begin(), third, costs.end());
+    return std::max(noise, *third);
+  }
+
+  bool run_band(const Steering& steering, std::size_t input_triangles) {
+    results_.assign(patches_.count(), {});
+    std::atomic<bool> stop{false};
+    std::atomic<std::size_t> left{work_.live.size()};
+    std::mutex report;
+    tbb::parallel_for(std::size_t(0), patches_.count(), [&](std::size_t p) {
+      if (stop) return;
+      const std::span<const std::uint32_t> triangles = patches_.of(p);
+      PatchSimplifier patch(work_, triangles, static_cast<std::uint32_t>(p), steering, scratch());
+      results_[p] = patch.run();
+      const std::size_t gone = triangles.size() - results_[p].triangles_left;
+      const std::size_t now = left.fetch_sub(gone) - gone;
+      if (options_.progress && report.try_lock()) {
+        if (!options_.progress("simplify", 1 - double(now) / double(input_triangles))) stop = true;
+        report.unlock();
+      }
+    });
+    if (stop) return false;
+    number_new_values();
+    append_contractions();
+    std::erase_if(work_.live, [&](std::uint32_t t) { return work_.vertex_of_corner[3 * t] == kNone; });
+    return true;
+  }
+
+  // Patches numbered their new attribute values on their own; now that all are known, in the order
+  // of the patches, they get their final ids.
+  void number_new_values() {
+    const std::size_t layers = work_.layers.size();
+    first_new_.assign(layers * patches_.count(), 0);
+    for (std::size_t l = 0; l < layers; ++l) {
+      WorkLayer& layer = work_.layers[l];
+      for (std::size_t p = 0; p < patches_.count(); ++p) {
+        first_new_[p * layers + l] = static_cast<std::uint32_t>(layer.value_count());
+        std::vector<float>& values = results_[p].new_values[l];
+        layer.new_values.insert(layer.new_values.end(), values.begin(), values.end());
+        values = {};
+      }
+    }
+    tbb::parallel_for(std::size_t(0), patches_.count(), [&](std::size_t p) {
+      for (std::uint32_t t : patches_.of(p)) {
+        if (work_.vertex_of_corner[3 * t] == kNone) continue;
+        for (std::size_t l = 0; l < layers; ++l) {
+          for (std::size_t c = 0; c < 3; ++c) {
+            std::uint32_t& id = work_.layers[l].of_corner[3 * t + c];
+            if (id >= kLocalValue) id = id - kLocalValue + first_new_[p * layers + l];
+          }
+        }
+      }
+      for (AttributeChange& change : results_[p].changes) {
+        for (AttributeId* id : {&change.from, &change.to}) {
+          const std::uint32_t raw = static_cast<std::uint32_t>(*id);
+          if (raw >= kLocalValue) {
+            *id = AttributeId{raw - kLocalValue + first_new_[p * layers + change.layer]};
+          }
+        }
+      }
+    });
+  }
+
+  // One order for the band: by cost, which never falls inside a patch, then by patch.
+  void append_contractions() {
+    struct At {
+      double key;
+      std::uint32_t patch, index;
+    };
+    std::vector<At> order;
+    for (std::uint32_t p = 0; p < results_.size(); ++p) {
+      for (std::uint32_t i = 0; i < results_[p].contractions.size(); ++i) {
+        order.push_back({results_[p].contractions[i].key, p, i});
+      }
+    }
+    tbb::parallel_sort(order.begin(), order.end(), [](const At& a, const At& b) {
+      return a.key != b.key ? a.key < b.key : a.patch != b.patch ? a.patch < b.patch
+                                                                 : a.index < b.index;
+    });
+    contractions_in_band_ = static_cast<std::uint32_t>(order.size());
+    for (const At& at : order) {
+      const PatchResult& from = results_[at.patch];
+      Contraction contraction = from.contractions[at.index].contraction;
+      const auto changes = std::span(from.changes)
+                               .subspan(contraction.first_change, contraction.change_count);
+      const auto derived = std::span(from.derived)
+                               .subspan(contraction.first_derived, contraction.derived_count);
+      contraction.first_change = static_cast<std::uint32_t>(sequence_.changes.size());
+      contraction.first_derived = static_cast<std::uint32_t>(sequence_.derived.size());
+      sequence_.changes.insert(sequence_.changes.end(), changes.begin(), changes.end());
+      sequence_.derived.insert(sequence_.derived.end(), derived.begin(), derived.end());
+      worst_surface_ = std::max(worst_surface_, contraction.error.surface);
+      sequence_.contractions.push_back(contraction);
+    }
+    results_.clear();
+  }
+
+  BandStatistics band_statistics() const {
+    return {static_cast<std::uint32_t>(patches_.count()), contractions_in_band_,
+            static_cast<std::uint32_t>(work_.live.size()),
+            static_cast<float>(double(worst_surface_) * sequence_.grid.step)};
+  }
+
+  // From grid units to model units.
+  void scale_errors() {
+    for (Contraction& contraction : sequence_.contractions) {
+      LevelError& error = contraction.error;
+      error.surface = static_cast<float>(double(error.surface) * sequence_.grid.step);
+      error.line = static_cast<float>(double(error.line) * sequence_.grid.step);
+    }
+  }
+
+  const SimplifyOptions& options_;
+  WorkMesh work_;
+  Patches patches_;
+  std::vector<PatchResult> results_;
+  std::vector<std::uint32_t> first_new_;  // patch by patch, layer by layer
+  Scratch scratch_;
+  int stalled_ = 0;
+  std::uint32_t contractions_in_band_ = 0;
+  float worst_surface_ = 0;
+  ContractionSequence sequence_;
+};
+
+}  // namespace
+}  // namespace simplification
+
+Result<ContractionSequence> simplify(const Mesh& snapped, const Grid& grid,
+                                     const SimplifyOptions& options,
+                                     SimplifyStatistics* statistics) {
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0) {
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(options.threads));
+  }
+  return simplification::Simplifier(snapped, grid, options).run(statistics);
+}
+
+}  // namespace crease

@@ -1,0 +1,68 @@
+// The mesh under simplification: the input with every contraction of the finished bands applied.
+// Patches read it and, when they are done, write their own triangles and inner vertices back; no
+// two patches of a band share either, so they need no locks.
+#pragma once
+
+#include "crease/contraction.h"
+#include "crease/mesh.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease::simplification {
+
+inline constexpr std::uint32_t kShared = 0xfffffffeu;  // owner of a vertex that patches share
+
+struct WorkLayer {
+  const AttributeLayer* source = nullptr;
+  int dimension = 1;
+  bool blends = true;                        // not categorical
+  bool is_direction = false;
+  bool is_normal = false;
+  double length_per_unit = 0;                // what one unit of the attribute is worth as a distance,
+                                             // grid units; set anew in every band
+  std::vector<std::uint32_t> of_corner;      // 3 a triangle, input values then new ones
+  std::vector<float> new_values;
+
+  std::size_t value_count() const {
+    return source->value_count() + new_values.size() / static_cast<std::size_t>(dimension);
+  }
+  const float* value(std::uint32_t id) const {
+    const std::size_t d = static_cast<std::size_t>(dimension);
+    const std::size_t input = source->value_count();
+    return id < input ? source->values.data() + id * d : new_values.data() + (id - input) * d;
+  }
+};
+
+struct WorkMesh {
+  std::vector<Vec3i> positions;                // per input vertex, grid units
+  std::vector<LevelError> error_of_vertex;     // of the contractions under it, surface and line in
+                                               // grid units
+  std::vector<std::uint32_t> owner_of_vertex;  // patch, or kShared, or kNone; of the present band
+  std::vector<std::uint32_t> vertex_of_corner; // 3 a triangle
+  std::vector<std::uint32_t> category_of_triangle;  // material and part as one; empty: all the same
+  std::vector<char> derived;                   // per triangle: shows its geometric normal
+  std::vector<Vec3f> represented;              // per triangle: sum of area * normal of the input
+                                               // triangles that it stands for; empty: nothing flat
+  std::vector<std::uint32_t> live;             // the triangles that are left, ascending
+  std::vector<WorkLayer> layers;
+};
+
+// What one patch did in one band, in its own numbering of new attribute values.
+struct PatchContraction {
+  double key;  // steering cost; never falls inside a patch
+  Contraction contraction;
+};
+
+struct PatchResult {
+  std::vector<PatchContraction> contractions;
+  std::vector<AttributeChange> changes;        // ids >= kLocalValue: local new value
+  std::vector<TriangleId> derived;
+  std::vector<std::vector<float>> new_values;  // per layer
+  std::size_t triangles_left = 0;
+};
+
+inline constexpr std::uint32_t kLocalValue = 0x80000000u;
+
+}  // namespace crease::simplification
