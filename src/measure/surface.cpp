@@ -1,0 +1,166 @@
+#include "measure/surface.h"
+
+#include "base/assert.h"
+#include "measure/closest_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace crease {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr float kInfinityf = std::numeric_limits<float>::infinity();
+
+// Embree works in floats. Boxes are rounded outwards; a query point in -1..1 moves by less than
+// 2^-24 an axis, and the squared distance to a box is right to a few units in the last place. A
+// search that reaches this much further misses no triangle.
+constexpr double kReach = 1e-6;
+
+struct Box {
+  Vec3d low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+
+  void include(const Vec3d& p) {
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  }
+};
+
+// Of the surface: vertices that no triangle uses do not count.
+Box bounding_box(const Mesh& mesh) {
+  Box box;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (VertexId v : triangle) box.include(mesh.positions[index_of(v)]);
+  }
+  return box;
+}
+
+}  // namespace
+
+Frame common_frame(const Mesh& a, const Mesh& b) {
+  const Box box_a = bounding_box(a), box_b = bounding_box(b);
+  Frame frame;
+  frame.origin = box_a.low + (box_a.high - box_a.low) * 0.5;
+  frame.diagonal = length(box_a.high - box_a.low);
+  double reach = 0;
+  for (const Vec3d& corner : {box_a.low, box_a.high, box_b.low, box_b.high}) {
+    const Vec3d d = corner - frame.origin;
+    reach = std::max({reach, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  }
+  int exponent = 0;
+  std::frexp(reach, &exponent);
+  frame.scale = reach > 0 ? std::ldexp(1.0, -exponent) : 1.0;
+  return frame;
+}
+
+double angle_between(const Vec3d& a, const Vec3d& b) {
+  return std::atan2(length(cross(a, b)), dot(a, b));
+}
+
+struct Surface::Query {
+  const Surface& surface;
+  Vec3d p;
+  double tie;
+  Scratch& scratch;
+  double best = kInfinity;
+
+  float radius() const {
+    return best < kInfinity ? float((best + tie) * (1 + kReach) + kReach) : kInfinityf;
+  }
+};
+
+Surface::Surface(const Mesh& mesh, const Frame& frame) : mesh_(mesh), normals_(*mesh.normals()) {
+  positions_.reserve(mesh.vertex_count());
+  for (const Vec3d& p : mesh.positions) positions_.push_back(frame.to_frame(p));
+
+  device_.reset(rtcNewDevice(nullptr));
+  CREASE_ASSERT(device_ != nullptr);
+  scene_.reset(rtcNewScene(device_.get()));
+  // A geometry of our own instead of Embree's triangles: their vertices would be floats, and each
+  // would be stored once more.
+  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh.triangle_count()));
+  rtcSetGeometryUserData(geometry, this);
+  rtcSetGeometryBoundsFunction(geometry, bounds_of_triangle, nullptr);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  rtcJoinCommitScene(scene_.get());
+  CREASE_ASSERT(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE);
+}
+
+void Surface::bounds_of_triangle(const RTCBoundsFunctionArguments* arguments) {
+  const auto& surface = *static_cast<const Surface*>(arguments->geometryUserPtr);
+  Box box;
+  for (std::size_t c = 0; c < 3; ++c) box.include(surface.corner(arguments->primID, c));
+  const auto below = [](double x) { return std::nextafter(float(x), -kInfinityf); };
+  const auto above = [](double x) { return std::nextafter(float(x), kInfinityf); };
+  RTCBounds& bounds = *arguments->bounds_o;
+  bounds.lower_x = below(box.low.x);
+  bounds.lower_y = below(box.low.y);
+  bounds.lower_z = below(box.low.z);
+  bounds.upper_x = above(box.high.x);
+  bounds.upper_y = above(box.high.y);
+  bounds.upper_z = above(box.high.z);
+}
+
+Vec3d Surface::normal(std::size_t triangle, const std::array<double, 3>& weights) const {
+  Vec3d sum;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::span<const float> n = normals_.value(normals_.of_corner[3 * triangle + c]);
+    sum += normalized(Vec3d{n[0], n[1], n[2]}) * weights[c];
+  }
+  constexpr double kCancelled = 1e-6;
+  if (length(sum) > kCancelled) return normalized(sum);
+  const Vec3d a = corner(triangle, 0);
+  return normalized(cross(corner(triangle, 1) - a, corner(triangle, 2) - a));
+}
+
+void Surface::visit(Query& query, std::uint32_t triangle) const {
+  const ClosestPoint found =
+      closest_point(query.p, corner(triangle, 0), corner(triangle, 1), corner(triangle, 2));
+  const double distance = std::sqrt(found.squared_distance);
+  if (distance > query.best + query.tie) return;
+  query.best = std::min(query.best, distance);
+  query.scratch.candidates.push_back({distance, triangle, found.weights});
+}
+
+bool Surface::visit_triangle(RTCPointQueryFunctionArguments* arguments) {
+  Query& query = *static_cast<Query*>(arguments->userPtr);
+  const double before = query.best;
+  if (arguments->primID == query.scratch.last_triangle) return false;  // visited first of all
+  query.surface.visit(query, arguments->primID);
+  if (query.best == before) return false;
+  arguments->query->radius = query.radius();
+  return true;
+}
+
+Nearest Surface::nearest(const Vec3d& p, const Vec3d* normal, double tie, Scratch& scratch) const {
+  scratch.candidates.clear();
+  Query query{.surface = *this, .p = p, .tie = tie, .scratch = scratch};
+  if (scratch.last_triangle != kNone) visit(query, scratch.last_triangle);
+
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  RTCPointQuery search{
+      .x = float(p.x), .y = float(p.y), .z = float(p.z), .time = 0, .radius = query.radius()};
+  rtcPointQuery(scene_.get(), &search, &context, visit_triangle, &query);
+
+  Nearest nearest{.distance = query.best};
+  double least = kInfinity;
+  for (const Scratch::Candidate& candidate : scratch.candidates) {
+    if (candidate.distance > query.best + tie) continue;
+    if (candidate.distance == query.best) scratch.last_triangle = candidate.triangle;
+    if (normal == nullptr) continue;
+    least = std::min(least,
+                     angle_between(*normal, this->normal(candidate.triangle, candidate.weights)));
+  }
+  if (normal != nullptr) nearest.deviation_rad = least;
+  return nearest;
+}
+
+}  // namespace crease

@@ -1,0 +1,220 @@
+#include "crease/compare.h"
+
+#include "measure/closest_point.h"
+#include "measure/sample.h"
+#include "measure/surface.h"
+#include "support/mesh_builder.h"
+#include "support/mesh_zoo.h"
+
+#include <doctest/doctest.h>
+#include <rapidcheck.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <limits>
+
+using namespace crease;
+
+namespace {
+
+// What nearest() must give, triangle by triangle.
+Nearest nearest_by_brute_force(const Surface& surface, const Vec3d& p, const Vec3d& normal,
+                               double tie) {
+  std::vector<ClosestPoint> found;
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < surface.triangle_count(); ++t) {
+    found.push_back(
+        closest_point(p, surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2)));
+    best = std::min(best, std::sqrt(found.back().squared_distance));
+  }
+  double deviation = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < surface.triangle_count(); ++t) {
+    if (std::sqrt(found[t].squared_distance) > best + tie) continue;
+    deviation = std::min(deviation, angle_between(normal, surface.normal(t, found[t].weights)));
+  }
+  return {best, deviation};
+}
+
+void check_against_brute_force(const Mesh& a, const Mesh& b, std::size_t samples) {
+  const Frame frame = common_frame(a, b);
+  const Surface surface_a(a, frame), surface_b(b, frame);
+  const Sampler sampler(surface_a, samples, 7);
+  const double tie = 1e-5 * frame.diagonal * frame.scale;
+  Surface::Scratch scratch;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const SurfacePoint s = sampler(i);
+    Vec3d p;
+    for (std::size_t c = 0; c < 3; ++c) p += surface_a.corner(s.triangle, c) * s.weights[c];
+    const Vec3d normal = surface_a.normal(s.triangle, s.weights);
+    const Nearest expected = nearest_by_brute_force(surface_b, p, normal, tie);
+    const Nearest got = surface_b.nearest(p, &normal, tie, scratch);
+    CHECK(got.distance == expected.distance);
+    CHECK(got.deviation_rad == expected.deviation_rad);
+  }
+}
+
+Mesh moved(Mesh mesh, const Vec3d& offset, double scale = 1) {
+  for (Vec3d& p : mesh.positions) p = p * scale + offset;
+  return mesh;
+}
+
+Mesh square(double z, int cells) {
+  MeshBuilder b;
+  b.grid({0, 0, z}, {1, 0, 0}, {0, 1, 0}, cells, cells);
+  return b.take();
+}
+
+bool same(const Comparison& a, const Comparison& b) {
+  const auto same_spread = [](const Spread& x, const Spread& y) {
+    return x.mean == y.mean && x.rms == y.rms && x.max == y.max;
+  };
+  return same_spread(a.distance.a_to_b, b.distance.a_to_b) &&
+         same_spread(a.distance.b_to_a, b.distance.b_to_a) &&
+         a.normal_deviation.mean == b.normal_deviation.mean &&
+         a.normal_deviation.p95 == b.normal_deviation.p95 &&
+         a.normal_deviation.max == b.normal_deviation.max;
+}
+
+}  // namespace
+
+TEST_CASE("every mesh of the zoo is where it is") {
+  for (const ZooMesh& z : mesh_zoo()) {
+    if (z.mesh.triangle_count() == 0) continue;
+    CAPTURE(z.name);
+    const Comparison c = compare_meshes(z.mesh, z.mesh, {.samples = 2000});
+    CHECK(c.distance.a_to_b.max < 1e-12 * c.diagonal);
+    CHECK(c.distance.b_to_a.max < 1e-12 * c.diagonal);
+    CHECK(c.normal_deviation.max < 1e-5);
+  }
+}
+
+TEST_CASE("closest points equal the brute force, zoo mesh against zoo mesh") {
+  const std::vector<ZooMesh> zoo = mesh_zoo();
+  for (std::size_t i = 0; i < zoo.size(); ++i) {
+    const ZooMesh &a = zoo[i], &b = zoo[(i * 5 + 3) % zoo.size()];
+    if (a.mesh.triangle_count() == 0 || b.mesh.triangle_count() == 0) continue;
+    CAPTURE(a.name);
+    CAPTURE(b.name);
+    check_against_brute_force(a.mesh, b.mesh, 100);
+    check_against_brute_force(b.mesh, moved(a.mesh, {1e-4, 2e-4, -1e-4}), 100);
+  }
+}
+
+TEST_CASE("closest points equal the brute force on random triangles") {
+  const auto triangles = rc::gen::nonEmpty<std::vector<std::array<int, 9>>>(
+      rc::gen::container<std::vector<std::array<int, 9>>>(
+          rc::gen::container<std::array<int, 9>>(rc::gen::inRange(-20, 21))));
+  const auto mesh_of = [](const std::vector<std::array<int, 9>>& corners) {
+    MeshBuilder b;
+    for (const std::array<int, 9>& x : corners) {
+      b.flat_triangle({b.vertex({x[0] / 10.0, x[1] / 10.0, x[2] / 10.0}),
+                       b.vertex({x[3] / 10.0, x[4] / 10.0, x[5] / 10.0}),
+                       b.vertex({x[6] / 10.0, x[7] / 10.0, x[8] / 10.0})});
+    }
+    return b.take();
+  };
+  CHECK(
+      rc::check([&] { check_against_brute_force(mesh_of(*triangles), mesh_of(*triangles), 20); }));
+}
+
+TEST_CASE("parallel squares are as far apart as they are") {
+  for (double gap : {1e-8, 1e-3, 0.5}) {
+    CAPTURE(gap);
+    const Comparison c = compare_meshes(square(0, 1), square(gap, 7), {.samples = 1000});
+    for (const Spread& s : {c.distance.a_to_b, c.distance.b_to_a}) {
+      CHECK(s.mean == doctest::Approx(gap).epsilon(1e-9));
+      CHECK(s.rms == doctest::Approx(gap).epsilon(1e-9));
+      CHECK(s.max == doctest::Approx(gap).epsilon(1e-9));
+    }
+    CHECK(c.normal_deviation.max < 1e-9);
+    CHECK(c.diagonal == doctest::Approx(std::sqrt(2.0)));
+  }
+}
+
+TEST_CASE("concentric spheres are their radii's difference apart") {
+  const Mesh inner = smooth_sphere(64, 128), outer = moved(inner, {}, 1.25);
+  const Comparison c = compare_meshes(inner, outer, {.samples = 20'000});
+  CHECK(c.distance.a_to_b.mean == doctest::Approx(0.25).epsilon(0.002));
+  CHECK(c.distance.b_to_a.mean == doctest::Approx(0.25).epsilon(0.002));
+  CHECK(c.distance.a_to_b.max < 0.2505);
+  CHECK(c.normal_deviation.mean < 0.25);
+}
+
+TEST_CASE("the two directions differ when one mesh has a part more") {
+  MeshBuilder b;
+  b.box({0, 0, 0}, {1, 1, 1}, 1);
+  b.box({3, 0, 0}, {4, 1, 1}, 1);
+  const Mesh one = hard_box(1), two = b.take();
+  const Comparison c = compare_meshes(one, two, {.samples = 10'000});
+  CHECK(c.distance.a_to_b.max < 1e-12);
+  CHECK(c.distance.b_to_a.max == doctest::Approx(3));  // a vertex: samples alone stop short of it
+  CHECK(c.distance.b_to_a.mean == doctest::Approx(1.25).epsilon(0.02));
+}
+
+TEST_CASE("normals that are turned are seen, all of them by their angle") {
+  Mesh turned = hard_box(2);
+  AttributeLayer& normals = *turned.normals();
+  for (std::size_t n = 0; n < normals.value_count(); ++n) {
+    float* v = &normals.values[3 * n];
+    // By 10 degrees about an axis across it.
+    const Vec3d from{v[0], v[1], v[2]}, across{v[1], v[2], v[0]};
+    const Vec3d to = from * std::cos(radians(10.0)) + across * std::sin(radians(10.0));
+    for (int i = 0; i < 3; ++i) v[i] = float(to[i]);
+  }
+  const Comparison c = compare_meshes(hard_box(2), turned, {.samples = 10'000});
+  CHECK(c.normal_deviation.mean == doctest::Approx(10).epsilon(1e-4));
+  CHECK(c.normal_deviation.p95 == doctest::Approx(10).epsilon(1e-4));
+  CHECK(c.normal_deviation.max == doctest::Approx(10).epsilon(1e-4));
+}
+
+TEST_CASE("turned normals of one side in six count for a sixth") {
+  Mesh turned = hard_box(2);
+  float* first = turned.normals()->values.data();
+  std::swap(first[0], first[1]);  // by 90 degrees
+  const Comparison c = compare_meshes(hard_box(2), turned, {.samples = 10'000});
+  CHECK(c.normal_deviation.mean == doctest::Approx(15).epsilon(0.01));
+  CHECK(c.normal_deviation.max == doctest::Approx(90));
+}
+
+TEST_CASE("a sample on a hard edge sees the side that agrees") {
+  // The same box in other cells: samples near edges find both sides.
+  const Comparison c = compare_meshes(hard_box(3), hard_box(7), {.samples = 50'000});
+  CHECK(c.normal_deviation.max < 1e-5);
+}
+
+TEST_CASE("an offset of a thousand kilometres loses nothing") {
+  // Multiples of 2^-20 m, so that the offset itself rounds nothing.
+  Mesh mesh = torus(24, 12);
+  for (Vec3d& p : mesh.positions) {
+    for (int i = 0; i < 3; ++i) p[i] = std::round(p[i] * 0x1p20) * 0x1p-20;
+  }
+  const Mesh other = moved(mesh, {0x1p-12, 0, 0});
+  const Vec3d offset{1e6, 5e6, 0};
+  const Comparison near = compare_meshes(mesh, other, {.samples = 5000});
+  const Comparison far =
+      compare_meshes(moved(mesh, offset), moved(other, offset), {.samples = 5000});
+  CHECK(same(near, far));
+  CHECK(near.distance.a_to_b.mean > 0);
+}
+
+TEST_CASE("size does not matter") {
+  const Mesh a = torus(24, 12), b = torus(12, 8);
+  const Comparison one = compare_meshes(a, b, {.samples = 2000});
+  for (double scale : {0x1p-80, 0x1p80}) {
+    const Comparison c =
+        compare_meshes(moved(a, {}, scale), moved(b, {}, scale), {.samples = 2000});
+    CHECK(c.distance.a_to_b.mean / scale == one.distance.a_to_b.mean);
+    CHECK(c.normal_deviation.mean == one.normal_deviation.mean);
+  }
+}
+
+TEST_CASE("the number of threads changes nothing") {
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 7);
+  const Mesh a = torus(48, 24), b = torus(20, 9);
+  const Comparison one = compare_meshes(a, b, {.samples = 20'000, .threads = 1});
+  for (int threads : {2, 7}) {
+    CAPTURE(threads);
+    CHECK(same(one, compare_meshes(a, b, {.samples = 20'000, .threads = threads})));
+  }
+  CHECK(!same(one, compare_meshes(a, b, {.samples = 20'000, .seed = 2})));
+}
