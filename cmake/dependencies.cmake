@@ -2,20 +2,17 @@
 # includes this file too, so that crease::crease finds the same targets.
 #
 #   target                  used by
-#   TBB::tbb                simplify, pipeline: threads
+#   TBB::tbb                simplify, pipeline, measure: threads
 #   embree                  measure: closest points
-#   PkgConfig::crease_zstd  io, codec: compressed inputs
-#   LibLZMA::LibLZMA        io: .xz inputs
+#   zstd, lzma              io: compressed inputs (plain -l names)
 #   PNG::PNG                render: pictures
-#   PkgConfig::crease_gl    render: epoxy (OpenGL and EGL entry points)
-# Header-only ones (nlohmann-json, fast_float, xxhash, stb, CLI11) are found by the compiler.
+#   PkgConfig::CREASE_GL    render: epoxy and EGL
+# Header-only ones (nlohmann-json, fast_float, stb, CLI11) are found by the compiler.
 macro(crease_find_dependencies)
   find_package(PkgConfig REQUIRED)
   find_package(Threads REQUIRED)
   find_package(TBB CONFIG REQUIRED)
   find_package(embree 3 CONFIG REQUIRED)
-  find_package(LibLZMA REQUIRED)
   find_package(PNG REQUIRED)
-  pkg_check_modules(crease_zstd REQUIRED IMPORTED_TARGET GLOBAL libzstd)
-  pkg_check_modules(crease_gl REQUIRED IMPORTED_TARGET GLOBAL epoxy egl)
+  pkg_check_modules(CREASE_GL REQUIRED IMPORTED_TARGET GLOBAL epoxy egl)
 endmacro()

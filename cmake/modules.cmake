@@ -15,8 +15,6 @@ function(crease_module name)
   endforeach()
   add_library(crease_${name}_objects OBJECT ${ARG_SOURCES})
   target_compile_features(crease_${name}_objects PUBLIC cxx_std_20)
-  set_target_properties(crease_${name}_objects PROPERTIES
-    CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_include_directories(crease_${name}_objects
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
@@ -54,7 +52,7 @@ function(crease_library target)
     $<INSTALL_INTERFACE:include>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES
-    LINKER_LANGUAGE CXX EXPORT_NAME ${ARG_NAME} CXX_EXTENSIONS OFF)
+    LINKER_LANGUAGE CXX EXPORT_NAME ${ARG_NAME})
 endfunction()
 
 # The folders that `folder` needs, itself included.

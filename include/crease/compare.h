@@ -11,7 +11,10 @@
 
 #include "crease/mesh.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace crease {
 
@@ -39,5 +42,10 @@ struct CompareOptions {
 // Both meshes need triangles and normals. The result does not depend on the number of threads.
 // Time O(samples log triangles), memory about 150 bytes a triangle.
 Comparison compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options);
+
+// How far each point is from the surface, model units. `surface` needs triangles and normals.
+// threads: 0 is all.
+std::vector<float> distances_to(const Mesh& surface, std::span<const Vec3d> points,
+                                int threads = 0);
 
 }  // namespace crease

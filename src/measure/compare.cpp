@@ -116,19 +116,44 @@ Comparison compare(const Mesh& a, const Mesh& b, const CompareOptions& options) 
   return result;
 }
 
+// Runs `work` on at most `threads` threads.
+template <typename Work>
+void run_on(int threads, const Work& work) {
+  // More than TBB allows would make it print a warning.
+  const std::size_t allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  tbb::task_arena arena(threads > 0 ? std::min(threads, int(allowed))
+                                    : tbb::task_arena::automatic);
+  arena.execute(work);
+}
+
 }  // namespace
 
 Comparison compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options) {
   CREASE_ASSERT(a.triangle_count() > 0 && b.triangle_count() > 0);
   CREASE_ASSERT(a.normals() != nullptr && b.normals() != nullptr);
-  // More than TBB allows would make it print a warning.
-  const std::size_t allowed =
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, int(allowed))
-                                            : tbb::task_arena::automatic);
   Comparison result;
-  arena.execute([&] { result = compare(a, b, options); });
+  run_on(options.threads, [&] { result = compare(a, b, options); });
   return result;
+}
+
+std::vector<float> distances_to(const Mesh& surface, std::span<const Vec3d> points, int threads) {
+  CREASE_ASSERT(surface.triangle_count() > 0 && surface.normals() != nullptr);
+  std::vector<float> distance_of_point(points.size());
+  run_on(threads, [&] {
+    const Frame frame = common_frame(surface, surface);
+    const Surface to(surface, frame);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), kGrain),
+                      [&](const auto& range) {
+                        Surface::Scratch scratch;
+                        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                          const Vec3d p = frame.to_frame(points[i]);
+                          const Nearest nearest = to.nearest(p, nullptr, 0, scratch);
+                          distance_of_point[i] = float(nearest.distance / frame.scale);
+                        }
+                      });
+  });
+  return distance_of_point;
 }
 
 }  // namespace crease
