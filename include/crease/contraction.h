@@ -6,8 +6,11 @@
 //
 //   for each triangle with p: if it also has q it vanishes (F^c of DESIGN 1), else p becomes q;
 //   q's position becomes `position`;
-//   in every corner at q, in layer `layer`, attribute `from` becomes `to` (each AttributeChange);
-//   every triangle in `derived` shows its geometric normal from now on, whatever its stored one.
+//   every triangle in `derived` shows its geometric normal from now on, whatever its stored one,
+//   which changes no more (it comes back when the contraction is undone, and is shown while the
+//   triangle has no area);
+//   in every corner at q, in layer `layer`, attribute `from` becomes `to` (each AttributeChange).
+//   No `to` of a contraction is a `from` of the same layer in it, so their order does not matter.
 //
 // So any prefix of the sequence is one level of detail. Its error is the largest along the prefix.
 #pragma once
@@ -90,7 +93,8 @@ Level apply_contractions(const Mesh& snapped, const ContractionSequence& sequenc
 Mesh mesh_of_level(const Mesh& snapped, const ContractionSequence& sequence, const Level& level);
 
 // The first invariant that does not hold, in words: ids in range and alive when used, errors
-// monotone up the tree, derived at most once, attribute changes only of attributes that stand at v_s.
+// monotone up the tree, derived at most once, attribute changes only of attributes that stand at v_s,
+// endpoints where the placement says so. Time O(contractions * triangles around a vertex).
 Status check_contractions(const Mesh& snapped, const ContractionSequence& sequence);
 
 }  // namespace crease
