@@ -1,0 +1,104 @@
+// crease build: mesh files -> one .crease.
+#include "crease/build.h"
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/model.h"
+#include "cli/report.h"
+#include "cli/text.h"
+
+#include <memory>
+#include <utility>
+
+namespace crease::cli {
+
+namespace {
+
+struct Options {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  ReadOptions read;
+};
+
+Result<Imported> import_inputs(const Options& options, const Common& common) {
+  Result<ImportOptions> import = import_options(options.read, common);
+  if (!import.ok()) return import.failure();
+  Result<Imported> imported = options.inputs.size() == 1
+                                  ? import_mesh(options.inputs.front(), *import)
+                                  : import_meshes(options.inputs, *import);
+  if (imported.ok()) {
+    const std::string more = options.inputs.size() == 1
+                                 ? ""
+                                 : " and " + std::to_string(options.inputs.size() - 1) + " more";
+    log(common, options.inputs.front().string() + more + ":\n" + lines_of(imported->report));
+  }
+  return imported;
+}
+
+Result<Report> run(const Options& options, const Common& common) {
+  const Stopwatch watch;
+  for (const std::filesystem::path& input : options.inputs) {
+    if (is_crease_file(input)) {
+      return fail(Error::NotSupported,
+                  input.string() + ": is built already; extract a mesh from it to build it anew");
+    }
+  }
+  Result<BuildOptions> build = build_options(options.read, common);  // before any work is done
+  if (!build.ok()) return build.failure();
+  Result<Imported> imported = import_inputs(options, common);
+  if (!imported.ok()) return imported.failure();
+  const double import_seconds = watch.seconds();
+  const std::size_t triangles = imported->mesh.triangle_count();
+  const std::size_t vertices = imported->mesh.vertex_count();
+  if (interrupted()) return interrupted_failure();
+
+  const Result<Built> built = build_model(std::move(imported->mesh), *build);
+  if (!built.ok()) return built.failure();
+  const double build_seconds = watch.seconds() - import_seconds;
+  if (interrupted()) return interrupted_failure();
+  const Status written = write_crease(options.output, built->file_bytes);
+  if (!written.ok()) return written.failure();
+
+  const std::size_t bytes = built->file_bytes.size();
+  const double bits = 8.0 * static_cast<double>(bytes) / static_cast<double>(vertices);
+  std::size_t blocks = 0;
+  for (const BandStatistics& band : built->statistics.bands) blocks += band.patches;
+  Report report;
+  report.json = {{"output", options.output.string()},
+                 {"triangles", triangles},
+                 {"vertices", vertices},
+                 {"seconds", watch.seconds()},
+                 {"import_seconds", import_seconds},
+                 {"build_seconds", build_seconds},
+                 {"peak_memory", peak_memory()},
+                 {"bytes", bytes},
+                 {"bits_per_vertex", bits},
+                 {"bands", built->statistics.bands.size()},
+                 {"blocks", blocks},
+                 {"import", to_json(imported->report)}};
+  report.text = options.output.string() + ": " + grouped(triangles) + " triangles, " +
+                grouped(vertices) + " vertices, " + in_bytes(bytes) + ", " +
+                in_seconds(watch.seconds()) + ", " + in_bytes(peak_memory()) + " of memory";
+  return report;
+}
+
+}  // namespace
+
+Command add_build(CLI::App& app, const Common& common) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("build", "import, simplify, write one .crease file");
+  command
+      ->add_option(
+          "IN", options->inputs,
+          "OBJ, PLY, STL, OFF, glTF, GLB, b3dm, CityJSON, also .zst and .xz; several become "
+          "one model, each a part")
+      ->required();
+  command->add_option("-o,--output", options->output, "the .crease file")
+      ->required()
+      ->type_name("OUT");
+  add_build_options(*command, options->read);
+  command->footer(
+      "Example:\n  crease build bunny.ply -o bunny.crease --normals crease:30 --precision 14bits");
+  return {command, [options, &common] { return run(*options, common); }};
+}
+
+}  // namespace crease::cli

@@ -1,0 +1,26 @@
+// Exit statuses (DESIGN 9, docs/errors.md). Scripts rely on them.
+#pragma once
+
+#include "crease/result.h"
+
+#include <string_view>
+
+namespace crease::cli {
+
+enum class ExitCode : int {
+  Done = 0,
+  CommandLine = 1,
+  BadInput = 2,  // cannot be read, or is not what it says
+  NotSupported = 3,
+  CannotWrite = 4,
+  TargetNotMet = 5,  // with --strict
+  Invalid = 6,       // validation failed
+  Interrupted = 130,
+};
+
+ExitCode exit_code_of(Error error);
+
+// The error's name as docs/errors.md lists it, for --json.
+std::string_view name_of(Error error);
+
+}  // namespace crease::cli

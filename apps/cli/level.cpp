@@ -1,0 +1,171 @@
+#include "cli/level.h"
+
+#include "cli/console.h"
+#include "cli/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace crease::cli {
+
+void add_level_options(CLI::App& command, LevelOptions& options) {
+  CLI::Option* triangles =
+      command.add_option("--triangles", options.triangles, "the finest level with at most N")
+          ->type_name("N")
+          ->check(CLI::PositiveNumber);
+  CLI::Option* ratio =
+      command.add_option("--ratio", options.ratio, "share of the triangles, above 0 and up to 1")
+          ->type_name("R")
+          ->check(CLI::Range(1e-9, 1.0));
+  CLI::Option* error =
+      command
+          .add_option(
+              "--error", options.error,
+              "the coarsest level whose measured distance from the full mesh, both ways, is "
+              "at most LENGTH")
+          ->type_name("LENGTH")
+          ->check(CLI::NonNegativeNumber);
+  triangles->excludes(ratio);
+  triangles->excludes(error);
+  ratio->excludes(error);
+  command
+      .add_option("--samples", options.samples,
+                  "points on each surface that errors are measured at; 0 measures nothing")
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+const char* name_of(StoppedBy stop) {
+  switch (stop) {
+    case StoppedBy::Triangles:
+      return "triangles";
+    case StoppedBy::Error:
+      return "error";
+    case StoppedBy::Base:
+      return "base";
+    case StoppedBy::Topology:
+      return "topology";
+  }
+  return "";
+}
+
+namespace {
+
+// The last contractions may take the last triangle; a level for others has at least one.
+void keep_a_triangle(ProgressiveMesh& mesh) {
+  while (mesh.triangle_count() == 0 && mesh.applied() > 0) mesh.set_applied(mesh.applied() - 1);
+}
+
+Chosen choose_by_count(ProgressiveMesh& mesh, std::size_t count) {
+  mesh.set_triangle_count(count);
+  keep_a_triangle(mesh);
+  Chosen chosen;
+  chosen.target_met = mesh.triangle_count() <= count;
+  chosen.stopped_by = chosen.target_met ? StoppedBy::Triangles : StoppedBy::Topology;
+  return chosen;
+}
+
+// Looks for the coarsest level within `limit` by measuring. Errors grow along the sequence, though
+// not strictly, so this brackets from where the recorded error points to and halves the bracket
+// until it is one contraction or a hundredth of the triangles wide. What it returns was measured.
+class ErrorSearch {
+ public:
+  ErrorSearch(ProgressiveMesh& mesh, const Mesh& full, double limit, std::size_t samples,
+              const Common& common)
+      : mesh_(mesh), full_(full), limit_(limit), samples_(samples), common_(common) {}
+
+  Result<Chosen> run() {
+    std::size_t good = 0;                             // full resolution is within any limit
+    std::size_t bad = mesh_.contraction_count() + 1;  // no level
+    mesh_.set_applied(mesh_.contraction_count());
+    keep_a_triangle(mesh_);
+    const std::size_t base = mesh_.applied();
+
+    mesh_.set_error(static_cast<float>(limit_));
+    keep_a_triangle(mesh_);
+    const auto try_level = [&](std::size_t applied) {
+      (is_within(applied) ? good : bad) = applied;
+    };
+    try_level(mesh_.applied());
+    // Coarser by a third at a time while it is good, finer by a half while it is not.
+    while (bad > base && good < base && !interrupted()) {
+      const std::size_t before = good;
+      try_level(std::min(base, std::max(good + 1, applied_at(triangles_at(good) * 2 / 3))));
+      if (good == before) break;
+    }
+    while (good == 0 && bad > 1 && bad <= base && !interrupted()) {
+      const std::size_t finer = applied_at(triangles_at(bad) * 3 / 2);
+      if (finer == 0) break;
+      try_level(std::min(finer, bad - 1));
+    }
+    while (bad > good + 1 && bad <= base && !interrupted() &&
+           (triangles_at(good) - triangles_at(bad)) * 100 > triangles_at(good)) {
+      try_level(good + (bad - good) / 2);
+    }
+    if (interrupted()) return interrupted_failure();
+
+    if (!measured_.contains(good)) is_within(good);
+    mesh_.set_applied(good);
+    Chosen chosen;
+    chosen.measured = measured_.at(good);
+    chosen.stopped_by = good == base ? StoppedBy::Base : StoppedBy::Error;
+    chosen.target_met = hausdorff(*chosen.measured) <= limit_;
+    return chosen;
+  }
+
+ private:
+  std::size_t triangles_at(std::size_t applied) {
+    mesh_.set_applied(applied);
+    return mesh_.triangle_count();
+  }
+  std::size_t applied_at(std::size_t triangles) {
+    mesh_.set_triangle_count(std::max<std::size_t>(1, triangles));
+    keep_a_triangle(mesh_);
+    return mesh_.applied();
+  }
+  bool is_within(std::size_t applied) {
+    mesh_.set_applied(applied);
+    const Comparison measured = measure_level(mesh_, full_, samples_, common_);
+    measured_.insert_or_assign(applied, measured);
+    log(common_, "  " + std::to_string(mesh_.triangle_count()) + " triangles: measured " +
+                     std::to_string(hausdorff(measured)));
+    return hausdorff(measured) <= limit_;
+  }
+
+  ProgressiveMesh& mesh_;
+  const Mesh& full_;
+  double limit_;
+  std::size_t samples_;
+  const Common& common_;
+  std::map<std::size_t, Comparison> measured_;  // by contractions applied
+};
+
+}  // namespace
+
+Result<Chosen> choose_level(ProgressiveMesh& mesh, const Mesh& full, const LevelOptions& asked,
+                            const Common& common) {
+  if (asked.triangles) return choose_by_count(mesh, *asked.triangles);
+  if (asked.ratio) {
+    const double count = *asked.ratio * static_cast<double>(mesh.full_triangle_count());
+    return choose_by_count(mesh,
+                           std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(count))));
+  }
+  if (asked.error) {
+    if (asked.samples == 0) {
+      return fail(Error::CommandLine, "--error measures: --samples must be above 0");
+    }
+    return ErrorSearch(mesh, full, *asked.error, asked.samples, common).run();
+  }
+  return choose_by_count(mesh, mesh.full_triangle_count());
+}
+
+Comparison measure_level(const ProgressiveMesh& mesh, const Mesh& full, std::size_t samples,
+                         const Common& common) {
+  CompareOptions options;
+  options.samples = samples;
+  options.threads = common.threads;
+  return compare_meshes(full, mesh.extract(), options);
+}
+
+}  // namespace crease::cli

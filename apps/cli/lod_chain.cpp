@@ -1,0 +1,139 @@
+#include "cli/lod_chain.h"
+
+#include "cli/console.h"
+#include "cli/glb.h"
+#include "cli/level.h"
+#include "cli/report.h"
+#include "cli/text.h"
+#include "cli/write_file.h"
+#include "crease/export.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace crease::cli {
+
+void add_chain_options(CLI::App& command, LodChainOptions& options) {
+  CLI::Option* levels =
+      command
+          .add_option(
+              "--levels", options.levels,
+              "a chain of N levels: OUT_0.glb, OUT_1.glb, ... and OUT.json with their errors")
+          ->type_name("N")
+          ->check(CLI::Range(1, 32));
+  command
+      .add_option("--step", options.step, "triangles of a level of the chain beside the one before")
+      ->type_name("R")
+      ->check(CLI::Range(0.01, 0.99))
+      ->needs(levels)
+      ->capture_default_str();
+  command
+      .add_flag("--lod-glb", options.one_glb, "the chain as one GLB whose node carries MSFT_lod")
+      ->needs(levels);
+}
+
+Status check_output(const std::filesystem::path& output, bool is_chain) {
+  const std::string extension = output.extension().string();
+  if (is_chain && extension != ".glb") {
+    return fail(Error::NotSupported, output.string() + ": a chain of levels is written as .glb");
+  }
+  for (const char* known : {".obj", ".ply", ".stl", ".glb"}) {
+    if (extension == known) return Done{};
+  }
+  return fail(Error::NotSupported,
+              output.string() + ": levels are written as .obj, .ply, .stl or .glb");
+}
+
+namespace {
+
+struct ChainLevel {
+  std::vector<std::byte> glb;
+  Json json;
+};
+
+Result<ChainLevel> make_level(ProgressiveMesh& mesh, const Mesh& full, std::size_t samples,
+                              const Common& common) {
+  const Mesh level = mesh.extract();
+  ChainLevel made;
+  made.json = {{"triangles", level.triangle_count()},
+               {"vertices", level.vertex_count()},
+               {"error", to_json(mesh.error())}};
+  if (samples > 0) {
+    CompareOptions compare;
+    compare.samples = samples;
+    compare.threads = common.threads;
+    made.json["error_measured"] = measured_json(compare_meshes(full, level, compare));
+  }
+  Result<std::vector<std::byte>> glb = export_bytes(level, ".glb");
+  if (!glb.ok()) return glb.failure();
+  made.glb = *std::move(glb);
+  return made;
+}
+
+}  // namespace
+
+Result<Report> extract_chain(ProgressiveMesh& mesh, const std::filesystem::path& output,
+                             const LodChainOptions& options, std::size_t samples,
+                             const Common& common) {
+  const Mesh full = mesh.extract();
+  std::vector<ChainLevel> levels;
+  double asked = static_cast<double>(mesh.full_triangle_count());
+  for (int i = 0; i < options.levels; ++i, asked *= options.step) {
+    LevelOptions wanted;
+    wanted.triangles = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(asked)));
+    const Result<Chosen> chosen = choose_level(mesh, full, wanted, common);
+    if (!chosen.ok()) return chosen.failure();
+    if (i > 0 && levels.back().json["triangles"] == mesh.triangle_count()) {
+      log(common, "the chain ends after " + std::to_string(i) + " levels: the coarsest has " +
+                      grouped(mesh.triangle_count()) + " triangles");
+      break;
+    }
+    Result<ChainLevel> level = make_level(mesh, full, samples, common);
+    if (!level.ok()) return level.failure();
+    levels.push_back(*std::move(level));
+    if (interrupted()) return interrupted_failure();
+  }
+
+  Report report;
+  Json manifest = Json::array();
+  const std::filesystem::path stem = output.parent_path() / output.stem();
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    Json& json = levels[i].json;
+    if (!options.one_glb) {
+      const std::string name = stem.string() + "_" + std::to_string(i) + ".glb";
+      const Status written = write_file(name, levels[i].glb);
+      if (!written.ok()) return written.failure();
+      json["file"] = std::filesystem::path(name).filename().string();
+    }
+    report.text += (i > 0 ? "\n" : "") + std::string("level ") + std::to_string(i) + ": " +
+                   grouped(json["triangles"].get<std::size_t>()) + " triangles";
+    if (json.contains("error_measured")) {
+      report.text += ", off by " + in_length(json["error_measured"]["surface_max"].get<double>()) +
+                     " at most, " +
+                     in_degrees(json["error_measured"]["degrees_mean"].get<double>()) +
+                     " on average";
+    }
+    manifest.push_back(json);
+  }
+
+  if (options.one_glb) {
+    std::vector<std::vector<std::byte>> glbs;
+    for (ChainLevel& level : levels) glbs.push_back(std::move(level.glb));
+    const Result<std::vector<std::byte>> merged = merge_lod_glb(glbs);
+    if (!merged.ok()) return merged.failure();
+    const Status written = write_file(output, *merged);
+    if (!written.ok()) return written.failure();
+    report.json["output"] = output.string();
+  } else {
+    const std::string text = Json{{"levels", manifest}}.dump(2) + "\n";
+    const Status written =
+        write_file(stem.string() + ".json", std::as_bytes(std::span<const char>(text)));
+    if (!written.ok()) return written.failure();
+    report.json["output"] = stem.string() + ".json";
+  }
+  report.json["levels"] = std::move(manifest);
+  return report;
+}
+
+}  // namespace crease::cli

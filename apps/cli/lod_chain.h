@@ -1,0 +1,30 @@
+// `extract --levels`: a chain of levels for engines, as one GLB per level with a manifest, or as
+// one GLB whose node carries MSFT_lod.
+#pragma once
+
+#include "cli/command.h"
+#include "crease/progressive_mesh.h"
+
+#include <cstddef>
+#include <filesystem>
+
+namespace crease::cli {
+
+struct LodChainOptions {
+  int levels = 0;     // 0: no chain
+  double step = 0.5;  // triangles of a level beside the one before
+  bool one_glb = false;
+};
+
+void add_chain_options(CLI::App& command, LodChainOptions& options);
+
+// Refuses names that could not be written before any work is done.
+Status check_output(const std::filesystem::path& output, bool is_chain);
+
+// Writes city_0.glb, city_1.glb, ... and city.json for the output city.glb; with one_glb city.glb.
+// Every level is measured against the full mesh, when `samples` is not 0.
+Result<Report> extract_chain(ProgressiveMesh& mesh, const std::filesystem::path& output,
+                             const LodChainOptions& options, std::size_t samples,
+                             const Common& common);
+
+}  // namespace crease::cli

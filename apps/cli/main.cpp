@@ -1,0 +1,97 @@
+// crease: the command line tool. One file per command; this one parses, prints and exits.
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/exit_code.h"
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <vector>
+
+namespace crease::cli {
+
+namespace {
+
+void add_common_options(CLI::App& command, Common& common) {
+  command.add_flag("--json", common.json, "one JSON object on standard output, nothing else there");
+  command.add_flag("--quiet", common.quiet, "nothing on standard error but failures");
+  command.add_option("--threads", common.threads, "how many; 0: all. The result is the same")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+}
+
+int print_failure(const Failure& failure, const Common& common) {
+  wipe_progress_bar();
+  const int code = static_cast<int>(exit_code_of(failure.error));
+  std::fprintf(stderr, "crease: %s\n", failure.message.c_str());
+  if (common.json) {
+    const Json error = {{"error",
+                         {{"code", static_cast<int>(failure.error)},
+                          {"name", name_of(failure.error)},
+                          {"message", failure.message}}},
+                        {"exit_status", code}};
+    std::printf("%s\n", error.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  }
+  return code;
+}
+
+int print_report(const Report& report, const Common& common) {
+  wipe_progress_bar();
+  if (common.json) {
+    std::printf("%s\n", report.json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  } else if (!report.text.empty() && (report.text_is_answer || !common.quiet)) {
+    std::printf("%s\n", report.text.c_str());
+  }
+  const bool printed = std::fflush(stdout) == 0;
+  if (!report.shortfall.empty()) {
+    std::fprintf(stderr, "crease: %s\n", report.shortfall.c_str());
+    return static_cast<int>(exit_code_of(report.short_of));
+  }
+  return static_cast<int>(printed ? ExitCode::Done : ExitCode::CannotWrite);
+}
+
+int run_main(int argc, char** argv) {
+  CLI::App app{"crease: multiresolution triangle meshes that keep their hard and soft edges"};
+  app.set_version_flag("--version", "crease " CREASE_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+
+  Common common;
+  const std::vector<Command> commands = {add_build(app, common),   add_info(app, common),
+                                         add_extract(app, common), add_compare(app, common),
+                                         add_render(app, common),  add_validate(app, common),
+                                         add_generate(app, common)};
+  for (const Command& command : commands) add_common_options(*command.app, common);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for = error.get_exit_code() == 0;  // --help, --version
+    app.exit(error);
+    return static_cast<int>(asked_for ? ExitCode::Done : ExitCode::CommandLine);
+  }
+
+  watch_for_interrupts();
+  for (const Command& command : commands) {
+    if (!command.app->parsed()) continue;
+    const Result<Report> report = command.run();
+    return report.ok() ? print_report(*report, common) : print_failure(report.failure(), common);
+  }
+  return static_cast<int>(ExitCode::CommandLine);
+}
+
+}  // namespace
+
+}  // namespace crease::cli
+
+int main(int argc, char** argv) {
+  try {
+    return crease::cli::run_main(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "crease: out of memory\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "crease: %s\n", error.what());
+  }
+  return static_cast<int>(crease::cli::ExitCode::NotSupported);
+}

@@ -1,0 +1,143 @@
+#include "cli/panels.h"
+
+#include "cli/console.h"
+#include "cli/text.h"
+#include "crease/compare.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crease::cli {
+
+namespace {
+
+double corner_angle(const Mesh& mesh, const Triangle& t, std::size_t corner) {
+  const Vec3d& at = mesh.positions[index_of(t[corner])];
+  const Vec3d to_next = mesh.positions[index_of(t[(corner + 1) % 3])] - at;
+  const Vec3d to_last = mesh.positions[index_of(t[(corner + 2) % 3])] - at;
+  return std::atan2(length(cross(to_next, to_last)), dot(to_next, to_last));
+}
+
+// 0 for the full mesh, 1 for the base, even steps for even factors between.
+float level_share(const ProgressiveMesh& mesh) {
+  const double full = static_cast<double>(mesh.full_triangle_count());
+  const double base = static_cast<double>(std::max<std::size_t>(1, mesh.base_triangle_count()));
+  const double now = static_cast<double>(std::max<std::size_t>(1, mesh.triangle_count()));
+  return full > base ? static_cast<float>(std::log(full / now) / std::log(full / base)) : 0.0f;
+}
+
+std::string level_name(const ProgressiveMesh& mesh) {
+  if (mesh.applied() == 0) return "original";
+  const double share =
+      static_cast<double>(mesh.triangle_count()) / static_cast<double>(mesh.full_triangle_count());
+  return in_percent(std::round(share * 1e4) / 1e4);
+}
+
+}  // namespace
+
+Mesh with_averaged_normals(Mesh mesh) {
+  AttributeLayer* normals = mesh.normals();
+  if (normals == nullptr) return mesh;
+  std::vector<Vec3d> sums(mesh.vertex_count());
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::span<const float> n = normals->value(normals->of_corner[3 * t + c]);
+      const double angle = corner_angle(mesh, mesh.triangles[t], c);
+      sums[index_of(mesh.triangles[t][c])] += Vec3d{n[0], n[1], n[2]} * angle;
+    }
+  }
+  normals->values.clear();
+  for (const Vec3d& sum : sums) {
+    const Vec3d n = length(sum) > 0 ? normalized(sum) : Vec3d{0, 0, 1};
+    for (int i = 0; i < 3; ++i) normals->values.push_back(static_cast<float>(n[i]));
+  }
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t v = index_of(mesh.triangles[t][c]);
+      normals->of_corner[3 * t + c] = AttributeId(static_cast<std::uint32_t>(v));
+    }
+  }
+  return mesh;
+}
+
+void Panels::add(Source source, const std::string& title, Json json, const PanelOptions& options,
+                 float share) {
+  sources_.push_back(std::move(source));
+  const Source& kept = sources_.back();
+  Panel panel;
+  panel.list = kept.progressive ? kept.progressive->draw_list() : kept.arrays->draw_list();
+  if (options.titles) panel.title = title;
+  panel.level_share = share;
+  panel.error_of_position = kept.errors;
+  panels_.push_back(std::move(panel));
+  json["title"] = title;
+  json_.push_back(std::move(json));
+}
+
+void Panels::add_level(ProgressiveMesh mesh, const Mesh& full, const std::string& name,
+                       const PanelOptions& options, const Common& common) {
+  Source source;
+  source.progressive = std::make_unique<ProgressiveMesh>(std::move(mesh));
+  if (options.errors_of_positions) {
+    const DrawList list = source.progressive->draw_list();
+    std::vector<Vec3d> points;
+    points.reserve(list.positions.size());
+    for (const Vec3f& p : list.positions) points.push_back(list.origin + Vec3d{p.x, p.y, p.z});
+    source.errors = distances_to(full, points, common.threads);
+  }
+  const std::size_t triangles = source.progressive->triangle_count();
+  const float share = level_share(*source.progressive);
+  add(std::move(source), name + ": " + grouped(triangles) + " triangles",
+      {{"triangles", triangles}, {"control", false}}, options, share);
+}
+
+void Panels::add_control(const Mesh& level, const std::string& name, const PanelOptions& options) {
+  Source source;
+  source.arrays = std::make_unique<MeshDrawArrays>(with_averaged_normals(level));
+  add(std::move(source), name + ", one normal a vertex",
+      {{"triangles", level.triangle_count()}, {"control", true}}, options, 0.0f);
+}
+
+Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& options,
+                        const Common& common) {
+  const LevelOptions& one = options.level;
+  const bool whole = std::ranges::all_of(options.ratios, [](double r) { return r == 1; }) &&
+                     !one.triangles && !one.ratio && !one.error;
+  if (whole && !is_crease_file(path) && !options.errors_of_positions) {
+    Result<Mesh> mesh = load_mesh(path, options.read, common);  // nothing to simplify
+    if (!mesh.ok()) return mesh.failure();
+    Source source;
+    source.arrays = std::make_unique<MeshDrawArrays>(*mesh);
+    const std::string name = path.filename().string();
+    add(std::move(source), name + ": " + grouped(mesh->triangle_count()) + " triangles",
+        {{"triangles", mesh->triangle_count()}, {"control", false}}, options, 0.0f);
+    if (options.control) add_control(*mesh, name, options);
+    columns_ = std::max(columns_, options.control ? 2 : 1);
+    return Done{};
+  }
+
+  const Result<Model> model = load_model(path, options.read, common);
+  if (!model.ok()) return model.failure();
+  const bool needs_full = one.error.has_value() || options.errors_of_positions;
+  const Mesh full = needs_full ? ProgressiveMesh(model->file.arrays).extract() : Mesh{};
+  std::vector<LevelOptions> levels;
+  for (double ratio : options.ratios) levels.push_back({.ratio = ratio});
+  if (levels.empty()) levels.push_back(one);
+
+  std::vector<std::pair<std::string, Mesh>> controls;
+  for (const LevelOptions& level : levels) {
+    ProgressiveMesh mesh(model->file.arrays);
+    const Result<Chosen> chosen = choose_level(mesh, full, level, common);
+    if (!chosen.ok()) return chosen.failure();
+    const std::string name = level_name(mesh);
+    if (options.control) controls.emplace_back(name, mesh.extract());
+    add_level(std::move(mesh), full, name, options, common);
+    if (interrupted()) return interrupted_failure();
+  }
+  for (const auto& [name, mesh] : controls) add_control(mesh, name, options);
+  columns_ = std::max(columns_,
+                      static_cast<int>(levels.size() == 1 && options.control ? 2 : levels.size()));
+  return Done{};
+}
+
+}  // namespace crease::cli

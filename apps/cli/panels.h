@@ -1,0 +1,59 @@
+// The panels of a picture and the meshes they are drawn from.
+#pragma once
+
+#include "cli/level.h"
+#include "cli/model.h"
+#include "crease/render.h"
+
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace crease::cli {
+
+struct PanelOptions {
+  std::vector<double> ratios;  // a panel each; empty: one panel by `level`
+  LevelOptions level;
+  bool control = false;  // after the levels, each again with one averaged normal a vertex
+  bool titles = true;
+  bool errors_of_positions = false;  // for Coloring::Error
+  ReadOptions read;
+};
+
+class Panels {
+ public:
+  Status add_file(const std::filesystem::path& path, const PanelOptions& options,
+                  const Common& common);
+
+  std::span<const Panel> list() const { return panels_; }
+  const Json& json() const { return json_; }  // one object a panel
+  // So that each control stands below its level.
+  int columns() const { return columns_; }
+
+ private:
+  // What a panel's views point into.
+  struct Source {
+    std::unique_ptr<ProgressiveMesh> progressive;
+    std::unique_ptr<MeshDrawArrays> arrays;
+    std::vector<float> errors;
+  };
+  void add_level(ProgressiveMesh mesh, const Mesh& full, const std::string& name,
+                 const PanelOptions& options, const Common& common);
+  void add_control(const Mesh& level, const std::string& name, const PanelOptions& options);
+  void add(Source source, const std::string& title, Json json, const PanelOptions& options,
+           float level_share);
+
+  std::deque<Source> sources_;
+  std::vector<Panel> panels_;
+  Json json_ = Json::array();
+  int columns_ = 0;
+};
+
+// One normal a vertex: the average of the corners' stored normals, weighted by their angles. What a
+// level of detail looks like when shading discontinuities are ignored (DB03 figures 1 and 13).
+Mesh with_averaged_normals(Mesh mesh);
+
+}  // namespace crease::cli

@@ -1,0 +1,151 @@
+// crease render: pictures without a display, several levels side by side.
+#include "crease/render.h"
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/model.h"
+#include "cli/panels.h"
+#include "cli/text.h"
+
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+namespace crease::cli {
+
+namespace {
+
+struct Options {
+  std::vector<std::filesystem::path> files;
+  std::filesystem::path output;
+  PanelOptions panels;
+  std::string levels, view, size, coloring = "shaded", up = "z";
+  bool wireframe = false;
+  int columns = 0;
+};
+
+Result<Camera> read_camera(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return fail(Error::NotFound, path + ": no such camera file");
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  Result<Camera> camera = parse_camera(text);
+  if (!camera.ok()) return fail(camera.failure().error, path + ": " + camera.failure().message);
+  return camera;
+}
+
+Coloring coloring_of(const std::string& name) {
+  if (name == "kind") return Coloring::Kind;
+  if (name == "level") return Coloring::Level;
+  if (name == "error") return Coloring::Error;
+  return Coloring::Shaded;
+}
+
+Result<RenderOptions> render_options(const Options& options) {
+  RenderOptions render;
+  render.coloring = coloring_of(options.coloring);
+  render.wireframe = options.wireframe;
+  render.columns = options.columns;
+  if (options.up == "y") render.up = {0, 1, 0};
+  if (!options.view.empty()) {
+    const Result<Camera> camera = read_camera(options.view);
+    if (!camera.ok()) return camera.failure();
+    render.camera = *camera;
+    render.width_px = camera->width_px;
+    render.height_px = camera->height_px;
+  }
+  if (!options.size.empty()) {
+    const Result<std::pair<int, int>> size = parse_size(options.size);
+    if (!size.ok()) return size.failure();
+    render.width_px = size->first;
+    render.height_px = size->second;
+  }
+  return render;
+}
+
+Result<Report> run(Options options, const Common& common) {
+  const Stopwatch watch;
+  if (!options.levels.empty()) {
+    const LevelOptions& one = options.panels.level;
+    if (one.triangles || one.ratio || one.error) {
+      return fail(Error::CommandLine,
+                  "--levels stands instead of --triangles, --ratio and --error");
+    }
+    Result<std::vector<double>> ratios = parse_ratios(options.levels);
+    if (!ratios.ok()) return ratios.failure();
+    options.panels.ratios = *std::move(ratios);
+  }
+  if (options.output.extension() != ".png") {
+    return fail(Error::NotSupported, options.output.string() + ": pictures are written as .png");
+  }
+  Result<RenderOptions> render = render_options(options);
+  if (!render.ok()) return render.failure();
+  options.panels.errors_of_positions = render->coloring == Coloring::Error;
+
+  Panels panels;
+  for (const std::filesystem::path& file : options.files) {
+    const Status added = panels.add_file(file, options.panels, common);
+    if (!added.ok()) return added.failure();
+    if (interrupted()) return interrupted_failure();
+  }
+  if (render->columns == 0 && options.panels.control) render->columns = panels.columns();
+  const Result<Image> image = render_panels(panels.list(), *render);
+  if (!image.ok()) return image.failure();
+  if (interrupted()) return interrupted_failure();
+  const Status written = write_png(*image, options.output);
+  if (!written.ok()) return written.failure();
+
+  Report report;
+  report.json = {{"output", options.output.string()},
+                 {"width", image->width},
+                 {"height", image->height},
+                 {"panels", panels.json()},
+                 {"seconds", watch.seconds()}};
+  report.text = options.output.string() + ": " + std::to_string(image->width) + " x " +
+                std::to_string(image->height) + ", " + std::to_string(panels.list().size()) +
+                " panels, " + in_seconds(watch.seconds());
+  return report;
+}
+
+}  // namespace
+
+Command add_render(CLI::App& app, const Common& common) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("render", "a picture without a display, levels side by side");
+  command->add_option("FILE", options->files, ".crease or mesh files, each with its own panels")
+      ->required();
+  command->add_option("-o,--output", options->output, "the picture")
+      ->required()
+      ->type_name("OUT.png");
+  command
+      ->add_option("--levels", options->levels, "shares of the triangles, a panel each: 1,0.2,0.02")
+      ->type_name("R,...");
+  add_level_options(*command, options->panels.level);
+  command
+      ->add_option("--view", options->view,
+                   "camera: {\"position\":[x,y,z],\"target\":[x,y,z],\"up\":[x,y,z],"
+                   "\"vertical_fov\":45}; default: all of the model")
+      ->type_name("CAM.json");
+  command->add_option("--up", options->up, "axis that points up when there is no --view")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
+  command->add_option("--color", options->coloring, "shaded | kind | level | error")
+      ->check(CLI::IsMember({"shaded", "kind", "level", "error"}))
+      ->type_name("BY")
+      ->capture_default_str();
+  command->add_flag("--wireframe", options->wireframe, "edges over the surface");
+  command->add_flag("--control", options->panels.control,
+                    "beside each panel the same triangles with one averaged normal a vertex: what "
+                    "ignoring shading discontinuities does");
+  command->add_option("--size", options->size, "of the whole picture; default 1920x1080")
+      ->type_name("WxH");
+  command->add_option("--columns", options->columns, "panels in a row; 0: as many as look best")
+      ->type_name("N")
+      ->check(CLI::Range(0, 64));
+  command->add_flag("--no-titles{false}", options->panels.titles, "no titles in the panels");
+  add_build_options(*command, options->panels.read);
+  command->footer(
+      "Example:\n  crease render bunny.crease -o bunny.png --levels 1,0.2,0.02 --wireframe");
+  return {command, [options, &common] { return run(*options, common); }};
+}
+
+}  // namespace crease::cli
