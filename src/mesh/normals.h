@@ -1,0 +1,51 @@
+// Corner normals made from the geometry, completed where a file lacks some, and joined where they
+// are one but for noise.
+//
+//   mesh.layers.push_back(generate_normals(mesh, {.max_angle_deg = 30}));
+//   join_normals(*mesh.normals(), mesh, 1.0);
+//
+// A sector is the corners of one vertex that soft edges connect; it has one normal, the mean of its
+// triangles' normals weighted by their angle at the vertex. An edge between two triangles that run
+// through it in the same direction is hard: one of them is inside out.
+#pragma once
+
+#include "crease/mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace crease {
+
+// Coplanar up to rounding: generated normals that differ by less are one, so that a flat wall of
+// many triangles has one normal.
+inline constexpr double kCoplanarDeg = 0.01;
+
+// Which edges are soft. Edges inside a face of the source always are.
+struct SoftEdges {
+  double max_angle_deg = 30;                         // between the triangles' normals; 180: all edges
+  std::span<const std::uint32_t> smoothing_group;    // per triangle. If given, soft iff both sides
+                                                     // are in one group other than 0
+  std::span<const std::uint32_t> face_of_triangle;   // the source's polygons; empty: triangles
+};
+
+// One unit normal a triangle, the same for all triangles of a face. A triangle without area takes
+// its neighbour's across its longest edges; if there is none, +z.
+std::vector<Vec3d> face_normals(const Mesh& mesh, std::span<const std::uint32_t> face_of_triangle);
+
+// A normal layer, welded. Time O(n log valence), memory 80 bytes a triangle while it runs.
+AttributeLayer generate_normals(const Mesh& mesh, const SoftEdges& soft);
+
+// Corners of `given` that have kNoAttribute get the given normal of their sector that is nearest to
+// the sector's own, else the sector's own. Returns how many corners those were.
+std::size_t complete_normals(AttributeLayer& given, const Mesh& mesh, const SoftEdges& soft);
+
+// Joins normals in two steps, so that noise is no crease and no smooth surface becomes faceted:
+// (1) at each vertex, normals of which no two differ by more than `angle_deg` become their mean;
+// (2) where a whole smooth patch (triangles connected through shared wedges) spans no more than
+//     `angle_deg`, it is a flat side: all its corners get one normal.
+// Step 2 takes whole patches or nothing, so curved surfaces keep their normals, and a wedge has one
+// value always. Returns the number of (vertex, normal) pairs that changed. Welds the layer.
+std::size_t join_normals(AttributeLayer& normals, const Mesh& mesh, double angle_deg);
+
+}  // namespace crease
