@@ -4,6 +4,7 @@
 #include "crease/mesh.h"
 #include "crease/progress.h"
 #include "crease/result.h"
+#include "crease/vec.h"
 #include "io/raw_mesh.h"
 
 #include <cstddef>
@@ -32,6 +33,10 @@ struct Source {
 Failure fail_at_line(Error error, const Source& source, std::size_t line, const std::string& reason);
 Failure fail_at_byte(Error error, const Source& source, std::size_t offset,
                      const std::string& reason);
+
+// Finite, and small enough that squares and cubes of it are: a coordinate that can be meant.
+inline constexpr double kMaxCoordinate = 1e30;
+bool is_position(const Vec3d& p);
 
 Result<RawMesh> read_obj(const Source& source);
 Result<RawMesh> read_ply(const Source& source);

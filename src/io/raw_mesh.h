@@ -2,8 +2,8 @@
 //
 //   RawMesh raw;
 //   raw.positions = ...;                              // stored vertices, repeats and all
-//   raw.add_polygon(corners, triangulation);          // or raw.triangles.push_back() for triangles
-//   RawLayer& uv = raw.add_layer(texcoord_layer("uv", RawLayer::Per::Vertex));
+//   raw.triangles.push_back({0, 1, 2});               // polygons: see triangulate_polygon.h
+//   raw.layers.push_back(texcoord_layer("uv", RawLayer::Per::Vertex));
 //   return finish_import(std::move(raw), options);    // weld, drop, normals: import.cpp does this
 //
 // A reader promises: indices in range, positions finite (else it fails with file, place and reason).

@@ -1,0 +1,274 @@
+#include "io/raw_mesh.h"
+#include "mesh/clean.h"
+#include "mesh/normals.h"
+#include "mesh/weld.h"
+
+#include "base/assert.h"
+#include "io/formats.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace crease {
+
+namespace {
+
+// Unit within this: left as it is, bit for bit.
+constexpr double kUnitTolerance = 1e-3;
+
+std::string in_degrees(double angle) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g degrees", angle);
+  return text;
+}
+
+// Values that are not finite become zero. Returns how many values had any.
+std::size_t clear_bad_values(RawLayer& layer) {
+  std::size_t bad = 0;
+  for (std::size_t i = 0; i < layer.value_count(); ++i) {
+    bool is_bad = false;
+    for (std::size_t k = 0; k < layer.dimension; ++k) {
+      float& x = layer.values[i * layer.dimension + k];
+      if (std::isfinite(x)) continue;
+      x = 0;
+      is_bad = true;
+    }
+    bad += is_bad;
+  }
+  return bad;
+}
+
+// From values per stored vertex, face or corner to values per corner.
+AttributeLayer by_corner(RawLayer layer, const RawMesh& raw) {
+  AttributeLayer out{std::move(layer.name), layer.role, layer.interpolation, layer.dimension,
+                     std::move(layer.values), {}};
+  out.of_corner.reserve(3 * raw.triangles.size());
+  switch (layer.per) {
+    case RawLayer::Per::Corner:
+      for (std::uint32_t i : layer.of_corner) out.of_corner.push_back(AttributeId{i});
+      break;
+    case RawLayer::Per::Vertex:
+      for (const auto& triangle : raw.triangles) {
+        for (std::uint32_t v : triangle) out.of_corner.push_back(AttributeId{v});
+      }
+      break;
+    case RawLayer::Per::Face:
+      for (std::uint32_t t = 0; t < raw.triangles.size(); ++t) {
+        const std::uint32_t f = raw.face_of_triangle.empty() ? t : raw.face_of_triangle[t];
+        out.of_corner.insert(out.of_corner.end(), 3, AttributeId{f});
+      }
+      break;
+  }
+  CREASE_ASSERT(out.of_corner.size() == 3 * raw.triangles.size());
+  return out;
+}
+
+// Corners that have no value get zero. Returns how many there were.
+std::size_t fill_with_zero(AttributeLayer& layer) {
+  const AttributeId zero{static_cast<std::uint32_t>(layer.value_count())};
+  std::size_t filled = 0;
+  for (AttributeId& a : layer.of_corner) {
+    if (a != kNoAttribute) continue;
+    a = zero;
+    ++filled;
+  }
+  if (filled > 0) layer.values.resize(layer.values.size() + layer.dimension, 0.0f);
+  return filled;
+}
+
+// Unit length where it is not; a corner whose normal has no length loses it. Returns the number of
+// such values in use.
+std::size_t normalize_given(AttributeLayer& normals) {
+  std::vector<bool> is_zero(normals.value_count(), false);
+  for (std::size_t i = 0; i < is_zero.size(); ++i) {
+    float* v = &normals.values[3 * i];
+    const Vec3d n{v[0], v[1], v[2]};
+    const double l = length(n);
+    if (std::abs(l - 1) <= kUnitTolerance) continue;
+    is_zero[i] = !(l > 1e-30);
+    if (is_zero[i]) continue;
+    for (int k = 0; k < 3; ++k) v[k] = static_cast<float>(n[k] / l);
+  }
+  std::vector<bool> is_counted(is_zero.size(), false);
+  std::size_t zero_count = 0;
+  for (AttributeId& a : normals.of_corner) {
+    if (a == kNoAttribute || !is_zero[index_of(a)]) continue;
+    if (!is_counted[index_of(a)]) ++zero_count;
+    is_counted[index_of(a)] = true;
+    a = kNoAttribute;
+  }
+  return zero_count;
+}
+
+// How normals are made, as edges and in words.
+struct NormalRule {
+  SoftEdges soft;
+  std::string words;
+};
+
+NormalRule rule_of(const NormalPolicy& asked, const RawMesh& raw) {
+  NormalRule rule;
+  rule.soft.face_of_triangle = raw.face_of_triangle;
+  NormalPolicy policy = asked;
+  if (policy.kind == NormalPolicy::Kind::Keep) {
+    if (!raw.smoothing_group.empty()) {
+      rule.soft.smoothing_group = raw.smoothing_group;
+      rule.words = "smoothing groups";
+      return rule;
+    }
+    policy = raw.default_normals;
+  }
+  switch (policy.kind) {
+    case NormalPolicy::Kind::Keep:
+    case NormalPolicy::Kind::Flat:
+      rule.soft.max_angle_deg = kCoplanarDeg;
+      rule.words = "flat";
+      break;
+    case NormalPolicy::Kind::Smooth:
+      rule.soft.max_angle_deg = 180;
+      rule.words = "smooth";
+      break;
+    case NormalPolicy::Kind::Crease:
+      rule.soft.max_angle_deg = policy.crease_angle_deg;
+      rule.words = "hard edges where the angle is over " + in_degrees(policy.crease_angle_deg);
+      break;
+  }
+  return rule;
+}
+
+// The mesh's normal layer becomes the first and has a unit value at every corner.
+void settle_normals(Mesh& mesh, const RawMesh& raw, const ImportOptions& options,
+                    ImportReport& report) {
+  const auto given = std::find_if(mesh.layers.begin(), mesh.layers.end(), [](const auto& layer) {
+    return layer.role == AttributeRole::Normal;
+  });
+  const bool had_normals = given != mesh.layers.end();
+  AttributeLayer normals;
+  if (had_normals) {
+    normals = std::move(*given);
+    mesh.layers.erase(given);
+    report.zero_normals = normalize_given(normals);
+  }
+  const bool any_given =
+      std::any_of(normals.of_corner.begin(), normals.of_corner.end(),
+                  [](AttributeId a) { return a != kNoAttribute; });
+  const NormalRule rule = rule_of(options.normals, raw);
+  const bool asked_for_new = options.normals.kind != NormalPolicy::Kind::Keep;
+  if (any_given && !asked_for_new) {
+    const std::size_t missing = complete_normals(normals, mesh, rule.soft);
+    report.normals = "the file's";
+    if (missing > 0) {
+      report.normals += ", at " + std::to_string(missing) + " corners without: " + rule.words;
+    }
+    weld_layer(normals);
+  } else {
+    normals = generate_normals(mesh, rule.soft);
+    report.normals = rule.words + (asked_for_new ? ", as asked for" : ", as the file has none");
+  }
+  if (options.same_normal_deg > 0) {
+    report.joined_normals = join_normals(normals, mesh, options.same_normal_deg);
+  }
+  mesh.layers.insert(mesh.layers.begin(), std::move(normals));
+}
+
+// Parts that a triangle names, in their old order.
+void drop_unused_parts(Mesh& mesh) {
+  std::vector<bool> used(mesh.parts.size(), false);
+  for (PartId p : mesh.part_of_triangle) used[index_of(p)] = true;
+  const std::vector<std::uint32_t> kept = kept_rows(used);
+  if (kept.size() == mesh.parts.size()) return;
+  std::vector<std::uint32_t> new_of_old(mesh.parts.size(), kNone);
+  std::vector<std::string> parts;
+  for (std::uint32_t old : kept) {
+    new_of_old[old] = static_cast<std::uint32_t>(parts.size());
+    parts.push_back(std::move(mesh.parts[old]));
+  }
+  mesh.parts = std::move(parts);
+  for (PartId& p : mesh.part_of_triangle) p = PartId{new_of_old[index_of(p)]};
+}
+
+bool goes_on(const ImportOptions& options, const char* stage, double done) {
+  return !options.progress || options.progress(stage, done);
+}
+
+void weld_vertices(RawMesh& raw, ImportReport& report) {
+  const Weld weld = weld_positions(raw.positions);
+  report.welded_vertices = raw.positions.size() - weld.first_old.size();
+  if (weld.changes_nothing()) return;
+  keep_rows(raw.positions, weld.first_old);
+  for (auto& triangle : raw.triangles) {
+    for (std::uint32_t& v : triangle) v = weld.new_of_old[v];
+  }
+}
+
+void drop_degenerate(Mesh& mesh, RawMesh& raw, ImportReport& report) {
+  const std::vector<bool> keep = proper_triangles(mesh);
+  const auto dropped = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), false));
+  if (dropped == 0) return;
+  report.degenerate_triangles += dropped;
+  keep_triangles(mesh, keep);
+  const std::vector<std::uint32_t> kept = kept_rows(keep);
+  if (!raw.face_of_triangle.empty()) keep_rows(raw.face_of_triangle, kept);
+  if (!raw.smoothing_group.empty()) keep_rows(raw.smoothing_group, kept);
+}
+
+}  // namespace
+
+Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const std::string& name) {
+  Imported imported;
+  Mesh& mesh = imported.mesh;
+  ImportReport& report = imported.report;
+  report = std::move(raw.report);
+  const auto interrupted = [&] { return fail(Error::Interrupted, name + ": interrupted"); };
+
+  if (!goes_on(options, "weld", 0)) return interrupted();
+  for (const Vec3d& p : raw.positions) {
+    if (!is_position(p)) return fail(Error::BadValue, name + ": a position is not a finite number");
+  }
+  for (RawLayer& layer : raw.layers) {
+    report.bad_attribute_values += clear_bad_values(layer);
+    mesh.layers.push_back(by_corner(std::move(layer), raw));
+  }
+  weld_vertices(raw, report);
+  mesh.positions = std::move(raw.positions);
+  mesh.triangles.reserve(raw.triangles.size());
+  for (const auto& [a, b, c] : raw.triangles) {
+    mesh.triangles.push_back({VertexId{a}, VertexId{b}, VertexId{c}});
+  }
+  raw.triangles = {};
+  mesh.material_of_triangle = std::move(raw.material_of_triangle);
+  mesh.part_of_triangle = std::move(raw.part_of_triangle);
+  mesh.materials = std::move(raw.materials);
+  mesh.parts = std::move(raw.parts);
+
+  drop_degenerate(mesh, raw, report);
+  if (mesh.triangles.empty()) {
+    std::string reason = "no triangles in it";
+    if (report.degenerate_triangles > 0) {
+      reason += "; " + std::to_string(report.degenerate_triangles) + " with two equal corners dropped";
+    }
+    for (const std::string& note : report.notes) reason += "; " + note;
+    return fail(Error::NoTriangles, name + ": " + reason);
+  }
+  report.isolated_vertices = drop_isolated_vertices(mesh);
+  drop_unused_parts(mesh);
+  report.duplicate_triangles = count_duplicate_triangles(mesh);
+  report.zero_area_triangles = count_zero_area_triangles(mesh);
+
+  for (AttributeLayer& layer : mesh.layers) {
+    if (layer.role == AttributeRole::Normal) continue;
+    if (const std::size_t filled = fill_with_zero(layer); filled > 0) {
+      report.notes.push_back(std::to_string(filled) + " corners without a value in '" + layer.name +
+                             "': zero");
+    }
+    weld_layer(layer);
+  }
+  if (!goes_on(options, "normals", 0)) return interrupted();
+  settle_normals(mesh, raw, options, report);
+  if (!goes_on(options, "normals", 1)) return interrupted();
+  return imported;
+}
+
+}  // namespace crease

@@ -1,0 +1,15 @@
+// Material libraries of OBJ.
+#pragma once
+
+#include "crease/mesh.h"
+
+#include <span>
+#include <string_view>
+
+namespace crease {
+
+// Fills in the base colour (Kd, d or Tr) and texture (map_Kd) of the materials that `text` names;
+// others stay as they are. Lines that make no sense are passed over: nothing depends on them.
+void read_mtl(std::string_view text, std::span<Material> materials);
+
+}  // namespace crease

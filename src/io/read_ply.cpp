@@ -1,0 +1,489 @@
+// PLY: text and both binary orders; vertices with normals, colours, texture coordinates and
+// whatever else; faces with any number of corners, or triangle strips. Properties that have no place
+// in a mesh become attribute layers under their own names.
+#include "io/face_sink.h"
+#include "io/formats.h"
+#include "io/ply_body.h"
+#include "io/ply_header.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crease {
+
+namespace {
+
+// What a property is for. Layer: component `component` of layers_[layer], times `scale`.
+struct Target {
+  enum class Kind { Position, Layer, Indices, CornerTexCoords, Ignored };
+  Kind kind = Kind::Ignored;
+  std::size_t layer = 0, component = 0;
+  double scale = 1;
+};
+
+struct NamedGroup {
+  std::array<std::string_view, 4> names;
+  std::size_t least;  // this many, from the first, make the group
+};
+
+constexpr NamedGroup kNormal{{"nx", "ny", "nz", ""}, 3};
+constexpr NamedGroup kColors[] = {
+    {{"red", "green", "blue", "alpha"}, 3},
+    {{"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"}, 3},
+    {{"r", "g", "b", "a"}, 3},
+};
+constexpr NamedGroup kTexCoords[] = {
+    {{"s", "t", "", ""}, 2},
+    {{"u", "v", "", ""}, 2},
+    {{"texture_u", "texture_v", "", ""}, 2},
+    {{"texture_s", "texture_t", "", ""}, 2},
+    {{"texcoord_u", "texcoord_v", "", ""}, 2},
+    {{"tex_u", "tex_v", "", ""}, 2},
+};
+
+std::string shown(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+double color_scale(PlyType type) {
+  if (!is_integer(type)) return 1;
+  return type == PlyType::Int16 || type == PlyType::Uint16 ? 1.0 / 65535 : 1.0 / 255;
+}
+
+// The layers of one element, vertex or face, and where each property goes.
+struct ElementLayers {
+  std::vector<RawLayer> layers;
+  std::vector<Target> targets;    // one a property
+  std::vector<float> row;         // values of all layers, one layer after another
+  std::vector<std::size_t> begin;  // of each layer in `row`
+
+  void add(RawLayer layer) {
+    begin.push_back(row.size());
+    row.resize(row.size() + layer.dimension, 0.0f);
+    layers.push_back(std::move(layer));
+  }
+  void set(const Target& target, double x) {
+    row[begin[target.layer] + target.component] = static_cast<float>(x * target.scale);
+  }
+  void keep_row() {
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+      const auto from = row.begin() + static_cast<std::ptrdiff_t>(begin[l]);
+      layers[l].values.insert(layers[l].values.end(), from, from + layers[l].dimension);
+    }
+  }
+};
+
+class PlyReader {
+ public:
+  PlyReader(const Source& source, const PlyHeader& header)
+      : source_(source), header_(header), body_(source, header), sink_(raw_) {}
+
+  Result<RawMesh> read() {
+    raw_.report.format = header_.encoding == PlyEncoding::Text           ? "text PLY"
+                         : header_.encoding == PlyEncoding::LittleEndian ? "binary PLY"
+                                                                         : "big-endian binary PLY";
+    for (const PlyElement& element : header_.elements) {
+      if (element.properties.empty()) continue;
+      if (!fits(element) || !read_element(element)) return *failure_;
+    }
+    finish();
+    return std::move(raw_);
+  }
+
+ private:
+  bool refuse(Failure failure) {
+    failure_ = std::move(failure);
+    return false;
+  }
+
+  // No memory is taken for rows that the file cannot hold.
+  bool fits(const PlyElement& element) {
+    // The last row of a text may lack its line end.
+    const std::size_t left = body_.left() + (body_.is_text() ? 1 : 0);
+    if (element.count <= left / element.least_bytes(body_.is_text()) && element.count < kNone) {
+      return true;
+    }
+    return refuse(body_.refuse(Error::Truncated,
+                               "the header promises " + std::to_string(element.count) + " rows of '" +
+                                   element.name + "', more than the " + std::to_string(left) +
+                                   " bytes that are left can hold"));
+  }
+
+  bool read_element(const PlyElement& element) {
+    if (element.name == "vertex") return read_vertices(element);
+    if (element.name == "face") return read_faces(element);
+    if (element.name == "tristrips") return read_strips(element);
+    raw_.report.notes.push_back("element '" + element.name + "' ignored");
+    return skip_rows(element);
+  }
+
+  template <typename TakeScalar, typename TakeList>
+  bool read_row(const PlyElement& element, std::size_t i, TakeScalar take_scalar, TakeList take_list) {
+    const auto what = [&] {
+      return element.name + " " + std::to_string(i) + " of " + std::to_string(element.count);
+    };
+    if (!body_.begin_row()) return refuse(body_.problem(what()));
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      double x = 0;
+      if (!body_.number(property.is_list ? property.count_type : property.type, x)) {
+        return refuse(body_.problem(what()));
+      }
+      if (!property.is_list) {
+        if (!take_scalar(p, x)) return false;
+        continue;
+      }
+      // Even in text an item takes a digit, so no list is longer than the file has bytes.
+      if (!(x >= 0) || x != std::floor(x)) {
+        return refuse(body_.refuse(Error::BadValue, what() + ": a list of negative length"));
+      }
+      const auto size = static_cast<double>(source_.bytes.size());
+      const auto left = static_cast<double>(body_.left());
+      if (body_.is_text() ? x > size : x * static_cast<double>(size_of(property.type)) > left) {
+        return refuse(body_.refuse(Error::Truncated, what() + ": a list longer than the file"));
+      }
+      list_.clear();
+      for (double item; list_.size() < static_cast<std::size_t>(x); list_.push_back(item)) {
+        if (!body_.number(property.type, item)) return refuse(body_.problem(what()));
+      }
+      if (!take_list(p)) return false;
+    }
+    if (body_.row_has_more()) ++rows_with_more_;
+    if ((i & 0xffff) == 0xffff && source_.progress && *source_.progress &&
+        !(*source_.progress)("read", 0.5)) {
+      return refuse(body_.refuse(Error::Interrupted, "interrupted"));
+    }
+    return true;
+  }
+
+  bool skip_rows(const PlyElement& element) {
+    for (std::size_t i = 0; i < element.count; ++i) {
+      if (!read_row(element, i, [](std::size_t, double) { return true; },
+                    [](std::size_t) { return true; })) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  static std::optional<std::size_t> find_property(const PlyElement& element, std::string_view name) {
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      if (!name.empty() && !element.properties[p].is_list && element.properties[p].name == name) {
+        return p;
+      }
+    }
+    return std::nullopt;
+  }
+
+  // Gives the properties of `group` to a layer made by `make(dimension)`, if the element has them.
+  template <typename Make>
+  static bool take_group(const PlyElement& element, const NamedGroup& group, ElementLayers& to,
+                         Make make) {
+    std::vector<std::size_t> found;
+    for (std::string_view name : group.names) {
+      const std::optional<std::size_t> p = find_property(element, name);
+      if (!p) break;
+      found.push_back(*p);
+    }
+    if (found.size() < group.least) return false;
+    RawLayer layer = make(static_cast<std::uint32_t>(found.size()));
+    const bool is_color = layer.role == AttributeRole::Color;
+    for (std::size_t c = 0; c < found.size(); ++c) {
+      const double scale = is_color ? color_scale(element.properties[found[c]].type) : 1;
+      to.targets[found[c]] = {Target::Kind::Layer, to.layers.size(), c, scale};
+    }
+    to.add(std::move(layer));
+    return true;
+  }
+
+  ElementLayers plan(const PlyElement& element, RawLayer::Per per) {
+    ElementLayers plan;
+    plan.targets.resize(element.properties.size());
+    const bool is_face = per == RawLayer::Per::Face;
+    take_group(element, kNormal, plan, [&](std::uint32_t) { return normal_layer(per); });
+    for (const NamedGroup& group : kColors) {
+      if (take_group(element, group, plan, [&](std::uint32_t n) { return color_layer(per, n); })) break;
+    }
+    if (!is_face) {
+      for (const NamedGroup& group : kTexCoords) {
+        if (take_group(element, group, plan, [&](std::uint32_t) { return texcoord_layer("uv", per); })) {
+          break;
+        }
+      }
+    }
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      Target& target = plan.targets[p];
+      if (target.kind == Target::Kind::Layer) continue;
+      if (property.is_list) {
+        target.kind = list_target(property, is_face);
+      } else if (!is_face && (property.name == "x" || property.name == "y" || property.name == "z")) {
+        target = {Target::Kind::Position, 0, static_cast<std::size_t>(property.name[0] - 'x'), 1};
+      } else {
+        const bool is_category = is_face && is_integer(property.type);
+        target = {Target::Kind::Layer, plan.layers.size(), 0, 1};
+        plan.add({property.name, AttributeRole::Other,
+                  is_category ? Interpolation::Categorical : Interpolation::Linear, per, 1, {}, {}});
+      }
+    }
+    return plan;
+  }
+
+  Target::Kind list_target(const PlyProperty& property, bool is_face) {
+    if (is_face && (property.name == "vertex_indices" || property.name == "vertex_index")) {
+      return Target::Kind::Indices;
+    }
+    if (is_face && property.name == "texcoord") return Target::Kind::CornerTexCoords;
+    raw_.report.notes.push_back("list '" + property.name + "' ignored");
+    return Target::Kind::Ignored;
+  }
+
+  bool read_vertices(const PlyElement& element) {
+    vertices_ = plan(element, RawLayer::Per::Vertex);
+    for (std::string_view axis : {"x", "y", "z"}) {
+      if (find_property(element, axis)) continue;
+      return refuse(body_.refuse(Error::BadFormat, "vertices have no " + std::string(axis)));
+    }
+    raw_.positions.reserve(element.count);
+    for (RawLayer& layer : vertices_.layers) layer.values.reserve(layer.dimension * element.count);
+    for (std::size_t i = 0; i < element.count; ++i) {
+      Vec3d position;
+      const auto take = [&](std::size_t p, double x) {
+        const Target& target = vertices_.targets[p];
+        if (target.kind == Target::Kind::Position) position[static_cast<int>(target.component)] = x;
+        if (target.kind == Target::Kind::Layer) vertices_.set(target, x);
+        return true;
+      };
+      if (!read_row(element, i, take, [](std::size_t) { return true; })) return false;
+      if (!is_position(position)) {
+        return refuse(body_.refuse(Error::BadValue, "vertex " + std::to_string(i) + " is not finite"));
+      }
+      raw_.positions.push_back(position);
+      vertices_.keep_row();
+    }
+    note_long_rows(element, vertices_);
+    return true;
+  }
+
+  // A row that holds more numbers than the header says: which of them are meant is not known. What
+  // comes before is kept: positions of vertices, corners of faces.
+  void note_long_rows(const PlyElement& element, ElementLayers& layers) {
+    if (rows_with_more_ == 0) return;
+    raw_.report.notes.push_back(std::to_string(rows_with_more_) + " rows of '" + element.name +
+                                "' hold more numbers than the header says: their other properties "
+                                "are ignored");
+    layers.layers.clear();
+    rows_with_more_ = 0;
+  }
+
+  bool read_faces(const PlyElement& element) {
+    faces_ = plan(element, RawLayer::Per::Face);
+    const bool has_indices = std::any_of(
+        faces_.targets.begin(), faces_.targets.end(),
+        [](const Target& target) { return target.kind == Target::Kind::Indices; });
+    if (!has_indices && element.count > 0) {
+      return refuse(body_.refuse(Error::BadFormat, "faces have no vertex_indices"));
+    }
+    if (!faces_.layers.empty()) sink_.keep_faces();
+    raw_.triangles.reserve(element.count);
+    for (std::size_t i = 0; i < element.count; ++i) {
+      corners_.clear();
+      corner_uv_.clear();
+      const auto take = [&](std::size_t p, double x) {
+        if (faces_.targets[p].kind == Target::Kind::Layer) faces_.set(faces_.targets[p], x);
+        return true;
+      };
+      const auto take_list = [&](std::size_t p) {
+        if (faces_.targets[p].kind == Target::Kind::CornerTexCoords) corner_uv_ = list_;
+        return faces_.targets[p].kind != Target::Kind::Indices || take_corners();
+      };
+      if (!read_row(element, i, take, take_list)) return false;
+      if (corners_.size() < 3) {
+        ++short_faces_;
+        continue;
+      }
+      sink_.add_face(corners_);
+      faces_.keep_row();
+      keep_corner_uv();
+    }
+    note_long_rows(element, faces_);
+    return true;
+  }
+
+  bool take_corners() {
+    for (double item : list_) {
+      if (!(item >= 0) || item >= static_cast<double>(raw_.positions.size())) {
+        return refuse(body_.refuse(Error::BadValue,
+                                   "vertex index " + shown(item) + " of " + std::to_string(raw_.positions.size()) + " vertices"));
+      }
+      corners_.push_back(static_cast<std::uint32_t>(item));
+    }
+    return true;
+  }
+
+  // Two numbers a corner; anything else is no texture coordinate.
+  void keep_corner_uv() {
+    const bool has = corner_uv_.size() == 2 * corners_.size();
+    if (!has && uv_of_corner_.empty()) return;
+    uv_of_corner_.resize(3 * (raw_.triangles.size() - sink_.cut().size()), kNone);
+    const auto first = static_cast<std::uint32_t>(uv_.size() / 2);
+    if (has) {
+      for (double x : corner_uv_) uv_.push_back(static_cast<float>(x));
+    }
+    for (const auto& triangle : sink_.cut()) {
+      for (std::uint32_t rank : triangle) uv_of_corner_.push_back(has ? first + rank : kNone);
+    }
+  }
+
+  // Strips in lists, cut by -1; every other triangle is turned round.
+  bool read_strips(const PlyElement& element) {
+    for (std::size_t i = 0; i < element.count; ++i) {
+      const auto take_list = [&](std::size_t) {
+        std::size_t in_strip = 0;
+        for (std::size_t k = 0; k < list_.size(); ++k) {
+          if (list_[k] == -1) {
+            in_strip = 0;
+            continue;
+          }
+          if (!(list_[k] >= 0) || list_[k] >= static_cast<double>(raw_.positions.size())) {
+            return refuse(body_.refuse(Error::BadValue,
+                                       "strip index " + shown(list_[k]) + " of " + std::to_string(raw_.positions.size()) +
+                                           " vertices"));
+          }
+          if (++in_strip < 3) continue;
+          const std::size_t flip = in_strip % 2 == 0 ? 1 : 0;
+          const auto at = [&](std::size_t back) { return static_cast<std::uint32_t>(list_[k - back]); };
+          const std::array<std::uint32_t, 3> triangle{at(1 + (flip ^ 1)), at(1 + flip), at(0)};
+          // Strips turn corners by repeating a vertex; that is no ugliness to be counted.
+          if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
+            continue;
+          }
+          sink_.add_face(triangle);
+        }
+        return true;
+      };
+      if (!read_row(element, i, [](std::size_t, double) { return true; }, take_list)) return false;
+    }
+    return true;
+  }
+
+  // Colours in floats are 0..1; some programs write 0..255.
+  void scale_float_colors(RawLayer& layer) {
+    if (layer.role != AttributeRole::Color) return;
+    const bool bytes = std::any_of(layer.values.begin(), layer.values.end(),
+                                   [](float c) { return c > 1.5f && c <= 255.0f; });
+    if (!bytes) return;
+    for (float& c : layer.values) c /= 255.0f;
+    raw_.report.notes.push_back("colours divided by 255");
+  }
+
+  void finish() {
+    // Vertices' normals and colours go before faces'. Faces that strips made have no values.
+    for (RawLayer& layer : vertices_.layers) {
+      scale_float_colors(layer);
+      raw_.layers.push_back(std::move(layer));
+    }
+    const auto is_there = [&](AttributeRole role) {
+      return std::any_of(raw_.layers.begin(), raw_.layers.end(),
+                         [&](const RawLayer& layer) { return layer.role == role; });
+    };
+    const bool has_normals = is_there(AttributeRole::Normal), has_colors = is_there(AttributeRole::Color);
+    for (RawLayer& layer : faces_.layers) {
+      scale_float_colors(layer);
+      layer.values.resize(std::size_t(layer.dimension) * sink_.face_count(), 0.0f);
+      if ((layer.role == AttributeRole::Normal && has_normals) ||
+          (layer.role == AttributeRole::Color && has_colors)) {
+        layer.name = "face_" + layer.name;
+        layer.role = AttributeRole::Other;
+      }
+      if (take_material_index(layer)) continue;
+      raw_.layers.push_back(std::move(layer));
+    }
+    if (!uv_.empty()) {
+      uv_of_corner_.resize(3 * raw_.triangles.size(), kNone);
+      RawLayer uv = texcoord_layer(is_there(AttributeRole::TexCoord) ? "corner_uv" : "uv",
+                                   RawLayer::Per::Corner);
+      uv.values = std::move(uv_);
+      uv.of_corner = std::move(uv_of_corner_);
+      raw_.layers.push_back(std::move(uv));
+    }
+    use_only_texture();
+    sink_.report();
+    if (short_faces_ > 0) {
+      raw_.report.notes.push_back(std::to_string(short_faces_) +
+                                  " faces with fewer than three corners ignored");
+    }
+  }
+
+  // "comment TextureFile NAME", as MeshLab writes; "comment material INDEX NAME", as crease writes.
+  std::vector<Material> materials_named_in_comments(std::string_view word) const {
+    std::vector<Material> materials;
+    for (const std::string& comment : header_.comments) {
+      Line line{comment.data(), comment.data() + comment.size(), 0};
+      if (line.word() != word) continue;
+      if (word == "TextureFile") {
+        std::string name(line.rest());
+        materials.push_back({name, {1, 1, 1, 1}, name});
+      } else if (std::int64_t index; line.integer(index) &&
+                                     index == static_cast<std::int64_t>(materials.size())) {
+        materials.push_back({std::string(line.rest()), {1, 1, 1, 1}, {}});
+      }
+    }
+    return materials;
+  }
+
+  // An integer per face that the comments give names for.
+  bool take_material_index(const RawLayer& layer) {
+    const bool is_index = layer.name == "material_index", is_texture = layer.name == "texnumber";
+    if (!is_index && !is_texture) return false;
+    std::vector<Material> materials = materials_named_in_comments(is_index ? "material" : "TextureFile");
+    for (float x : layer.values) {
+      if (!(x >= 0) || x >= static_cast<float>(materials.size())) return false;
+    }
+    raw_.materials = std::move(materials);
+    raw_.material_of_triangle.clear();
+    for (std::uint32_t f : raw_.face_of_triangle) {
+      raw_.material_of_triangle.push_back(MaterialId{static_cast<std::uint32_t>(layer.values[f])});
+    }
+    return true;
+  }
+
+  void use_only_texture() {
+    if (!raw_.materials.empty()) return;
+    std::vector<Material> textures = materials_named_in_comments("TextureFile");
+    if (textures.size() != 1) return;
+    raw_.materials = std::move(textures);
+    raw_.material_of_triangle.assign(raw_.triangles.size(), MaterialId{0});
+  }
+
+  const Source& source_;
+  const PlyHeader& header_;
+  PlyBody body_;
+  RawMesh raw_;
+  FaceSink sink_;
+  std::optional<Failure> failure_;
+  ElementLayers vertices_, faces_;
+  std::size_t rows_with_more_ = 0, short_faces_ = 0;
+  std::vector<double> list_, corner_uv_;
+  std::vector<std::uint32_t> corners_;
+  std::vector<float> uv_;
+  std::vector<std::uint32_t> uv_of_corner_;
+};
+
+}  // namespace
+
+Result<RawMesh> read_ply(const Source& source) {
+  const Result<PlyHeader> header = read_ply_header(source);
+  if (!header.ok()) return header.failure();
+  return PlyReader(source, *header).read();
+}
+
+}  // namespace crease

@@ -1,0 +1,149 @@
+// STL, binary and text. Binary is told by its size, 84 + 50 n, since binary files begin with
+// "solid" too. Facet normals are not used: they are flat by definition, often zero, and say nothing
+// that the winding does not; hard edges come from the crease angle.
+#include "io/formats.h"
+#include "io/text.h"
+
+#include <bit>
+#include <cctype>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crease {
+
+namespace {
+
+constexpr std::size_t kHeaderBytes = 84;
+constexpr std::size_t kFacetBytes = 50;
+
+std::uint32_t u32_at(std::span<const std::byte> bytes, std::size_t offset) {
+  std::uint32_t x = 0;
+  for (int i = 3; i >= 0; --i) x = x << 8 | std::to_integer<std::uint32_t>(bytes[offset + i]);
+  return x;
+}
+
+double f32_at(std::span<const std::byte> bytes, std::size_t offset) {
+  return static_cast<double>(std::bit_cast<float>(u32_at(bytes, offset)));
+}
+
+void add_triangle(RawMesh& raw) {
+  const auto first = static_cast<std::uint32_t>(raw.positions.size() - 3);
+  raw.triangles.push_back({first, first + 1, first + 2});
+}
+
+Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
+  RawMesh raw;
+  raw.report.format = "binary STL";
+  raw.positions.reserve(3 * facet_count);
+  raw.triangles.reserve(facet_count);
+  RawLayer attribute{"stl_attribute", AttributeRole::Other, Interpolation::Categorical,
+                     RawLayer::Per::Face, 1, {}, {}};
+  bool has_attribute = false;
+  for (std::size_t f = 0; f < facet_count; ++f) {
+    const std::size_t facet = kHeaderBytes + kFacetBytes * f;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t at = facet + 12 + 12 * c;
+      const Vec3d p{f32_at(source.bytes, at), f32_at(source.bytes, at + 4),
+                    f32_at(source.bytes, at + 8)};
+      if (!is_position(p)) {
+        return fail_at_byte(Error::BadValue, source, at,
+                            "corner of facet " + std::to_string(f) + " is not finite");
+      }
+      raw.positions.push_back(p);
+    }
+    add_triangle(raw);
+    const auto low = std::to_integer<unsigned>(source.bytes[facet + 48]);
+    const auto high = std::to_integer<unsigned>(source.bytes[facet + 49]);
+    attribute.values.push_back(static_cast<float>(low | high << 8));
+    has_attribute = has_attribute || attribute.values.back() != 0;
+  }
+  if (has_attribute) raw.layers.push_back(std::move(attribute));
+  if (source.bytes.size() > kHeaderBytes + kFacetBytes * facet_count) {
+    raw.report.notes.push_back("bytes after the last facet ignored");
+  }
+  return raw;
+}
+
+Result<RawMesh> read_text(const Source& source) {
+  RawMesh raw;
+  raw.report.format = "text STL";
+  LineReader lines(source.text());
+  std::size_t corners = 0;
+  bool in_facet = false, closed = true;
+  Line line;
+  while (lines.next(line)) {
+    // A line may hold several statements: some writers put a whole facet on one.
+    while (!line.done()) {
+      std::string word(line.word().substr(0, 16));
+      for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      const auto refuse = [&](Error error, const std::string& reason) {
+        return fail_at_line(error, source, line.line_number, reason);
+      };
+      if (word == "solid") {
+        raw.parts.emplace_back(line.rest());
+        closed = false;
+      } else if (word == "endsolid") {
+        line.rest();
+        closed = true;
+      } else if (word == "facet") {
+        if (in_facet) return refuse(Error::BadFormat, "a facet begins inside a facet");
+        in_facet = true;
+        corners = 0;
+      } else if (word == "normal") {
+        for (int i = 0; i < 3; ++i) line.word();
+      } else if (word == "vertex") {
+        Vec3d p;
+        for (int i = 0; i < 3; ++i) {
+          if (!line.number(p[i])) {
+            return refuse(Error::BadFormat, "vertex: not a number: " + in_quotes(line.word()));
+          }
+        }
+        if (!is_position(p)) return refuse(Error::BadValue, "vertex is not finite");
+        if (!in_facet || ++corners > 3) return refuse(Error::BadFormat, "vertex beyond a facet's three");
+        raw.positions.push_back(p);
+      } else if (word == "endfacet") {
+        if (corners != 3) return refuse(Error::BadFormat, "a facet without three vertices");
+        in_facet = false;
+        corners = 0;
+        add_triangle(raw);
+        if (raw.parts.empty()) raw.parts.emplace_back();
+        raw.part_of_triangle.push_back(PartId{static_cast<std::uint32_t>(raw.parts.size() - 1)});
+      } else if (word != "outer" && word != "loop" && word != "endloop") {
+        return refuse(Error::BadFormat, "not a word of STL: " + in_quotes(word));
+      }
+    }
+  }
+  if (in_facet || !closed) {
+    return fail_at_line(Error::Truncated, source, line.line_number, "the file ends inside a solid");
+  }
+  if (raw.parts.size() < 2) {
+    raw.parts.clear();
+    raw.part_of_triangle.clear();
+  }
+  return raw;
+}
+
+}  // namespace
+
+Result<RawMesh> read_stl(const Source& source) {
+  const std::size_t size = source.bytes.size();
+  const std::size_t promised = size >= kHeaderBytes ? u32_at(source.bytes, 80) : 0;
+  const std::size_t needed = kHeaderBytes + kFacetBytes * promised;
+  const bool says_solid = source.text().starts_with("solid");
+  const bool is_binary = size >= kHeaderBytes && (needed == size || !says_solid);
+  Result<RawMesh> raw = [&]() -> Result<RawMesh> {
+    if (!is_binary) return read_text(source);
+    if (needed > size) {
+      return fail_at_byte(Error::Truncated, source, size,
+                          "the header promises " + std::to_string(promised) + " facets, " +
+                              std::to_string(needed) + " bytes");
+    }
+    return read_binary(source, promised);
+  }();
+  if (raw.ok()) raw->report.notes.push_back("facet normals not used: the winding says them");
+  return raw;
+}
+
+}  // namespace crease

@@ -1,0 +1,146 @@
+// Binary little-endian PLY: doubles for positions, split vertices for hard edges, a face property
+// for each layer with one value a triangle, and the materials as an index that comments give names to.
+#include "io/byte_sink.h"
+#include "io/formats.h"
+#include "io/split_vertices.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace crease {
+
+namespace {
+
+struct PlyLayer {
+  const AttributeLayer* layer = nullptr;
+  bool as_bytes = false;                // colours that came from bytes go back to bytes
+  bool as_integers = false;             // categories
+  std::vector<std::string> properties;  // one a component
+};
+
+bool all_values(const AttributeLayer& layer, float scale, float low, float high) {
+  return std::all_of(layer.values.begin(), layer.values.end(), [&](float x) {
+    const float scaled = x * scale;
+    // The float nearest to k / 255 and back: equal iff the value came from a byte.
+    return scaled >= low && scaled <= high && std::round(scaled) / scale == x;
+  });
+}
+
+// One word, so that the header can be read again.
+std::string word_of(std::string name) {
+  for (char& c : name) {
+    if (c <= ' ' || c > '~') c = '_';
+  }
+  return name.empty() ? "value" : name;
+}
+
+std::string numbered(std::string name, std::size_t k) {
+  name += '_';
+  return name += std::to_string(k);
+}
+
+PlyLayer plan_layer(const AttributeLayer& layer) {
+  PlyLayer plan{&layer, false, false, {}};
+  switch (layer.role) {
+    case AttributeRole::Normal: plan.properties = {"nx", "ny", "nz"}; break;
+    case AttributeRole::TexCoord: plan.properties = {"s", "t"}; break;
+    case AttributeRole::Color:
+      plan.properties = {"red", "green", "blue", "alpha"};
+      plan.as_bytes = all_values(layer, 255, 0, 255);
+      break;
+    case AttributeRole::Other:
+      for (std::uint32_t k = 0; k < layer.dimension; ++k) {
+        plan.properties.push_back(layer.dimension > 1 ? numbered(word_of(layer.name), k)
+                                                      : word_of(layer.name));
+      }
+      plan.as_integers = layer.interpolation == Interpolation::Categorical &&
+                         all_values(layer, 1, -16777216, 16777216);
+      break;
+  }
+  plan.properties.resize(layer.dimension, "value");
+  return plan;
+}
+
+void write_properties(ByteSink& out, const PlyLayer& plan) {
+  for (const std::string& property : plan.properties) {
+    out.text(plan.as_bytes ? "property uchar " : plan.as_integers ? "property int " : "property float ");
+    out.text(property);
+    out.text("\n");
+  }
+}
+
+void write_value(ByteSink& out, const PlyLayer& plan, AttributeId a) {
+  for (float x : plan.layer->value(a)) {
+    if (plan.as_bytes) {
+      out.u8(static_cast<std::uint8_t>(std::lround(x * 255)));
+    } else if (plan.as_integers) {
+      out.u32(static_cast<std::uint32_t>(static_cast<std::int32_t>(x)));
+    } else {
+      out.f32(x);
+    }
+  }
+}
+
+bool has_role_before(const std::vector<PlyLayer>& plans, const AttributeLayer& layer) {
+  return layer.role != AttributeRole::Other &&
+         std::any_of(plans.begin(), plans.end(),
+                     [&](const PlyLayer& plan) { return plan.layer->role == layer.role; });
+}
+
+}  // namespace
+
+std::vector<std::byte> write_ply(const Mesh& mesh) {
+  std::vector<PlyLayer> of_vertex, of_face;
+  std::vector<const AttributeLayer*> splitting;
+  for (const AttributeLayer& layer : mesh.layers) {
+    const bool is_face =
+        layer.interpolation == Interpolation::Categorical && is_per_triangle(layer);
+    PlyLayer plan = plan_layer(layer);
+    if (has_role_before(of_vertex, layer)) {  // a second set of texture coordinates or colours
+      for (std::size_t k = 0; k < plan.properties.size(); ++k) {
+        plan.properties[k] = numbered(word_of(layer.name), k);
+      }
+      plan.as_bytes = false;
+    }
+    if (!is_face) splitting.push_back(&layer);
+    (is_face ? of_face : of_vertex).push_back(std::move(plan));
+  }
+  const SplitVertices split = split_vertices(mesh, splitting);
+  const bool has_materials = !mesh.material_of_triangle.empty();
+
+  ByteSink out;
+  out.reserve(1024 + split.count() * 48 + mesh.triangle_count() * 17);
+  out.text("ply\nformat binary_little_endian 1.0\ncomment written by crease\n");
+  for (std::size_t m = 0; has_materials && m < mesh.materials.size(); ++m) {
+    std::string name = mesh.materials[m].name;
+    std::replace_if(name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    out.text("comment material " + std::to_string(m) + " " + name + "\n");
+  }
+  out.text("element vertex " + std::to_string(split.count()) + "\n");
+  out.text("property double x\nproperty double y\nproperty double z\n");
+  for (const PlyLayer& plan : of_vertex) write_properties(out, plan);
+  out.text("element face " + std::to_string(mesh.triangle_count()) + "\n");
+  out.text("property list uchar uint vertex_indices\n");
+  for (const PlyLayer& plan : of_face) write_properties(out, plan);
+  if (has_materials) out.text("property int material_index\n");
+  out.text("end_header\n");
+
+  for (std::size_t s = 0; s < split.count(); ++s) {
+    const Vec3d& p = mesh.positions[split.position[s]];
+    for (int i = 0; i < 3; ++i) out.f64(p[i]);
+    for (std::size_t l = 0; l < of_vertex.size(); ++l) write_value(out, of_vertex[l], split.values[l][s]);
+  }
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    out.u8(3);
+    for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) out.u32(split.of_corner[corner]);
+    for (const PlyLayer& plan : of_face) write_value(out, plan, plan.layer->of_corner[3 * t]);
+    if (has_materials) {
+      out.u32(static_cast<std::uint32_t>(index_of(mesh.material_of_triangle[t])));
+    }
+  }
+  return out.take();
+}
+
+}  // namespace crease
