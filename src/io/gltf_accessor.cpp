@@ -1,0 +1,287 @@
+#include "io/gltf_document.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <type_traits>
+
+namespace crease {
+namespace {
+
+// 3.6.2.2: component types.
+enum ComponentType : std::size_t {
+  kByte = 5120,
+  kUnsignedByte = 5121,
+  kShort = 5122,
+  kUnsignedShort = 5123,
+  kUnsignedInt = 5125,
+  kFloat = 5126,
+};
+
+std::size_t bytes_of_component(std::size_t type) {
+  switch (type) {
+    case kByte:
+    case kUnsignedByte: return 1;
+    case kShort:
+    case kUnsignedShort: return 2;
+    case kUnsignedInt:
+    case kFloat: return 4;
+    default: return 0;
+  }
+}
+
+std::size_t components_of_type(const std::string& type) {
+  if (type == "SCALAR") return 1;
+  if (type == "VEC2") return 2;
+  if (type == "VEC3") return 3;
+  if (type == "VEC4") return 4;
+  return 0;  // matrices hold no vertex attribute that is read here
+}
+
+static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
+
+template <typename Stored>
+Stored load(const std::byte* at) {
+  Stored value;
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+float normalized_component(double value, double largest) {
+  return static_cast<float>(std::max(value / largest, -1.0));
+}
+
+// One component as a float (3.6.2.2: c / 255, max(c / 127, -1) and so on) or as an index.
+template <typename T>
+T component(const std::byte* at, std::size_t type, bool normalized) {
+  if constexpr (std::is_same_v<T, std::uint32_t>) {
+    switch (type) {
+      case kUnsignedByte: return load<std::uint8_t>(at);
+      case kUnsignedShort: return load<std::uint16_t>(at);
+      default: return load<std::uint32_t>(at);
+    }
+  } else {
+    switch (type) {
+      case kByte: {
+        const auto value = load<std::int8_t>(at);
+        return normalized ? normalized_component(value, 127) : float(value);
+      }
+      case kUnsignedByte: {
+        const auto value = load<std::uint8_t>(at);
+        return normalized ? normalized_component(value, 255) : float(value);
+      }
+      case kShort: {
+        const auto value = load<std::int16_t>(at);
+        return normalized ? normalized_component(value, 32767) : float(value);
+      }
+      case kUnsignedShort: {
+        const auto value = load<std::uint16_t>(at);
+        return normalized ? normalized_component(value, 65535) : float(value);
+      }
+      case kUnsignedInt: {
+        const auto value = load<std::uint32_t>(at);
+        return normalized ? normalized_component(value, 4294967295.0) : float(value);
+      }
+      default: return load<float>(at);
+    }
+  }
+}
+
+}  // namespace
+
+std::size_t GltfReader::components_of(const Json& accessor_index) const {
+  const auto index = as_index(accessor_index);
+  if (!index) return 0;
+  return components_of_type(as_text(at(at(at(document_.json, "accessors"), *index), "type")));
+}
+
+Result<GltfReader::Layout> GltfReader::layout_of(const Json& accessor,
+                                                 const std::string& place) const {
+  Layout layout;
+  const auto count = as_index(at(accessor, "count"));
+  const auto type = as_index(at(accessor, "componentType"));
+  layout.components = components_of_type(as_text(at(accessor, "type")));
+  layout.component_type = type.value_or(0);
+  layout.component_bytes = bytes_of_component(layout.component_type);
+  layout.normalized = as_bool(at(accessor, "normalized"));
+  if (!count || layout.components == 0 || layout.component_bytes == 0) {
+    return fail_at_place(Error::BadFormat, source_, place,
+                         "accessor without a usable count, type or componentType");
+  }
+  // Zero-filled accessors need no bytes, so only this keeps them from asking for any memory.
+  if (*count > 1024 + 64 * source_.bytes.size() && !at(accessor, "bufferView").is_number()) {
+    return fail_at_place(Error::OverLimit, source_, place,
+                         std::to_string(*count) + " values without data");
+  }
+  layout.count = *count;
+  return layout;
+}
+
+Result<std::span<const std::byte>> GltfReader::buffer(std::size_t index, const std::string& place) {
+  const Json& buffers = at(document_.json, "buffers");
+  if (index >= size_of(buffers)) {
+    return fail_at_place(Error::BadValue, source_, place,
+                         "buffer " + std::to_string(index) + " of " +
+                             std::to_string(size_of(buffers)));
+  }
+  buffers_.resize(size_of(buffers));
+  Buffer& entry = buffers_[index];
+  if (entry.loaded) return entry.bytes;
+  const std::string here = place_of("buffers", index);
+  const Json& json = buffers[index];
+  const auto length = as_index(at(json, "byteLength"));
+  if (!length) return fail_at_place(Error::BadFormat, source_, here, "no byteLength");
+  const std::string* uri = at(json, "uri").get_ptr<const std::string*>();
+  if (uri == nullptr) {
+    if (index != 0) return fail_at_place(Error::BadFormat, source_, here, "no uri");
+    entry.bytes = document_.binary_chunk;
+  } else {
+    Result<std::vector<std::byte>> bytes = uri->starts_with("data:")
+                                               ? decode_data_uri(source_, here + ".uri", *uri)
+                                               : read_beside(source_, here + ".uri", *uri);
+    if (!bytes.ok()) return bytes.failure();
+    entry.owned = *std::move(bytes);
+    entry.bytes = entry.owned;
+  }
+  if (entry.bytes.size() < *length) {
+    return fail_at_place(Error::Truncated, source_, here,
+                         "byteLength is " + std::to_string(*length) + ", there are " +
+                             std::to_string(entry.bytes.size()));
+  }
+  entry.bytes = entry.bytes.first(*length);
+  entry.loaded = true;
+  return entry.bytes;
+}
+
+// `owner` has bufferView and byteOffset: an accessor, or one of the two parts of `sparse`.
+Result<GltfReader::View> GltfReader::view_of(const Json& owner, const std::string& place,
+                                             std::size_t count, std::size_t value_bytes) {
+  const auto index = as_index(at(owner, "bufferView"));
+  const Json& views = at(document_.json, "bufferViews");
+  if (!index || *index >= size_of(views)) {
+    return fail_at_place(Error::BadValue, source_, place, "no such bufferView");
+  }
+  const Json& json = views[*index];
+  const std::string here = place_of("bufferViews", *index);
+  Result<std::span<const std::byte>> bytes =
+      buffer(as_index(at(json, "buffer")).value_or(std::size_t(-1)), here + ".buffer");
+  if (!bytes.ok()) return bytes.failure();
+  const std::size_t view_offset = as_index(at(json, "byteOffset")).value_or(0);
+  const std::size_t view_length = as_index(at(json, "byteLength")).value_or(0);
+  if (view_offset > bytes->size() || view_length > bytes->size() - view_offset) {
+    return fail_at_place(Error::BadValue, source_, here,
+                         "reaches to byte " + std::to_string(view_offset) + " + " +
+                             std::to_string(view_length) + " of a buffer of " +
+                             std::to_string(bytes->size()));
+  }
+  View view;
+  view.stride = as_index(at(json, "byteStride")).value_or(value_bytes);
+  const std::size_t offset = as_index(at(owner, "byteOffset")).value_or(0);
+  if (view.stride < value_bytes) {
+    return fail_at_place(Error::BadValue, source_, here + ".byteStride",
+                         std::to_string(view.stride) + " is less than a value's " +
+                             std::to_string(value_bytes) + " bytes");
+  }
+  // offset + stride * (count - 1) + value_bytes <= view_length, without overflow.
+  if (count > 0 && (offset > view_length || view_length - offset < value_bytes ||
+                    (count - 1) > (view_length - offset - value_bytes) / view.stride)) {
+    return fail_at_place(Error::BadValue, source_, place,
+                         std::to_string(count) + " values at byte " + std::to_string(offset) +
+                             " do not fit into " + here + " of " + std::to_string(view_length) +
+                             " bytes");
+  }
+  if (count > 0) view.bytes = bytes->subspan(view_offset + offset);
+  return view;
+}
+
+template <typename T>
+Result<std::vector<T>> GltfReader::read(const Json& accessor, const Layout& layout,
+                                        const std::string& place) {
+  const std::size_t value_bytes = layout.components * layout.component_bytes;
+  const auto decode = [&](const std::byte* from, T* to) {
+    for (std::size_t k = 0; k < layout.components; ++k) {
+      to[k] = component<T>(from + k * layout.component_bytes, layout.component_type,
+                           layout.normalized);
+    }
+  };
+  std::vector<T> values;
+  if (at(accessor, "bufferView").is_number()) {
+    Result<View> view = view_of(accessor, place, layout.count, value_bytes);
+    if (!view.ok()) return view.failure();
+    values.resize(layout.count * layout.components);
+    for (std::size_t i = 0; i < layout.count; ++i) {
+      decode(view->bytes.data() + i * view->stride, &values[i * layout.components]);
+    }
+  } else {
+    values.resize(layout.count * layout.components);
+  }
+
+  const Json& sparse = at(accessor, "sparse");
+  if (!sparse.is_object()) return values;
+  const std::string sparse_place = place + ".sparse";
+  const std::size_t sparse_count = as_index(at(sparse, "count")).value_or(0);
+  const Json& sparse_indices = at(sparse, "indices");
+  const std::size_t index_type = as_index(at(sparse_indices, "componentType")).value_or(0);
+  const std::size_t index_bytes = bytes_of_component(index_type);
+  if (index_bytes == 0 || index_type == kFloat) {
+    return fail_at_place(Error::BadFormat, source_, sparse_place + ".indices.componentType",
+                         "not an index type");
+  }
+  Result<View> where = view_of(sparse_indices, sparse_place + ".indices", sparse_count, index_bytes);
+  if (!where.ok()) return where.failure();
+  Result<View> what =
+      view_of(at(sparse, "values"), sparse_place + ".values", sparse_count, value_bytes);
+  if (!what.ok()) return what.failure();
+  for (std::size_t i = 0; i < sparse_count; ++i) {
+    const std::size_t target =
+        component<std::uint32_t>(where->bytes.data() + i * where->stride, index_type, false);
+    if (target >= layout.count) {
+      return fail_at_place(Error::BadValue, source_, sparse_place + place_of(".indices", i),
+                           std::to_string(target) + " of " + std::to_string(layout.count));
+    }
+    decode(what->bytes.data() + i * what->stride, &values[target * layout.components]);
+  }
+  return values;
+}
+
+Result<GltfReader::Floats> GltfReader::floats(const Json& accessor_index,
+                                              std::size_t min_components,
+                                              std::size_t max_components,
+                                              const std::string& place) {
+  const auto index = as_index(accessor_index);
+  const Json& accessors = at(document_.json, "accessors");
+  if (!index || *index >= size_of(accessors)) {
+    return fail_at_place(Error::BadValue, source_, place, "no such accessor");
+  }
+  const std::string here = place + " (accessors[" + std::to_string(*index) + "])";
+  Result<Layout> layout = layout_of(accessors[*index], here);
+  if (!layout.ok()) return layout.failure();
+  if (layout->components < min_components || layout->components > max_components) {
+    return fail_at_place(Error::BadFormat, source_, here,
+                         as_text(at(accessors[*index], "type")) + " cannot be used here");
+  }
+  Result<std::vector<float>> values = read<float>(accessors[*index], *layout, here);
+  if (!values.ok()) return values.failure();
+  return Floats{*std::move(values), layout->components,
+                layout->component_type != kFloat && !layout->normalized};
+}
+
+Result<std::vector<std::uint32_t>> GltfReader::indices(const Json& accessor_index,
+                                                       const std::string& place) {
+  const auto index = as_index(accessor_index);
+  const Json& accessors = at(document_.json, "accessors");
+  if (!index || *index >= size_of(accessors)) {
+    return fail_at_place(Error::BadValue, source_, place, "no such accessor");
+  }
+  const std::string here = place + " (accessors[" + std::to_string(*index) + "])";
+  Result<Layout> layout = layout_of(accessors[*index], here);
+  if (!layout.ok()) return layout.failure();
+  const std::size_t type = layout->component_type;
+  if (layout->components != 1 ||
+      (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt)) {
+    return fail_at_place(Error::BadFormat, source_, here, "not an accessor of indices");
+  }
+  return read<std::uint32_t>(accessors[*index], *layout, here);
+}
+
+}  // namespace crease

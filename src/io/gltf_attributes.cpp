@@ -1,0 +1,168 @@
+#include "io/gltf_attributes.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace crease {
+namespace {
+
+constexpr std::size_t kMaxLayers = 32;
+
+// "TEXCOORD_1": the name that follows "uv", empty for set 0; nothing if it is another semantic.
+bool is_set_of(const std::string& semantic, std::string_view kind, std::string& suffix) {
+  if (!semantic.starts_with(kind)) return false;
+  suffix = semantic.substr(kind.size());
+  if (suffix == "0") suffix.clear();
+  return true;
+}
+
+// Feature ids are numbers that stand for things; blending two of them means nothing.
+bool is_id(const std::string& semantic) {
+  return semantic == "_BATCHID" || semantic.starts_with("_FEATURE_ID");
+}
+
+RawLayer make_layer(const std::string& semantic, std::size_t dimension, bool integers) {
+  std::string suffix;
+  if (semantic == "NORMAL") return normal_layer(RawLayer::Per::Vertex);
+  if (is_set_of(semantic, "TEXCOORD_", suffix)) {
+    return texcoord_layer("uv" + suffix, RawLayer::Per::Vertex);
+  }
+  const auto components = static_cast<std::uint32_t>(dimension);
+  if (is_set_of(semantic, "COLOR_", suffix)) {
+    RawLayer layer = color_layer(RawLayer::Per::Vertex, components);
+    layer.name += suffix;
+    return layer;
+  }
+  RawLayer layer;
+  layer.name = semantic.substr(1);
+  layer.dimension = components;
+  if (integers || is_id(semantic)) layer.interpolation = Interpolation::Categorical;
+  return layer;
+}
+
+// More components a value; the new ones are `fill`.
+void widen(RawLayer& layer, std::size_t dimension, float fill) {
+  const std::size_t old = layer.dimension, count = layer.value_count();
+  std::vector<float> wide(count * dimension, fill);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::copy_n(&layer.values[i * old], old, &wide[i * dimension]);
+  }
+  layer.values = std::move(wide);
+  layer.dimension = static_cast<std::uint32_t>(dimension);
+}
+
+float fill_of(const RawLayer& layer) { return layer.role == AttributeRole::Color ? 1.0f : 0.0f; }
+
+}  // namespace
+
+GltfLayers::Layer* GltfLayers::layer_of(const std::string& semantic, std::size_t dimension,
+                                        bool integers) {
+  const auto found = std::ranges::find(layers_, semantic, &Layer::semantic);
+  if (found != layers_.end()) {
+    if (found->raw.dimension < dimension) {
+      total_dimension_ += dimension - found->raw.dimension;
+      widen(found->raw, dimension, fill_of(found->raw));
+    }
+    return &*found;
+  }
+  if (layers_.size() >= kMaxLayers) return nullptr;
+  total_dimension_ += dimension;
+  Layer& layer = layers_.emplace_back();
+  layer.semantic = semantic;
+  layer.raw = make_layer(semantic, dimension, integers);
+  if (vertex_count_ > 0) append_missing(layer, vertex_count_);
+  return &layer;
+}
+
+void GltfLayers::append_missing(Layer& layer, std::size_t count) {
+  const std::size_t begin = layer.raw.value_count();
+  layer.raw.values.resize((begin + count) * layer.raw.dimension, fill_of(layer.raw));
+  if (layer.raw.role != AttributeRole::Color) layer.missing.emplace_back(begin, begin + count);
+}
+
+void GltfLayers::append(Layer& layer, const GltfReader::Floats& floats,
+                        const std::vector<Transform>& transforms) {
+  std::vector<float>& out = layer.raw.values;
+  const std::size_t count = floats.count(), dimension = layer.raw.dimension;
+  for (const Transform& transform : transforms) {
+    const std::size_t begin = out.size();
+    out.resize(begin + count * dimension, fill_of(layer.raw));
+    for (std::size_t i = 0; i < count; ++i) {
+      std::copy_n(&floats.values[i * floats.components], floats.components,
+                  &out[begin + i * dimension]);
+    }
+    if (layer.raw.role == AttributeRole::TexCoord) {
+      for (std::size_t i = begin + 1; i < out.size(); i += 2) out[i] = 1.0f - out[i];  // v up
+    }
+    // Normals that keep their direction keep their bits.
+    if (layer.raw.role != AttributeRole::Normal || transform.only_scales()) continue;
+    const Transform of_normals = transform.of_normals();
+    for (std::size_t i = begin; i < out.size(); i += 3) {
+      const Vec3d stored{out[i], out[i + 1], out[i + 2]};
+      const Vec3d turned = normalized(of_normals.direction(stored));
+      for (std::size_t k = 0; k < 3; ++k) out[i + k] = float(turned[static_cast<int>(k)]);
+    }
+  }
+}
+
+Status GltfLayers::add(GltfReader& reader, const Json& attributes, const std::string& place,
+                       std::size_t vertex_count, const std::vector<Transform>& transforms) {
+  const std::size_t total = vertex_count * transforms.size();
+  std::vector<bool> present(layers_.size(), false);
+  for (const auto& [semantic, accessor] : attributes.items()) {
+    if (semantic == "POSITION") continue;
+    std::string suffix;
+    std::size_t low = 1, high = 4;
+    if (semantic == "NORMAL") low = high = 3;
+    else if (is_set_of(semantic, "TEXCOORD_", suffix)) low = high = 2;
+    else if (is_set_of(semantic, "COLOR_", suffix)) low = 3;
+    else if (!semantic.starts_with('_') || reader.components_of(accessor) == 0) {
+      ++ignored_[semantic];
+      continue;
+    }
+    const std::string here = place + "." + semantic;
+    Result<GltfReader::Floats> floats = reader.floats(accessor, low, high, here);
+    if (!floats.ok()) return floats.failure();
+    if (floats->count() != vertex_count) {
+      return fail_at_place(Error::BadValue, source_, here,
+                           std::to_string(floats->count()) + " values for " +
+                               std::to_string(vertex_count) + " vertices");
+    }
+    Layer* layer = layer_of(semantic, floats->components, floats->integers);
+    if (layer == nullptr) {
+      ++ignored_[semantic];
+      continue;
+    }
+    append(*layer, *floats, transforms);
+    present.resize(layers_.size(), false);
+    present[static_cast<std::size_t>(layer - layers_.data())] = true;
+  }
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    if (!present[i]) append_missing(layers_[i], total);
+  }
+  vertex_count_ += total;
+  return Done{};
+}
+
+void GltfLayers::finish(RawMesh& raw) {
+  for (Layer& layer : layers_) {
+    if (!layer.missing.empty()) {
+      std::vector<bool> has_value(vertex_count_, true);
+      for (const auto& [begin, end] : layer.missing) {
+        std::fill(has_value.begin() + static_cast<std::ptrdiff_t>(begin),
+                  has_value.begin() + static_cast<std::ptrdiff_t>(end), false);
+      }
+      layer.raw.per = RawLayer::Per::Corner;
+      layer.raw.of_corner.reserve(3 * raw.triangles.size());
+      for (const auto& triangle : raw.triangles) {
+        for (std::uint32_t v : triangle) layer.raw.of_corner.push_back(has_value[v] ? v : kNone);
+      }
+    }
+    raw.layers.push_back(std::move(layer.raw));
+  }
+  for (const auto& [semantic, count] : ignored_) {
+    raw.report.notes.push_back(semantic + " ignored in " + std::to_string(count) + " primitives");
+  }
+}
+
+}  // namespace crease

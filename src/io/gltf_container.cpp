@@ -1,0 +1,233 @@
+// GLB and b3dm containers, "data:" URIs and files beside a .gltf.
+#include "io/gltf_document.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace crease {
+namespace {
+
+constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
+constexpr std::uint32_t kB3dmMagic = 0x6D643362;  // "b3dm"
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
+constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN\0"
+
+// Little-endian; the caller has checked that four bytes are there.
+std::uint32_t u32_at(std::span<const std::byte> bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value |= std::to_integer<std::uint32_t>(bytes[offset + i]) << (8 * i);
+  }
+  return value;
+}
+
+std::string_view characters(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// `glb` is the part of the source's bytes that holds the GLB.
+Result<GltfDocument> open_glb(const Source& source, std::span<const std::byte> glb) {
+  const std::size_t base = static_cast<std::size_t>(glb.data() - source.bytes.data());
+  if (glb.size() < 20) {
+    return fail_at_byte(Error::Truncated, source, base + glb.size(), "GLB ends inside its header");
+  }
+  const std::uint32_t version = u32_at(glb, 4);
+  if (version != 2) {
+    return fail_at_byte(Error::NotSupported, source, base + 4,
+                        "GLB version " + std::to_string(version) + "; only 2 is read");
+  }
+  const std::size_t length = u32_at(glb, 8);
+  if (length > glb.size()) {
+    return fail_at_byte(Error::Truncated, source, base + 8,
+                        "header says " + std::to_string(length) + " bytes, there are " +
+                            std::to_string(glb.size()));
+  }
+  if (length < 20) return fail_at_byte(Error::BadFormat, source, base + 8, "impossible length");
+  GltfDocument document;
+  bool has_json = false;
+  for (std::size_t offset = 12; offset < length;) {
+    if (length - offset < 8) {
+      return fail_at_byte(Error::Truncated, source, base + offset, "chunk header cut off");
+    }
+    const std::size_t chunk_length = u32_at(glb, offset);
+    const std::uint32_t type = u32_at(glb, offset + 4);
+    if (chunk_length > length - offset - 8) {
+      return fail_at_byte(Error::Truncated, source, base + offset,
+                          "chunk of " + std::to_string(chunk_length) + " bytes, " +
+                              std::to_string(length - offset - 8) + " are left");
+    }
+    const auto chunk = glb.subspan(offset + 8, chunk_length);
+    if (!has_json) {
+      if (type != kJsonChunk) {
+        return fail_at_byte(Error::BadFormat, source, base + offset, "the first chunk is not JSON");
+      }
+      Result<Json> json = parse_json(source, characters(chunk), base + offset + 8);
+      if (!json.ok()) return json.failure();
+      document.json = *std::move(json);
+      has_json = true;
+    } else if (type == kBinChunk && document.binary_chunk.empty()) {
+      document.binary_chunk = chunk;
+    }
+    offset += 8 + chunk_length;
+  }
+  document.format = "GLB";
+  return document;
+}
+
+// 3D Tiles 1.0, Batched 3D Model: a header of 28 bytes and four tables before a GLB.
+Result<GltfDocument> open_b3dm(const Source& source) {
+  constexpr std::size_t kHeader = 28;
+  const auto bytes = source.bytes;
+  if (bytes.size() < kHeader) {
+    return fail_at_byte(Error::Truncated, source, bytes.size(), "b3dm ends inside its header");
+  }
+  std::size_t glb_offset = kHeader;
+  for (std::size_t field = 12; field < kHeader; field += 4) glb_offset += u32_at(bytes, field);
+  if (glb_offset > bytes.size()) {
+    return fail_at_byte(Error::Truncated, source, 12,
+                        "b3dm tables reach to byte " + std::to_string(glb_offset) +
+                            ", the file ends at " + std::to_string(bytes.size()));
+  }
+  const auto glb = bytes.subspan(glb_offset);
+  if (glb.size() < 4 || u32_at(glb, 0) != kGlbMagic) {
+    return fail_at_byte(Error::BadFormat, source, glb_offset, "no GLB where b3dm should have one");
+  }
+  Result<GltfDocument> document = open_glb(source, glb);
+  if (!document.ok()) return document;
+  document->format = "b3dm";
+  const std::size_t features_length = u32_at(bytes, 12);
+  if (features_length > 0) {
+    const auto features = bytes.subspan(kHeader, std::min(features_length, glb_offset - kHeader));
+    Result<Json> table = parse_json(source, characters(features), kHeader);
+    if (!table.ok()) return table.failure();
+    // Tiles are z-up, the glTF inside is y-up; positions stay y-up, so the centre is turned.
+    if (const auto center = as_vector(at(*table, "RTC_CENTER"))) {
+      document->center = {center->x, center->z, -center->y};
+    }
+  }
+  return document;
+}
+
+// "%20" and the like. A bad escape stays as it is.
+std::string percent_decoded(std::string_view uri) {
+  const auto digit = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+  };
+  std::string result;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
+      result += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
+      i += 2;
+    } else {
+      result += uri[i];
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Result<GltfDocument> open_gltf(const Source& source) {
+  Result<GltfDocument> document = GltfDocument{};
+  const auto bytes = source.bytes;
+  const std::uint32_t magic = bytes.size() >= 4 ? u32_at(bytes, 0) : 0;
+  if (magic == kGlbMagic) {
+    document = open_glb(source, bytes);
+  } else if (magic == kB3dmMagic) {
+    document = open_b3dm(source);
+  } else {
+    Result<Json> json = parse_json(source, source.text(), 0);
+    if (!json.ok()) return json.failure();
+    document->json = *std::move(json);
+    document->format = "glTF";
+  }
+  if (!document.ok()) return document;
+  const Json& json = document->json;
+  if (!json.is_object()) return fail_at_byte(Error::BadFormat, source, 0, "JSON is not an object");
+  const std::string version = as_text(at(at(json, "asset"), "version"));
+  if (!version.empty() && !version.starts_with("2.")) {
+    return fail_at_place(Error::NotSupported, source, "asset.version",
+                         "glTF " + version + "; only 2.0 is read");
+  }
+  if (const auto center = as_vector(at(at(at(json, "extensions"), "CESIUM_RTC"), "center"))) {
+    document->center += *center;
+  }
+  return document;
+}
+
+Result<std::vector<std::byte>> decode_data_uri(const Source& source, const std::string& place,
+                                               std::string_view uri) {
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
+    return fail_at_place(Error::NotSupported, source, place, "data URI that is not base64");
+  }
+  std::string_view text = uri.substr(comma + 1);
+  while (text.ends_with('=')) text.remove_suffix(1);
+  std::vector<std::byte> bytes;
+  bytes.reserve(text.size() * 3 / 4);
+  std::uint32_t bits = 0;
+  int bit_count = 0;
+  for (const char c : text) {
+    std::uint32_t value = 0;
+    if (c >= 'A' && c <= 'Z') value = static_cast<std::uint32_t>(c - 'A');
+    else if (c >= 'a' && c <= 'z') value = static_cast<std::uint32_t>(c - 'a' + 26);
+    else if (c >= '0' && c <= '9') value = static_cast<std::uint32_t>(c - '0' + 52);
+    else if (c == '+' || c == '-') value = 62;
+    else if (c == '/' || c == '_') value = 63;
+    else return fail_at_place(Error::BadFormat, source, place, "data URI with a bad character");
+    bits = bits << 6 | value;
+    bit_count += 6;
+    if (bit_count < 8) continue;
+    bit_count -= 8;
+    bytes.push_back(static_cast<std::byte>(bits >> bit_count & 0xff));
+  }
+  return bytes;
+}
+
+Result<std::vector<std::byte>> read_beside(const Source& source, const std::string& place,
+                                           std::string_view uri) {
+  namespace fs = std::filesystem;
+  if (source.folder == nullptr) {
+    return fail_at_place(Error::NotFound, source, place,
+                         "refers to '" + std::string(uri) + "', and there is no folder to look in");
+  }
+  const std::string decoded = percent_decoded(uri);
+  const auto outside = [&] {
+    return fail_at_place(Error::BadValue, source, place,
+                         "'" + std::string(uri) + "' is not a file beside the glTF");
+  };
+  if (decoded.empty() || decoded.find('\0') != std::string::npos ||
+      decoded.find("://") != std::string::npos || decoded.find('\\') != std::string::npos) {
+    return outside();
+  }
+  const fs::path relative(decoded);
+  if (relative.is_absolute()) return outside();
+  if (std::ranges::find(relative, fs::path("..")) != relative.end()) return outside();
+  // A symbolic link could still lead out of the folder.
+  std::error_code error;
+  const fs::path folder = fs::canonical(source.folder->empty() ? "." : *source.folder, error);
+  if (error) return fail_at_place(Error::NotFound, source, place, "no folder to look in");
+  const fs::path path = fs::canonical(folder / relative, error);
+  if (error) return fail_at_place(Error::NotFound, source, place, "no file '" + decoded + "'");
+  const auto [in_folder, in_path] = std::ranges::mismatch(folder, path);
+  if (in_folder != folder.end()) return outside();
+  if (!fs::is_regular_file(path, error)) return outside();
+
+  const std::uintmax_t size = fs::file_size(path, error);
+  std::ifstream file(path, std::ios::binary);
+  if (error || !file) {
+    return fail_at_place(Error::ReadFailed, source, place, "cannot read '" + decoded + "'");
+  }
+  std::vector<std::byte> bytes(size);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  return bytes;
+}
+
+}  // namespace crease

@@ -1,0 +1,94 @@
+// A glTF file opened: its JSON and its buffers, and typed reading of accessors.
+//
+//   Result<GltfDocument> document = open_gltf(source);
+//   GltfReader reader(source, *document);
+//   Result<std::vector<float>> uv = reader.floats(accessor, 2, "meshes[0].primitives[0]...");
+//
+// Section numbers refer to the glTF 2.0 specification.
+#pragma once
+
+#include "crease/result.h"
+#include "crease/vec.h"
+#include "io/formats.h"
+#include "io/json.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+struct GltfDocument {
+  Json json;
+  // The binary chunk of a GLB: what buffers[0] is if it has no uri.
+  std::span<const std::byte> binary_chunk;
+  // Added to every position: RTC_CENTER of a b3dm or CESIUM_RTC, turned to y-up.
+  Vec3d center;
+  std::string format;  // "glTF", "GLB" or "b3dm"
+};
+
+// Told by the first bytes. The document keeps views into the source's bytes.
+Result<GltfDocument> open_gltf(const Source& source);
+
+// The binary data of a "data:" URI. Fails if it is not base64.
+Result<std::vector<std::byte>> decode_data_uri(const Source& source, const std::string& place,
+                                               std::string_view uri);
+
+// A file beside the source, if it lies in the source's folder and nowhere else.
+Result<std::vector<std::byte>> read_beside(const Source& source, const std::string& place,
+                                           std::string_view uri);
+
+// Reads accessors (5.1), sparse ones too. Buffers are decoded and loaded when first used. Every
+// count is held against the bytes it needs before memory is taken.
+class GltfReader {
+ public:
+  GltfReader(const Source& source, const GltfDocument& document)
+      : source_(source), document_(document) {}
+
+  // Components as floats, normalized integers divided out (3.6.2.2). Fails unless the accessor has
+  // `min_components` to `max_components` a value. `place` is what refers to the accessor.
+  struct Floats {
+    std::vector<float> values;
+    std::size_t components = 0;   // a value
+    bool integers = false;        // stored as integers and not normalized
+    std::size_t count() const { return components == 0 ? 0 : values.size() / components; }
+  };
+  Result<Floats> floats(const Json& accessor_index, std::size_t min_components,
+                        std::size_t max_components, const std::string& place);
+
+  Result<std::vector<std::uint32_t>> indices(const Json& accessor_index, const std::string& place);
+
+  // Components a value of the accessor, 0 if there is no such accessor or it holds matrices.
+  std::size_t components_of(const Json& accessor_index) const;
+
+ private:
+  // Where the values of an accessor lie.
+  struct View {
+    std::span<const std::byte> bytes;  // from the first value on; empty: all zero
+    std::size_t stride = 0;
+  };
+  struct Layout {
+    std::size_t count = 0, components = 0, component_type = 0, component_bytes = 0;
+    bool normalized = false;
+  };
+  struct Buffer {
+    bool loaded = false;
+    std::vector<std::byte> owned;
+    std::span<const std::byte> bytes;
+  };
+
+  Result<Layout> layout_of(const Json& accessor, const std::string& place) const;
+  Result<std::span<const std::byte>> buffer(std::size_t index, const std::string& place);
+  Result<View> view_of(const Json& owner, const std::string& place, std::size_t count,
+                       std::size_t value_bytes);
+  template <typename T>
+  Result<std::vector<T>> read(const Json& accessor, const Layout& layout, const std::string& place);
+
+  const Source& source_;
+  const GltfDocument& document_;
+  std::vector<Buffer> buffers_;
+};
+
+}  // namespace crease

@@ -1,0 +1,175 @@
+#include "io/gltf_scene.h"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace crease {
+namespace {
+
+// The 3 * 3 part by columns, of a unit quaternion (x, y, z, w).
+Transform rotation(double x, double y, double z, double w) {
+  const double norm = std::sqrt(x * x + y * y + z * z + w * w);
+  Transform r;
+  if (!(norm > 0)) return r;
+  x /= norm, y /= norm, z /= norm, w /= norm;
+  r.x = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+  r.y = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+  r.z = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+  return r;
+}
+
+// 3.5.3: `matrix` (column-major), or translation * rotation * scale.
+Result<Transform> local_transform(const Source& source, const Json& node, const std::string& place) {
+  const auto bad = [&](const char* member) {
+    return fail_at_place(Error::BadFormat, source, place + "." + member, "not a transform");
+  };
+  const auto numbers = [&](const char* member, std::size_t count, double* to) {
+    const Json& array = at(node, member);
+    if (array.is_null()) return true;  // keeps the default
+    if (size_of(array) != count) return false;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!array[i].is_number()) return false;
+      to[i] = array[i].get<double>();
+    }
+    return true;
+  };
+  if (!at(node, "matrix").is_null()) {
+    double m[16];
+    if (!numbers("matrix", 16, m)) return bad("matrix");
+    return Transform{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]},
+                     {m[12], m[13], m[14]}};
+  }
+  double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+  if (!numbers("translation", 3, t)) return bad("translation");
+  if (!numbers("rotation", 4, q)) return bad("rotation");
+  if (!numbers("scale", 3, s)) return bad("scale");
+  Transform result = rotation(q[0], q[1], q[2], q[3]);
+  result.x = result.x * s[0];
+  result.y = result.y * s[1];
+  result.z = result.z * s[2];
+  result.origin = {t[0], t[1], t[2]};
+  return result;
+}
+
+// The nodes to begin with, and the place that names them.
+std::pair<std::vector<Json>, std::string> root_nodes(const Json& json) {
+  const Json& scenes = at(json, "scenes");
+  if (size_of(scenes) > 0) {
+    const std::size_t scene = as_index(at(json, "scene")).value_or(0);
+    const Json& nodes = at(at(scenes, scene), "nodes");
+    std::vector<Json> roots;
+    for (std::size_t i = 0; i < size_of(nodes); ++i) roots.push_back(nodes[i]);
+    return {std::move(roots), place_of("scenes", scene) + ".nodes"};
+  }
+  const Json& nodes = at(json, "nodes");
+  std::vector<bool> has_parent(size_of(nodes), false);
+  for (std::size_t i = 0; i < size_of(nodes); ++i) {
+    const Json& children = at(nodes[i], "children");
+    for (std::size_t c = 0; c < size_of(children); ++c) {
+      const auto child = as_index(children[c]);
+      if (child && *child < has_parent.size()) has_parent[*child] = true;
+    }
+  }
+  std::vector<Json> roots;
+  for (std::size_t i = 0; i < has_parent.size(); ++i) {
+    if (!has_parent[i]) roots.push_back(i);
+  }
+  return {std::move(roots), "nodes"};
+}
+
+std::string name_of(const Json& named, const std::string& otherwise) {
+  std::string name = as_text(at(named, "name"));
+  return name.empty() ? otherwise : name;
+}
+
+}  // namespace
+
+Transform Transform::after(const Transform& inner) const {
+  return {direction(inner.x), direction(inner.y), direction(inner.z), point(inner.origin)};
+}
+
+double Transform::determinant() const { return dot(x, cross(y, z)); }
+
+Transform Transform::of_normals() const {
+  const double sign = determinant() < 0 ? -1.0 : 1.0;
+  return {cross(y, z) * sign, cross(z, x) * sign, cross(x, y) * sign, {}};
+}
+
+bool Transform::only_scales() const {
+  return x.x > 0 && x.x == y.y && y.y == z.z && x.y == 0 && x.z == 0 && y.x == 0 && y.z == 0 &&
+         z.x == 0 && z.y == 0;
+}
+
+Result<GltfScene> walk_scene(const Source& source, const Json& json) {
+  GltfScene scene;
+  const Json& nodes = at(json, "nodes");
+  const Json& meshes = at(json, "meshes");
+  if (size_of(nodes) == 0) {
+    for (std::size_t i = 0; i < size_of(meshes); ++i) {
+      scene.instances.push_back({i, {}, name_of(meshes[i], "mesh " + std::to_string(i))});
+    }
+    return scene;
+  }
+
+  struct Pending {
+    std::size_t node = 0;
+    Transform parent;
+  };
+  std::vector<Pending> pending;  // a stack, so that deep graphs need no deep recursion
+  std::vector<bool> reached(size_of(nodes), false);
+  // Pushes node references in reverse, so that they come off in order.
+  const auto push_all = [&](const auto& references, std::size_t count, const std::string& place,
+                            const Transform& parent) -> Status {
+    for (std::size_t i = count; i-- > 0;) {
+      const auto index = as_index(references[i]);
+      if (!index || *index >= reached.size()) {
+        return fail_at_place(Error::BadValue, source, place_of(place, i), "no such node");
+      }
+      pending.push_back({*index, parent});
+    }
+    return Done{};
+  };
+  const auto [roots, roots_place] = root_nodes(json);
+  if (Status s = push_all(roots, roots.size(), roots_place, {}); !s.ok()) return s.failure();
+  if (roots.empty()) {
+    return fail_at_place(Error::NoTriangles, source, roots_place,
+                         "no node to begin with: the scene is empty or every node is a child");
+  }
+
+  std::size_t skinned = 0;
+  while (!pending.empty()) {
+    const Pending current = pending.back();
+    pending.pop_back();
+    const std::string place = place_of("nodes", current.node);
+    if (reached[current.node]) {
+      return fail_at_place(Error::BadValue, source, place,
+                           "reached twice: a loop, or a node with two parents");
+    }
+    reached[current.node] = true;
+    const Json& node = nodes[current.node];
+    Result<Transform> local = local_transform(source, node, place);
+    if (!local.ok()) return local.failure();
+    const Transform to_world = current.parent.after(*local);
+    if (!at(node, "mesh").is_null()) {
+      const auto mesh = as_index(at(node, "mesh"));
+      if (!mesh || *mesh >= size_of(meshes)) {
+        return fail_at_place(Error::BadValue, source, place + ".mesh", "no such mesh");
+      }
+      const std::string otherwise =
+          name_of(meshes[*mesh], "node " + std::to_string(current.node));
+      scene.instances.push_back({*mesh, to_world, name_of(node, otherwise)});
+      if (!at(node, "skin").is_null()) ++skinned;
+    }
+    const Json& children = at(node, "children");
+    Status pushed = push_all(children, size_of(children), place + ".children", to_world);
+    if (!pushed.ok()) return pushed.failure();
+  }
+  if (skinned > 0) {
+    scene.notes.push_back(std::to_string(skinned) +
+                          " skinned meshes taken as they are stored, without their joints");
+  }
+  return scene;
+}
+
+}  // namespace crease

@@ -1,0 +1,294 @@
+// glTF 2.0: .gltf, .glb, and the GLB inside a .b3dm. Coordinates stay as they are (y up).
+#include "io/gltf_attributes.h"
+#include "io/gltf_document.h"
+#include "io/gltf_scene.h"
+#include "io/text.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace crease {
+namespace {
+
+// Extensions that a file may require although nothing here depends on them: materials, textures
+// and lights change no triangle. KHR_mesh_quantization and CESIUM_RTC are read.
+bool is_harmless(const std::string& extension) {
+  static constexpr std::array kPrefixes = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
+                                           "MSFT_texture_",  "KHR_lights_",  "KHR_xmp",
+                                           "KHR_mesh_quantization", "CESIUM_RTC", "MSFT_lod",
+                                           "EXT_mesh_features", "EXT_structural_metadata"};
+  return std::ranges::any_of(kPrefixes, [&](const char* p) { return extension.starts_with(p); });
+}
+
+Status check_required_extensions(const Source& source, const Json& json) {
+  const Json& required = at(json, "extensionsRequired");
+  for (std::size_t i = 0; i < size_of(required); ++i) {
+    const std::string extension = as_text(required[i]);
+    if (is_harmless(extension)) continue;
+    const bool compressed = extension.find("compression") != std::string::npos;
+    return fail_at_place(Error::NotSupported, source, place_of("extensionsRequired", i),
+                         in_quotes(extension) + " is not supported" +
+                             (compressed ? "; write the file again without compression" : ""));
+  }
+  return Done{};
+}
+
+// The image's name for people: its file, else its name, else its place.
+std::string texture_reference(const Json& json, const Json& texture_info) {
+  const auto texture = as_index(at(texture_info, "index"));
+  if (!texture) return {};
+  const auto image = as_index(at(at(at(json, "textures"), *texture), "source"));
+  if (!image) return place_of("textures", *texture);
+  const Json& entry = at(at(json, "images"), *image);
+  const std::string uri = as_text(at(entry, "uri"));
+  if (!uri.empty() && !uri.starts_with("data:")) return uri;
+  const std::string name = as_text(at(entry, "name"));
+  return name.empty() ? place_of("images", *image) : name;
+}
+
+std::vector<Material> read_materials(const Json& json) {
+  std::vector<Material> materials;
+  const Json& entries = at(json, "materials");
+  for (std::size_t i = 0; i < size_of(entries); ++i) {
+    const Json& entry = entries[i];
+    Material material;
+    material.name = as_text(at(entry, "name"));
+    if (material.name.empty()) material.name = "material " + std::to_string(i);
+    const Json* model = &at(entry, "pbrMetallicRoughness");
+    const char *factor = "baseColorFactor", *texture = "baseColorTexture";
+    const Json& older = at(at(entry, "extensions"), "KHR_materials_pbrSpecularGlossiness");
+    if (!model->is_object() && older.is_object()) {
+      model = &older;
+      factor = "diffuseFactor";
+      texture = "diffuseTexture";
+    }
+    const Json& color = at(*model, factor);
+    for (std::size_t k = 0; k < 4; ++k) {
+      material.base_color[k] = static_cast<float>(as_number(at(color, k), 1));
+    }
+    material.base_color_texture = texture_reference(json, at(*model, texture));
+    materials.push_back(std::move(material));
+  }
+  return materials;
+}
+
+// 3.7.2.1: primitive.mode.
+enum class Mode : std::size_t { Triangles = 4, Strip = 5, Fan = 6 };
+
+// Appends the triangles that a run of vertices makes. `vertex(i)` is the i-th.
+template <typename Vertex>
+void add_triangles(Mode mode, std::size_t count, bool mirrored, Vertex vertex,
+                   std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+    if (mirrored) std::swap(b, c);
+    triangles.push_back({vertex(a), vertex(b), vertex(c)});
+  };
+  switch (mode) {
+    case Mode::Triangles:
+      for (std::size_t i = 0; i + 3 <= count; i += 3) add(i, i + 1, i + 2);
+      break;
+    case Mode::Strip:
+      for (std::size_t i = 0; i + 3 <= count; ++i) add(i, i + 1 + i % 2, i + 2 - i % 2);
+      break;
+    case Mode::Fan:
+      for (std::size_t i = 1; i + 2 <= count; ++i) add(i, i + 1, 0);
+      break;
+  }
+}
+
+class MeshBuilder {
+ public:
+  MeshBuilder(const Source& source, const GltfDocument& document)
+      : source_(source), json_(document.json), center_(document.center),
+        reader_(source, document), layers_(source) {}
+
+  Result<RawMesh> build() {
+    Result<GltfScene> scene = walk_scene(source_, json_);
+    if (!scene.ok()) return scene.failure();
+    raw_.report.notes = std::move(scene->notes);
+    raw_.materials = read_materials(json_);
+    raw_.default_normals = {NormalPolicy::Kind::Flat, 0};
+    const bool has_parts = scene->instances.size() > 1;
+
+    const Json& meshes = at(json_, "meshes");
+    std::vector<std::vector<Instance>> instances_of_mesh(size_of(meshes));
+    for (const MeshInstance& instance : scene->instances) {
+      const auto part = static_cast<PartId>(raw_.parts.size());
+      instances_of_mesh[instance.mesh].push_back({part, instance.to_world});
+      if (has_parts) raw_.parts.push_back(instance.name);
+    }
+    for (std::size_t m = 0; m < instances_of_mesh.size(); ++m) {
+      if (instances_of_mesh[m].empty()) continue;
+      const Json& primitives = at(meshes[m], "primitives");
+      for (std::size_t p = 0; p < size_of(primitives); ++p) {
+        const std::string place = place_of(place_of("meshes", m) + ".primitives", p);
+        Status added = add_primitive(primitives[p], place, instances_of_mesh[m]);
+        if (!added.ok()) return added.failure();
+      }
+      if (interrupted(double(m + 1) / double(instances_of_mesh.size()))) {
+        return fail(Error::Interrupted, source_.name + ": interrupted");
+      }
+    }
+    if (!has_parts) raw_.part_of_triangle.clear();
+    finish_materials();
+    layers_.finish(raw_);
+    add_notes();
+    return std::move(raw_);
+  }
+
+ private:
+  struct Instance {
+    PartId part{};
+    Transform to_world;
+  };
+
+  Status add_primitive(const Json& primitive, const std::string& place,
+                       const std::vector<Instance>& instances) {
+    const std::size_t mode = as_index(at(primitive, "mode")).value_or(4);
+    if (mode < 4) {
+      ++point_and_line_primitives_;
+      return Done{};
+    }
+    if (mode > 6) return fail_at_place(Error::BadValue, source_, place + ".mode", "unknown");
+    if (size_of(at(primitive, "targets")) > 0) ++morphed_primitives_;
+
+    const Json& attributes = at(primitive, "attributes");
+    const std::string attributes_place = place + ".attributes";
+    const std::string position_place = attributes_place + ".POSITION";
+    if (at(attributes, "POSITION").is_null()) {
+      return fail_at_place(Error::BadFormat, source_, position_place, "missing");
+    }
+    const auto positions = reader_.floats(at(attributes, "POSITION"), 3, 3, position_place);
+    if (!positions.ok()) return positions.failure();
+    const std::size_t vertex_count = positions->count();
+
+    std::vector<std::uint32_t> indices;
+    const bool indexed = !at(primitive, "indices").is_null();
+    if (indexed) {
+      auto read = reader_.indices(at(primitive, "indices"), place + ".indices");
+      if (!read.ok()) return read.failure();
+      indices = *std::move(read);
+      for (std::size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] < vertex_count) continue;
+        return fail_at_place(Error::BadValue, source_, place_of(place + ".indices", i),
+                             "index " + std::to_string(indices[i]) + " of " +
+                                 std::to_string(vertex_count) + " vertices");
+      }
+    }
+    const std::size_t run = indexed ? indices.size() : vertex_count;
+    if (mode == 4 && run % 3 != 0) ++odd_runs_;
+    if (!within_limit(instances.size(), vertex_count, run)) {
+      return fail_at_place(Error::OverLimit, source_, place,
+                           "instances and shared accessors multiply the file beyond reason");
+    }
+
+    const std::size_t first_vertex = raw_.positions.size();
+    const std::size_t first_triangle = raw_.triangles.size();
+    std::vector<Transform> transforms;
+    for (const Instance& instance : instances) {
+      transforms.push_back(instance.to_world);
+      const auto base = static_cast<std::uint32_t>(raw_.positions.size());
+      for (std::size_t v = 0; v < vertex_count; ++v) {
+        const float* stored = &positions->values[3 * v];
+        const Vec3d p =
+            instance.to_world.point({stored[0], stored[1], stored[2]}) + center_;
+        if (!is_position(p)) {
+          return fail_at_place(Error::BadValue, source_, place_of(position_place, v),
+                               "not a finite position");
+        }
+        raw_.positions.push_back(p);
+      }
+      const bool mirrored = instance.to_world.determinant() < 0;
+      const auto vertex = [&](std::size_t i) {
+        return base + (indexed ? indices[i] : static_cast<std::uint32_t>(i));
+      };
+      add_triangles(static_cast<Mode>(mode), run, mirrored, vertex, raw_.triangles);
+      raw_.part_of_triangle.resize(raw_.triangles.size(), instance.part);
+    }
+    if (raw_.positions.size() == first_vertex) return Done{};
+    Status added = layers_.add(reader_, attributes, attributes_place, vertex_count, transforms);
+    if (!added.ok()) return added;
+    return add_material(primitive, place, raw_.triangles.size() - first_triangle);
+  }
+
+  Status add_material(const Json& primitive, const std::string& place, std::size_t count) {
+    std::uint32_t material = kNone;  // none given: settled at the end
+    if (!at(primitive, "material").is_null()) {
+      const auto index = as_index(at(primitive, "material"));
+      if (!index || *index >= raw_.materials.size()) {
+        return fail_at_place(Error::BadValue, source_, place + ".material", "no such material");
+      }
+      material = static_cast<std::uint32_t>(*index);
+    }
+    material_of_triangle_.resize(material_of_triangle_.size() + count, material);
+    return Done{};
+  }
+
+  // Triangles without a material get one of their own if others have one.
+  void finish_materials() {
+    if (raw_.materials.empty()) return;
+    const auto fallback = static_cast<std::uint32_t>(raw_.materials.size());
+    bool used = false;
+    for (std::uint32_t material : material_of_triangle_) {
+      used |= material == kNone;
+      raw_.material_of_triangle.push_back(
+          static_cast<MaterialId>(material == kNone ? fallback : material));
+    }
+    if (used) raw_.materials.push_back({.name = "default", .base_color_texture = {}});
+  }
+
+  // Nodes share meshes and primitives share accessors, so a small file can ask for any amount of
+  // memory. A thousand times its size is more than instancing needs.
+  bool within_limit(std::size_t instance_count, std::size_t vertex_count, std::size_t run) {
+    const std::size_t budget =
+        std::min<std::size_t>((std::size_t(1) << 20) + 1000 * source_.bytes.size(),
+                              std::size_t(1) << 28);
+    const std::size_t largest = std::max(vertex_count, run);
+    if (largest > budget || instance_count > budget / std::max<std::size_t>(largest, 1)) {
+      return false;
+    }
+    work_ += instance_count * largest;
+    return work_ <= budget && layers_.value_count() <= 8 * budget;
+  }
+
+  bool interrupted(double done) const {
+    return source_.progress != nullptr && *source_.progress &&
+           !(*source_.progress)("reading", done);
+  }
+
+  void add_notes() {
+    const auto note = [&](std::size_t count, const char* what) {
+      if (count > 0) raw_.report.notes.push_back(std::to_string(count) + " " + what);
+    };
+    note(point_and_line_primitives_, "primitives of points or lines ignored");
+    note(morphed_primitives_, "primitives with morph targets taken at rest");
+    note(odd_runs_, "primitives whose index count is no multiple of three; the rest is ignored");
+    note(size_of(at(json_, "animations")), "animations ignored");
+  }
+
+  const Source& source_;
+  const Json& json_;
+  Vec3d center_;
+  GltfReader reader_;
+  GltfLayers layers_;
+  RawMesh raw_;
+  std::vector<std::uint32_t> material_of_triangle_;
+  std::size_t work_ = 0;
+  std::size_t point_and_line_primitives_ = 0, morphed_primitives_ = 0, odd_runs_ = 0;
+};
+
+}  // namespace
+
+Result<RawMesh> read_gltf(const Source& source) {
+  Result<GltfDocument> document = open_gltf(source);
+  if (!document.ok()) return document.failure();
+  Status supported = check_required_extensions(source, document->json);
+  if (!supported.ok()) return supported.failure();
+  Result<RawMesh> raw = MeshBuilder(source, *document).build();
+  if (raw.ok()) raw->report.format = document->format;
+  return raw;
+}
+
+}  // namespace crease
