@@ -35,7 +35,7 @@ class ObjReader {
       return *failure_;
     }
     if (known_lines_ == 0) {
-      return fail_at_line(Error::BadFormat, source_, 1, "not an OBJ file: no v line anywhere");
+      return fail_at_line(Error::BadFormat, source_, 1, "not an OBJ file: no v and no f line anywhere");
     }
     if (raw_.positions.size() >= kNone) {
       return fail(Error::OverLimit, source_.name + ": more than 4 294 967 294 vertices");
@@ -87,7 +87,10 @@ class ObjReader {
     if (word == "v") return read_position(line);
     if (word == "vn") return read_normal(line);
     if (word == "vt") return read_texcoord(line);
-    if (word == "f" || word == "fo") ++face_lines_;
+    if (word == "f" || word == "fo") {
+      ++known_lines_;
+      ++face_lines_;
+    }
     if (word == "s") has_smoothing_groups_ = true;
     return true;
   }
@@ -226,6 +229,11 @@ class ObjReader {
     const std::int64_t total = static_cast<std::int64_t>(total_of(kind));
     const std::int64_t from_zero = i > 0 ? i - 1 : static_cast<std::int64_t>(count_[kind]) + i;
     if (i == 0) return refuse(Error::BadValue, "face index 0: OBJ counts from 1");
+    // Normals or texture coordinates stripped from the file, their indices left behind.
+    if (total == 0 && kind != kPosition) {
+      has_orphans_[kind] = true;
+      return true;
+    }
     if (from_zero < 0 || from_zero >= total) {
       return refuse(Error::BadValue, "face index " + std::to_string(i) + " of " +
                                          std::to_string(i > 0 ? total_of(kind) : count_[kind]) +
@@ -324,6 +332,10 @@ class ObjReader {
     if (short_faces_ > 0) {
       notes.push_back(std::to_string(short_faces_) + " faces with fewer than three corners ignored");
     }
+    for (ValueKind kind : {kTexCoord, kNormal}) {
+      if (!has_orphans_[kind]) continue;
+      notes.push_back(std::string("faces name ") + kValueNames[kind] + " that the file does not have");
+    }
     if (texcoords_with_depth_ > 0) {
       notes.push_back("third texture coordinate ignored");
     }
@@ -361,6 +373,7 @@ class ObjReader {
 
   std::vector<float> colors_, normals_, texcoords_;
   std::vector<std::uint32_t> texcoord_of_corner_, normal_of_corner_;
+  std::array<bool, 3> has_orphans_{};  // by kind
   std::array<std::size_t, 3> count_{};  // by kind: values before the line in hand
   std::array<std::vector<std::uint32_t>, 3> corner_;  // by kind: the face in hand
 

@@ -35,18 +35,45 @@ Failure bomb(const std::string& name) {
                                     std::to_string(kMaxUnpackedTimes) + " times its size");
 }
 
+// Only to save the doubling of a growing array: a promise is not trusted beyond the limit, and
+// memory that is never written is never taken.
+void reserve_promised(std::vector<std::byte>& out, std::uint64_t promised, std::size_t packed) {
+  if (promised <= limit_for(packed)) out.reserve(static_cast<std::size_t>(promised) + kChunk);
+}
+
+// What the index at the end of the last stream says; 0 if there is none to be read.
+std::uint64_t unpacked_size_of_xz(std::span<const std::byte> bytes) {
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  lzma_stream_flags footer;
+  if (bytes.size() < 2 * LZMA_STREAM_HEADER_SIZE) return 0;
+  const std::size_t footer_at = bytes.size() - LZMA_STREAM_HEADER_SIZE;
+  if (lzma_stream_footer_decode(&footer, data + footer_at) != LZMA_OK) return 0;
+  if (footer.backward_size > footer_at) return 0;
+  lzma_index* index = nullptr;
+  std::uint64_t memory = kMaxXzMemory;
+  std::size_t at = footer_at - static_cast<std::size_t>(footer.backward_size);
+  if (lzma_index_buffer_decode(&index, &memory, nullptr, data, &at, footer_at) != LZMA_OK) return 0;
+  const std::uint64_t size = lzma_index_uncompressed_size(index);
+  lzma_index_end(index, nullptr);
+  return size;
+}
+
 Result<std::vector<std::byte>> unpack_zstd(std::span<const std::byte> bytes,
                                            const std::string& name) {
   const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
                                                                           &ZSTD_freeDStream);
   ZSTD_DCtx_setParameter(stream.get(), ZSTD_d_windowLogMax, kMaxWindowLog);
   std::vector<std::byte> out;
+  const unsigned long long promised = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
+  if (promised != ZSTD_CONTENTSIZE_UNKNOWN && promised != ZSTD_CONTENTSIZE_ERROR) {
+    reserve_promised(out, promised, bytes.size());
+  }
   ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
   const std::size_t limit = limit_for(bytes.size());
   std::size_t state = 1;  // 0: at the end of a frame
   while (true) {
     const std::size_t before = out.size();
-    out.resize(before + std::max(kChunk, before / 2));
+    out.resize(before + kChunk);
     ZSTD_outBuffer chunk{out.data() + before, out.size() - before, 0};
     state = ZSTD_decompressStream(stream.get(), &chunk, &in);
     out.resize(before + chunk.pos);
@@ -66,13 +93,14 @@ Result<std::vector<std::byte>> unpack_xz(std::span<const std::byte> bytes, const
   }
   const std::unique_ptr<lzma_stream, decltype(&lzma_end)> ends(&stream, &lzma_end);
   std::vector<std::byte> out;
+  reserve_promised(out, unpacked_size_of_xz(bytes), bytes.size());
   stream.next_in = reinterpret_cast<const std::uint8_t*>(bytes.data());
   stream.avail_in = bytes.size();
   const std::size_t limit = limit_for(bytes.size());
   lzma_ret state = LZMA_OK;
   while (state == LZMA_OK) {
     const std::size_t before = out.size();
-    out.resize(before + std::max(kChunk, before / 2));
+    out.resize(before + kChunk);
     stream.next_out = reinterpret_cast<std::uint8_t*>(out.data() + before);
     stream.avail_out = out.size() - before;
     state = lzma_code(&stream, LZMA_FINISH);

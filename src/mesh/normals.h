@@ -40,12 +40,15 @@ AttributeLayer generate_normals(const Mesh& mesh, const SoftEdges& soft);
 // the sector's own, else the sector's own. Returns how many corners those were.
 std::size_t complete_normals(AttributeLayer& given, const Mesh& mesh, const SoftEdges& soft);
 
-// Joins normals in two steps, so that noise is no crease and no smooth surface becomes faceted:
-// (1) at each vertex, normals of which no two differ by more than `angle_deg` become their mean;
-// (2) where a whole smooth patch (triangles connected through shared wedges) spans no more than
-//     `angle_deg`, it is a flat side: all its corners get one normal.
-// Step 2 takes whole patches or nothing, so curved surfaces keep their normals, and a wedge has one
-// value always. Returns the number of (vertex, normal) pairs that changed. Welds the layer.
+// Joins normals that differ by noise, so that noise is no crease and no smooth surface becomes
+// faceted:
+// (1) a smooth patch (triangles connected through vertices where their normals differ by no more
+//     than `angle_deg`) that spans no more than that as a whole is a flat side: it gets one normal;
+// (2) elsewhere, values that meet at a vertex and differ by no more than `angle_deg` become their
+//     mean, gathered around the most used ones; no joined set spans more than `angle_deg`.
+// Where every vertex has one normal, (2) changes nothing: curved surfaces keep their normals. Corners
+// that shared a normal share one afterwards. Returns the number of (vertex, normal) pairs that
+// changed. Welds the layer.
 std::size_t join_normals(AttributeLayer& normals, const Mesh& mesh, double angle_deg);
 
 }  // namespace crease

@@ -1,18 +1,21 @@
-// Step 1 of join_normals() works on clusters at a vertex, step 2 on patches of clusters:
+// join_normals() in three steps:
 //
-//      normals at a vertex         clusters              a patch: clusters joined by triangles
+//      normals at a vertex         clusters              a patch: clusters connected by triangles
 //        \ | /                       \|                      *-----*
 //   ------ v ------   -->       ---- v ----    -->           | \   |   all corners within the angle:
 //                                                            *-----*   one normal
+//
+// and in a patch that is not flat, values that meet at its vertices are gathered around the most
+// used ones. Gathering values, not corners, keeps together what shared a normal before.
 #include "mesh/clean.h"
 #include "mesh/disjoint_sets.h"
 #include "mesh/normals.h"
-#include "mesh/weld.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace crease {
 
@@ -27,43 +30,76 @@ Vec3d normal_at(const AttributeLayer& normals, AttributeId a) {
   return {v[0], v[1], v[2]};
 }
 
+std::size_t vertex_at(const Mesh& mesh, std::size_t corner) {
+  return index_of(mesh.triangles[corner / 3][corner % 3]);
+}
+
+// Per vertex: its corners have several normals.
+std::vector<bool> mixed_vertices(const AttributeLayer& normals, const Mesh& mesh) {
+  std::vector<AttributeId> first(mesh.vertex_count(), kNoAttribute);
+  std::vector<bool> is_mixed(mesh.vertex_count(), false);
+  for (std::size_t corner = 0; corner < normals.of_corner.size(); ++corner) {
+    AttributeId& own = first[vertex_at(mesh, corner)];
+    if (own == kNoAttribute) own = normals.of_corner[corner];
+    if (own != normals.of_corner[corner]) is_mixed[vertex_at(mesh, corner)] = true;
+  }
+  return is_mixed;
+}
+
 double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// The largest angle between any two of the normals, or infinity if it is beyond about 60 degrees.
-// Measured as the extent in 32 directions of the plane across the mean: 0.12 % short at most.
-double spread_of(const AttributeLayer& normals, std::span<const std::uint32_t> corners,
-                 const Vec3d& mean) {
-  constexpr int kDirections = 32;
-  if (mean == Vec3d{}) return INFINITY;
-  const Vec3d across = std::abs(mean.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d u = normalized(cross(mean, across)), v = cross(mean, u);
-  std::array<double, kDirections> cosine, sine, low, high;
-  for (int d = 0; d < kDirections; ++d) {
-    cosine[d] = std::cos(kPi * d / kDirections);
-    sine[d] = std::sin(kPi * d / kDirections);
+// How far a set of normals reaches around `axis`: its extent in 16 directions of the plane across,
+// which is 0.5 % short of the largest distance at most.
+class Spread {
+ public:
+  explicit Spread(const Vec3d& axis) : axis_(axis) {
+    const Vec3d across = std::abs(axis.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    u_ = normalized(cross(axis, across));
+    v_ = cross(axis, u_);
+    low_.fill(INFINITY);
+    high_.fill(-INFINITY);
   }
-  low.fill(INFINITY);
-  high.fill(-INFINITY);
-  AttributeId previous = kNoAttribute;
-  for (std::uint32_t corner : corners) {
-    const AttributeId a = normals.of_corner[corner];
-    if (a == previous) continue;
-    previous = a;
-    const Vec3d n = normal_at(normals, a);
-    if (dot(n, mean) < 0.5) return INFINITY;
-    const double x = dot(n, u), y = dot(n, v);
+  // The angle that the set spans with `n` added; infinity if `n` is beyond 60 degrees of the axis.
+  double with(const Vec3d& n) const {
+    Spread more = *this;
+    more.add(n);
+    return more.angle();
+  }
+  void add(const Vec3d& n) {
+    is_beyond_ = is_beyond_ || dot(n, axis_) < 0.5;
+    const double x = dot(n, u_), y = dot(n, v_);
     for (int d = 0; d < kDirections; ++d) {
-      const double along = x * cosine[d] + y * sine[d];
-      low[d] = std::min(low[d], along);
-      high[d] = std::max(high[d], along);
+      const double along = x * kCosines[d] + y * kSines[d];
+      low_[d] = std::min(low_[d], along);
+      high_[d] = std::max(high_[d], along);
     }
   }
-  double widest = 0;
-  for (int d = 0; d < kDirections; ++d) widest = std::max(widest, high[d] - low[d]);
-  return 2 * std::asin(std::min(1.0, widest / 2));
-}
+  double angle() const {
+    if (is_beyond_) return INFINITY;
+    double widest = 0;
+    for (int d = 0; d < kDirections; ++d) widest = std::max(widest, high_[d] - low_[d]);
+    return 2 * std::asin(std::min(1.0, widest / 2));
+  }
+
+ private:
+  static constexpr int kDirections = 16;
+  // cos and sin of d * 180 / 16 degrees.
+  static constexpr std::array<double, kDirections> kCosines{
+      1.0,  0.98078528040323043,  0.92387953251128674,  0.83146961230254524,
+      0.70710678118654757,  0.55557023301960218,  0.38268343236508984,  0.19509032201612825,
+      0.0, -0.19509032201612825, -0.38268343236508984, -0.55557023301960218,
+      -0.70710678118654757, -0.83146961230254524, -0.92387953251128674, -0.98078528040323043};
+  static constexpr std::array<double, kDirections> kSines{
+      0.0, 0.19509032201612825, 0.38268343236508984, 0.55557023301960218,
+      0.70710678118654757, 0.83146961230254524, 0.92387953251128674, 0.98078528040323043,
+      1.0, 0.98078528040323043, 0.92387953251128674, 0.83146961230254524,
+      0.70710678118654757, 0.55557023301960218, 0.38268343236508984, 0.19509032201612825};
+  Vec3d axis_, u_, v_;
+  std::array<double, kDirections> low_, high_;
+  bool is_beyond_ = false;
+};
 
 // Rows sorted by key, rows with equal keys in their old order.
 struct Buckets {
@@ -87,8 +123,7 @@ Buckets sort_into_buckets(std::uint32_t row_count, std::size_t key_count, Key ke
 
 struct Clusters {
   std::vector<std::uint32_t> of_corner;
-  std::vector<Vec3d> sums;      // of the normals of its corners
-  std::vector<AttributeId> of;  // the one value of all its corners, or kNoAttribute
+  std::uint32_t count = 0;
 };
 
 // Step 1. `corners` are those of one vertex, sorted by normal.
@@ -111,16 +146,12 @@ void cluster_vertex(const AttributeLayer& normals, std::span<const std::uint32_t
     auto home = std::find_if(open.begin() + from, open.end(),
                              [&](const Open& cluster) { return fits(cluster, n); });
     if (home == open.end()) {
-      open.push_back({static_cast<std::uint32_t>(clusters.sums.size()), {}});
+      open.push_back({clusters.count++, {}});
       home = open.end() - 1;
-      clusters.sums.push_back({});
-      clusters.of.push_back(a);
     }
     home->members.push_back(n);
-    if (clusters.of[home->id] != a) clusters.of[home->id] = kNoAttribute;
     for (; i < corners.size() && normals.of_corner[corners[i]] == a; ++i) {
       clusters.of_corner[corners[i]] = home->id;
-      clusters.sums[home->id] += n;
     }
   }
 }
@@ -128,7 +159,7 @@ void cluster_vertex(const AttributeLayer& normals, std::span<const std::uint32_t
 Clusters cluster_at_vertices(const AttributeLayer& normals, const Mesh& mesh, double angle) {
   const std::uint32_t corner_count = static_cast<std::uint32_t>(normals.of_corner.size());
   Buckets at_vertex = sort_into_buckets(corner_count, mesh.vertex_count(), [&](std::uint32_t corner) {
-    return index_of(mesh.triangles[corner / 3][corner % 3]);
+    return vertex_at(mesh, corner);
   });
   Clusters clusters;
   clusters.of_corner.resize(corner_count);
@@ -144,76 +175,193 @@ Clusters cluster_at_vertices(const AttributeLayer& normals, const Mesh& mesh, do
   return clusters;
 }
 
+// Step 2: one value for the whole patch if it spans no more than `angle`.
+bool is_flat(const AttributeLayer& normals, std::span<const std::uint32_t> corners, const Vec3d& sum,
+             double angle) {
+  if (normalized(sum) == Vec3d{}) return false;
+  Spread spread(normalized(sum));
+  AttributeId previous = kNoAttribute;
+  for (std::uint32_t corner : corners) {
+    const AttributeId a = normals.of_corner[corner];
+    if (a != previous) spread.add(normal_at(normals, a));
+    previous = a;
+  }
+  return spread.angle() <= angle;
+}
+
+// Step 3, for the corners of one patch. Values are numbered within the patch.
+class ValueGathering {
+ public:
+  // Only vertices with several values can join any; on a smooth surface there are few.
+  ValueGathering(const AttributeLayer& normals, const Mesh& mesh, const std::vector<bool>& is_mixed,
+                 std::span<const std::uint32_t> corners, double angle)
+      : angle_(angle) {
+    std::vector<std::pair<std::size_t, AttributeId>> at_vertex;
+    for (std::uint32_t corner : corners) {
+      const std::size_t v = vertex_at(mesh, corner);
+      if (!is_mixed[v]) continue;
+      at_vertex.emplace_back(v, normals.of_corner[corner]);
+      ids_.push_back(normals.of_corner[corner]);
+    }
+    std::sort(ids_.begin(), ids_.end());
+    for (std::size_t begin = 0, end = 0, kept = 0; begin < ids_.size(); begin = end) {
+      while (end < ids_.size() && ids_[end] == ids_[begin]) ++end;
+      corner_counts_.push_back(static_cast<std::uint32_t>(end - begin));
+      values_.push_back(normal_at(normals, ids_[begin]));
+      ids_[kept++] = ids_[begin];
+    }
+    ids_.resize(values_.size());
+    std::sort(at_vertex.begin(), at_vertex.end());
+    at_vertex.erase(std::unique(at_vertex.begin(), at_vertex.end()), at_vertex.end());
+    link_values(at_vertex);
+  }
+  bool joins_any() const { return !links_.empty(); }
+
+  // Finds which values become one.
+  void gather() {
+    cluster_of_.assign(ids_.size(), kNone);
+    std::vector<std::uint32_t> seeds(ids_.size());
+    std::iota(seeds.begin(), seeds.end(), 0u);
+    std::stable_sort(seeds.begin(), seeds.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return corner_counts_[a] > corner_counts_[b];
+    });
+    for (std::uint32_t seed : seeds) {
+      if (cluster_of_[seed] == kNone) grow(seed);
+    }
+  }
+  // The seed of the value's cluster, or kNone where it stands alone.
+  std::uint32_t cluster_of(AttributeId a) const {
+    const auto found = std::lower_bound(ids_.begin(), ids_.end(), a);
+    return found == ids_.end() || *found != a ? kNone : cluster_of_[found - ids_.begin()];
+  }
+  std::size_t value_count() const { return ids_.size(); }
+
+ private:
+  std::uint32_t number_of(AttributeId a) const {
+    return static_cast<std::uint32_t>(std::lower_bound(ids_.begin(), ids_.end(), a) - ids_.begin());
+  }
+  void link_values(const std::vector<std::pair<std::size_t, AttributeId>>& at_vertex) {
+    for (std::size_t begin = 0, end = 0; begin < at_vertex.size(); begin = end) {
+      while (end < at_vertex.size() && at_vertex[end].first == at_vertex[begin].first) ++end;
+      for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t j = i + 1; j < std::min(end, i + kMaxComparedMembers); ++j) {
+          const std::uint32_t a = number_of(at_vertex[i].second), b = number_of(at_vertex[j].second);
+          if (angle_between(values_[a], values_[b]) > angle_) continue;
+          links_.emplace_back(a, b);
+          links_.emplace_back(b, a);
+        }
+      }
+    }
+    std::sort(links_.begin(), links_.end());
+    links_.erase(std::unique(links_.begin(), links_.end()), links_.end());
+  }
+
+  void grow(std::uint32_t seed) {
+    Spread spread(values_[seed]);
+    spread.add(values_[seed]);
+    cluster_of_[seed] = seed;
+    std::vector<std::uint32_t> members{seed};
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      auto link = std::lower_bound(links_.begin(), links_.end(), std::pair(members[i], 0u));
+      for (; link != links_.end() && link->first == members[i]; ++link) {
+        const std::uint32_t next = link->second;
+        if (cluster_of_[next] != kNone || spread.with(values_[next]) > angle_) continue;
+        spread.add(values_[next]);
+        cluster_of_[next] = seed;
+        members.push_back(next);
+      }
+    }
+    if (members.size() == 1) cluster_of_[seed] = kNone;
+  }
+
+  double angle_;
+  std::vector<AttributeId> ids_;  // ascending
+  std::vector<Vec3d> values_;
+  std::vector<std::uint32_t> corner_counts_, cluster_of_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> links_;
+};
+
+AttributeId add_normal(AttributeLayer& normals, const Vec3d& sum, AttributeId fallback) {
+  const Vec3d n = normalized(sum);
+  if (n == Vec3d{}) return fallback;
+  const auto id = static_cast<std::uint32_t>(normals.value_count());
+  for (int i = 0; i < 3; ++i) normals.values.push_back(static_cast<float>(n[i]));
+  return AttributeId{id};
+}
+
+// Gives the corners of one patch their new normals.
+void settle_patch(AttributeLayer& normals, const Mesh& mesh, const std::vector<bool>& is_mixed,
+                  std::span<const std::uint32_t> corners, double angle,
+                  std::vector<AttributeId>& new_of_corner) {
+  const AttributeId first = normals.of_corner[corners[0]];
+  Vec3d sum;
+  bool all_equal = true;
+  for (std::uint32_t corner : corners) {
+    new_of_corner[corner] = normals.of_corner[corner];
+    sum += normal_at(normals, normals.of_corner[corner]);
+    all_equal = all_equal && normals.of_corner[corner] == first;
+  }
+  if (all_equal) return;
+  if (is_flat(normals, corners, sum, angle)) {
+    const AttributeId one = add_normal(normals, sum, first);
+    for (std::uint32_t corner : corners) new_of_corner[corner] = one;
+    return;
+  }
+  ValueGathering gathering(normals, mesh, is_mixed, corners, angle);
+  if (!gathering.joins_any()) return;
+  gathering.gather();
+  std::vector<Vec3d> sums(gathering.value_count());
+  std::vector<AttributeId> joined(gathering.value_count(), kNoAttribute);
+  for (std::uint32_t corner : corners) {
+    const std::uint32_t c = gathering.cluster_of(normals.of_corner[corner]);
+    if (c != kNone) sums[c] += normal_at(normals, normals.of_corner[corner]);
+  }
+  for (std::uint32_t corner : corners) {
+    const std::uint32_t c = gathering.cluster_of(normals.of_corner[corner]);
+    if (c == kNone) continue;
+    if (joined[c] == kNoAttribute) joined[c] = add_normal(normals, sums[c], normals.of_corner[corner]);
+    new_of_corner[corner] = joined[c];
+  }
+}
+
+// (vertex, normal) pairs whose normal is another now.
+std::size_t count_changes(const AttributeLayer& normals, const Mesh& mesh,
+                          const std::vector<AttributeId>& new_of_corner) {
+  std::vector<std::pair<std::size_t, AttributeId>> changed;
+  for (std::size_t corner = 0; corner < new_of_corner.size(); ++corner) {
+    const AttributeId before = normals.of_corner[corner], after = new_of_corner[corner];
+    if (before == after || normal_at(normals, before) == normal_at(normals, after)) continue;
+    changed.emplace_back(vertex_at(mesh, corner), before);
+  }
+  std::sort(changed.begin(), changed.end());
+  return static_cast<std::size_t>(std::unique(changed.begin(), changed.end()) - changed.begin());
+}
+
 }  // namespace
 
 std::size_t join_normals(AttributeLayer& normals, const Mesh& mesh, double angle_deg) {
   weld_layer(normals);
   const double angle = radians(angle_deg) * (1 + 1e-6);
   const std::uint32_t corner_count = static_cast<std::uint32_t>(normals.of_corner.size());
-  Clusters clusters = cluster_at_vertices(normals, mesh, angle);
-
-  DisjointSets connected(clusters.sums.size());
-  for (std::uint32_t corner = 0; corner < corner_count; corner += 3) {
-    connected.unite(clusters.of_corner[corner], clusters.of_corner[corner + 1]);
-    connected.unite(clusters.of_corner[corner], clusters.of_corner[corner + 2]);
-  }
-
-  // Step 2: a patch is its representative cluster's number; most numbers have no corners.
-  Buckets in_patch = sort_into_buckets(corner_count, clusters.sums.size(), [&](std::uint32_t corner) {
-    return connected.find(clusters.of_corner[corner]);
-  });
   std::vector<AttributeId> new_of_corner(corner_count, kNoAttribute);
-  std::vector<AttributeId> new_of_cluster = clusters.of;
-  const auto add_value = [&](const Vec3d& sum, AttributeId fallback) {
-    const Vec3d n = normalized(sum);
-    if (n == Vec3d{}) return fallback;
-    const auto id = static_cast<std::uint32_t>(normals.value_count());
-    for (int i = 0; i < 3; ++i) normals.values.push_back(static_cast<float>(n[i]));
-    return AttributeId{id};
-  };
-  for (std::size_t patch = 0; patch < clusters.sums.size(); ++patch) {
-    const std::span<const std::uint32_t> corners = in_patch.of(patch);
-    if (corners.empty()) continue;
-    const AttributeId first = normals.of_corner[corners[0]];
-    Vec3d sum;
-    bool all_equal = true;
-    for (std::uint32_t corner : corners) {
-      sum += normal_at(normals, normals.of_corner[corner]);
-      all_equal = all_equal && normals.of_corner[corner] == first;
+  {
+    const std::vector<bool> is_mixed = mixed_vertices(normals, mesh);
+    const Clusters clusters = cluster_at_vertices(normals, mesh, angle);
+    DisjointSets connected(clusters.count);
+    for (std::uint32_t corner = 0; corner < corner_count; corner += 3) {
+      connected.unite(clusters.of_corner[corner], clusters.of_corner[corner + 1]);
+      connected.unite(clusters.of_corner[corner], clusters.of_corner[corner + 2]);
     }
-    if (all_equal) {
-      for (std::uint32_t corner : corners) new_of_corner[corner] = first;
-      continue;
-    }
-    const bool is_flat = spread_of(normals, corners, normalized(sum)) <= angle;
-    const AttributeId one = is_flat ? add_value(sum, first) : kNoAttribute;
-    for (std::uint32_t corner : corners) {
-      const std::uint32_t c = clusters.of_corner[corner];
-      if (!is_flat && new_of_cluster[c] == kNoAttribute) {
-        new_of_cluster[c] = add_value(clusters.sums[c], normals.of_corner[corner]);
-      }
-      new_of_corner[corner] = is_flat ? one : new_of_cluster[c];
-    }
-  }
-
-  // A (vertex, normal) pair is counted at the first of its corners; corners of a pair that are not
-  // neighbours in the vertex's list do not occur, as clusters took them sorted by normal.
-  std::size_t changed = 0;
-  Buckets in_cluster = sort_into_buckets(corner_count, clusters.sums.size(),
-                                         [&](std::uint32_t corner) { return clusters.of_corner[corner]; });
-  for (std::size_t c = 0; c < clusters.sums.size(); ++c) {
-    const std::span<std::uint32_t> corners = in_cluster.of(c);
-    std::sort(corners.begin(), corners.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return normals.of_corner[a] < normals.of_corner[b];
+    // A patch is its representative cluster's number; most numbers have no corners.
+    Buckets in_patch = sort_into_buckets(corner_count, clusters.count, [&](std::uint32_t corner) {
+      return connected.find(clusters.of_corner[corner]);
     });
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const AttributeId old = normals.of_corner[corners[i]];
-      if (i > 0 && normals.of_corner[corners[i - 1]] == old) continue;
-      const std::span<const float> before = normals.value(old);
-      const std::span<const float> after = normals.value(new_of_corner[corners[i]]);
-      changed += !std::equal(before.begin(), before.end(), after.begin());
+    for (std::size_t patch = 0; patch < clusters.count; ++patch) {
+      const std::span<const std::uint32_t> corners = in_patch.of(patch);
+      if (!corners.empty()) settle_patch(normals, mesh, is_mixed, corners, angle, new_of_corner);
     }
   }
+  const std::size_t changed = count_changes(normals, mesh, new_of_corner);
   normals.of_corner = std::move(new_of_corner);
   weld_layer(normals);
   return changed;
