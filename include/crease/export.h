@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -23,5 +24,11 @@ Status export_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
 // The file's bytes; `extension` is ".obj", ".ply", ".stl" or ".glb".
 Result<std::vector<std::byte>> export_bytes(const Mesh& mesh, std::string_view extension);
+
+// Several levels in one GLB with MSFT_lod: a viewer that knows the extension switches between them,
+// others show the finest. `screen_coverage`, one a level or empty: the share of the screen's height
+// down to which the level is meant, the last one for vanishing. Materials are shared.
+Result<std::vector<std::byte>> export_lod_glb(std::span<const Mesh> levels_finest_first,
+                                              std::span<const double> screen_coverage);
 
 }  // namespace crease

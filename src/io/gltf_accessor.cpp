@@ -21,12 +21,16 @@ enum ComponentType : std::size_t {
 std::size_t bytes_of_component(std::size_t type) {
   switch (type) {
     case kByte:
-    case kUnsignedByte: return 1;
+    case kUnsignedByte:
+      return 1;
     case kShort:
-    case kUnsignedShort: return 2;
+    case kUnsignedShort:
+      return 2;
     case kUnsignedInt:
-    case kFloat: return 4;
-    default: return 0;
+    case kFloat:
+      return 4;
+    default:
+      return 0;
   }
 }
 
@@ -56,9 +60,12 @@ template <typename T>
 T component(const std::byte* at, std::size_t type, bool normalized) {
   if constexpr (std::is_same_v<T, std::uint32_t>) {
     switch (type) {
-      case kUnsignedByte: return load<std::uint8_t>(at);
-      case kUnsignedShort: return load<std::uint16_t>(at);
-      default: return load<std::uint32_t>(at);
+      case kUnsignedByte:
+        return load<std::uint8_t>(at);
+      case kUnsignedShort:
+        return load<std::uint16_t>(at);
+      default:
+        return load<std::uint32_t>(at);
     }
   } else {
     switch (type) {
@@ -82,7 +89,8 @@ T component(const std::byte* at, std::size_t type, bool normalized) {
         const auto value = load<std::uint32_t>(at);
         return normalized ? normalized_component(value, 4294967295.0) : float(value);
       }
-      default: return load<float>(at);
+      default:
+        return load<float>(at);
     }
   }
 }
@@ -120,9 +128,9 @@ Result<GltfReader::Layout> GltfReader::layout_of(const Json& accessor,
 Result<std::span<const std::byte>> GltfReader::buffer(std::size_t index, const std::string& place) {
   const Json& buffers = at(document_.json, "buffers");
   if (index >= size_of(buffers)) {
-    return fail_at_place(Error::BadValue, source_, place,
-                         "buffer " + std::to_string(index) + " of " +
-                             std::to_string(size_of(buffers)));
+    return fail_at_place(
+        Error::BadValue, source_, place,
+        "buffer " + std::to_string(index) + " of " + std::to_string(size_of(buffers)));
   }
   buffers_.resize(size_of(buffers));
   Buffer& entry = buffers_[index];
@@ -200,8 +208,8 @@ Result<std::vector<T>> GltfReader::read(const Json& accessor, const Layout& layo
   const std::size_t value_bytes = layout.components * layout.component_bytes;
   const auto decode = [&](const std::byte* from, T* to) {
     for (std::size_t k = 0; k < layout.components; ++k) {
-      to[k] = component<T>(from + k * layout.component_bytes, layout.component_type,
-                           layout.normalized);
+      to[k] =
+          component<T>(from + k * layout.component_bytes, layout.component_type, layout.normalized);
     }
   };
   std::vector<T> values;
@@ -227,7 +235,8 @@ Result<std::vector<T>> GltfReader::read(const Json& accessor, const Layout& layo
     return fail_at_place(Error::BadFormat, source_, sparse_place + ".indices.componentType",
                          "not an index type");
   }
-  Result<View> where = view_of(sparse_indices, sparse_place + ".indices", sparse_count, index_bytes);
+  Result<View> where =
+      view_of(sparse_indices, sparse_place + ".indices", sparse_count, index_bytes);
   if (!where.ok()) return where.failure();
   Result<View> what =
       view_of(at(sparse, "values"), sparse_place + ".values", sparse_count, value_bytes);

@@ -51,7 +51,9 @@ void widen(RawLayer& layer, std::size_t dimension, float fill) {
   layer.dimension = static_cast<std::uint32_t>(dimension);
 }
 
-float fill_of(const RawLayer& layer) { return layer.role == AttributeRole::Color ? 1.0f : 0.0f; }
+float fill_of(const RawLayer& layer) {
+  return layer.role == AttributeRole::Color ? 1.0f : 0.0f;
+}
 
 }  // namespace
 
@@ -113,9 +115,12 @@ Status GltfLayers::add(GltfReader& reader, const Json& attributes, const std::st
     if (semantic == "POSITION") continue;
     std::string suffix;
     std::size_t low = 1, high = 4;
-    if (semantic == "NORMAL") low = high = 3;
-    else if (is_set_of(semantic, "TEXCOORD_", suffix)) low = high = 2;
-    else if (is_set_of(semantic, "COLOR_", suffix)) low = 3;
+    if (semantic == "NORMAL")
+      low = high = 3;
+    else if (is_set_of(semantic, "TEXCOORD_", suffix))
+      low = high = 2;
+    else if (is_set_of(semantic, "COLOR_", suffix))
+      low = 3;
     else if (!semantic.starts_with('_') || reader.components_of(accessor) == 0) {
       ++ignored_[semantic];
       continue;

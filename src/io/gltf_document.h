@@ -51,8 +51,8 @@ class GltfReader {
   // `min_components` to `max_components` a value. `place` is what refers to the accessor.
   struct Floats {
     std::vector<float> values;
-    std::size_t components = 0;   // a value
-    bool integers = false;        // stored as integers and not normalized
+    std::size_t components = 0;  // a value
+    bool integers = false;       // stored as integers and not normalized
     std::size_t count() const { return components == 0 ? 0 : values.size() / components; }
   };
   Result<Floats> floats(const Json& accessor_index, std::size_t min_components,

@@ -20,7 +20,8 @@ Transform rotation(double x, double y, double z, double w) {
 }
 
 // 3.5.3: `matrix` (column-major), or translation * rotation * scale.
-Result<Transform> local_transform(const Source& source, const Json& node, const std::string& place) {
+Result<Transform> local_transform(const Source& source, const Json& node,
+                                  const std::string& place) {
   const auto bad = [&](const char* member) {
     return fail_at_place(Error::BadFormat, source, place + "." + member, "not a transform");
   };
@@ -37,8 +38,8 @@ Result<Transform> local_transform(const Source& source, const Json& node, const 
   if (!at(node, "matrix").is_null()) {
     double m[16];
     if (!numbers("matrix", 16, m)) return bad("matrix");
-    return Transform{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]},
-                     {m[12], m[13], m[14]}};
+    return Transform{
+        {m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
   }
   double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
   if (!numbers("translation", 3, t)) return bad("translation");
@@ -89,7 +90,9 @@ Transform Transform::after(const Transform& inner) const {
   return {direction(inner.x), direction(inner.y), direction(inner.z), point(inner.origin)};
 }
 
-double Transform::determinant() const { return dot(x, cross(y, z)); }
+double Transform::determinant() const {
+  return dot(x, cross(y, z));
+}
 
 Transform Transform::of_normals() const {
   const double sign = determinant() < 0 ? -1.0 : 1.0;
@@ -156,8 +159,7 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
       if (!mesh || *mesh >= size_of(meshes)) {
         return fail_at_place(Error::BadValue, source, place + ".mesh", "no such mesh");
       }
-      const std::string otherwise =
-          name_of(meshes[*mesh], "node " + std::to_string(current.node));
+      const std::string otherwise = name_of(meshes[*mesh], "node " + std::to_string(current.node));
       scene.instances.push_back({*mesh, to_world, name_of(node, otherwise)});
       if (!at(node, "skin").is_null()) ++skinned;
     }

@@ -57,7 +57,9 @@ const Json& at(const Json& array, std::size_t index) {
   return index < size_of(array) ? array[index] : kNull;
 }
 
-std::size_t size_of(const Json& array) { return array.is_array() ? array.size() : 0; }
+std::size_t size_of(const Json& array) {
+  return array.is_array() ? array.size() : 0;
+}
 
 std::optional<std::size_t> as_index(const Json& value) {
   if (value.is_number_unsigned()) return value.get<std::size_t>();
@@ -83,7 +85,9 @@ std::string as_text(const Json& value) {
   return text == nullptr ? std::string() : *text;
 }
 
-bool as_bool(const Json& value) { return value.is_boolean() && value.get<bool>(); }
+bool as_bool(const Json& value) {
+  return value.is_boolean() && value.get<bool>();
+}
 
 std::optional<Vec3d> as_vector(const Json& value) {
   if (size_of(value) != 3) return std::nullopt;

@@ -15,10 +15,10 @@ namespace {
 // Extensions that a file may require although nothing here depends on them: materials, textures
 // and lights change no triangle. KHR_mesh_quantization and CESIUM_RTC are read.
 bool is_harmless(const std::string& extension) {
-  static constexpr std::array kPrefixes = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
-                                           "MSFT_texture_",  "KHR_lights_",  "KHR_xmp",
-                                           "KHR_mesh_quantization", "CESIUM_RTC", "MSFT_lod",
-                                           "EXT_mesh_features", "EXT_structural_metadata"};
+  static constexpr std::array kPrefixes = {
+      "KHR_materials_", "KHR_texture_",      "EXT_texture_",           "MSFT_texture_",
+      "KHR_lights_",    "KHR_xmp",           "KHR_mesh_quantization",  "CESIUM_RTC",
+      "MSFT_lod",       "EXT_mesh_features", "EXT_structural_metadata"};
   return std::ranges::any_of(kPrefixes, [&](const char* p) { return extension.starts_with(p); });
 }
 
@@ -69,13 +69,20 @@ std::vector<Material> read_materials(const Json& json) {
       material.base_color[k] = static_cast<float>(as_number(at(color, k), 1));
     }
     material.base_color_texture = texture_reference(json, at(*model, texture));
+    if (material.base_color_texture.empty()) {  // where write_glb() puts it
+      material.base_color_texture = as_text(at(at(entry, "extras"), "base_color_texture"));
+    }
     materials.push_back(std::move(material));
   }
   return materials;
 }
 
 // 3.7.2.1: primitive.mode.
-enum class Mode : std::size_t { Triangles = 4, Strip = 5, Fan = 6 };
+enum class Mode : std::size_t {
+  Triangles = 4,
+  Strip = 5,
+  Fan = 6
+};
 
 // Appends the triangles that a run of vertices makes. `vertex(i)` is the i-th.
 template <typename Vertex>
@@ -101,8 +108,11 @@ void add_triangles(Mode mode, std::size_t count, bool mirrored, Vertex vertex,
 class MeshBuilder {
  public:
   MeshBuilder(const Source& source, const GltfDocument& document)
-      : source_(source), json_(document.json), center_(document.center),
-        reader_(source, document), layers_(source) {}
+      : source_(source),
+        json_(document.json),
+        center_(document.center),
+        reader_(source, document),
+        layers_(source) {}
 
   Result<RawMesh> build() {
     Result<GltfScene> scene = walk_scene(source_, json_);
@@ -192,8 +202,7 @@ class MeshBuilder {
       const auto base = static_cast<std::uint32_t>(raw_.positions.size());
       for (std::size_t v = 0; v < vertex_count; ++v) {
         const float* stored = &positions->values[3 * v];
-        const Vec3d p =
-            instance.to_world.point({stored[0], stored[1], stored[2]}) + center_;
+        const Vec3d p = instance.to_world.point({stored[0], stored[1], stored[2]}) + center_;
         if (!is_position(p)) {
           return fail_at_place(Error::BadValue, source_, place_of(position_place, v),
                                "not a finite position");
@@ -242,9 +251,8 @@ class MeshBuilder {
   // Nodes share meshes and primitives share accessors, so a small file can ask for any amount of
   // memory. A thousand times its size is more than instancing needs.
   bool within_limit(std::size_t instance_count, std::size_t vertex_count, std::size_t run) {
-    const std::size_t budget =
-        std::min<std::size_t>((std::size_t(1) << 20) + 1000 * source_.bytes.size(),
-                              std::size_t(1) << 28);
+    const std::size_t budget = std::min<std::size_t>(
+        (std::size_t(1) << 20) + 1000 * source_.bytes.size(), std::size_t(1) << 28);
     const std::size_t largest = std::max(vertex_count, run);
     if (largest > budget || instance_count > budget / std::max<std::size_t>(largest, 1)) {
       return false;

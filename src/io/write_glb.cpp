@@ -1,0 +1,469 @@
+// GLB: one primitive for every part and material, split vertices, floats around one translation.
+#include "crease/export.h"
+#include "io/formats.h"
+#include "io/split_vertices.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crease {
+namespace {
+
+using Json = nlohmann::ordered_json;  // members in the order they are written
+
+constexpr std::uint32_t kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+constexpr std::uint32_t kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
+constexpr const char* kGenerator = "crease";
+
+// The attribute that a layer becomes.
+struct Semantic {
+  std::string name;  // "TEXCOORD_0"
+  std::uint32_t dimension = 1;
+  AttributeRole role = AttributeRole::Other;
+};
+
+// Values of one semantic, of all primitives one after the other: one bufferView.
+struct FloatStream {
+  Semantic semantic;
+  std::vector<float> values;
+};
+
+// A name of letters, digits and underscores after one underscore (3.7.2.1: application-specific).
+std::string custom_semantic(const std::string& name, const std::set<std::string>& taken) {
+  std::string result = "_";
+  for (const char c : name) {
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    result += plain ? c : '_';
+  }
+  if (result == "_") result = "_LAYER";
+  const std::string base = result;
+  for (int i = 1; taken.contains(result); ++i) result = base + "_" + std::to_string(i);
+  return result;
+}
+
+std::vector<Semantic> semantics_of(std::span<const AttributeLayer* const> layers) {
+  std::vector<Semantic> semantics;
+  std::set<std::string> taken;
+  int uv_count = 0, color_count = 0;
+  for (const AttributeLayer* layer : layers) {
+    Semantic semantic{"", layer->dimension, layer->role};
+    if (layer->role == AttributeRole::Normal) {
+      semantic.name = "NORMAL";
+    } else if (layer->role == AttributeRole::TexCoord && layer->dimension == 2) {
+      semantic.name = "TEXCOORD_" + std::to_string(uv_count++);
+    } else if (layer->role == AttributeRole::Color && layer->dimension >= 3) {
+      semantic.name = "COLOR_" + std::to_string(color_count++);
+    } else {
+      semantic.name = custom_semantic(layer->name, taken);
+      semantic.role = AttributeRole::Other;
+    }
+    taken.insert(semantic.name);
+    semantics.push_back(std::move(semantic));
+  }
+  return semantics;
+}
+
+// A value as glTF wants it: unit normals, v down, colours within 0..1 (3.7.2.1).
+void append_value(const Semantic& semantic, std::span<const float> value, std::vector<float>& to) {
+  switch (semantic.role) {
+    case AttributeRole::Normal: {
+      Vec3d n = normalized(Vec3d{value[0], value[1], value[2]});
+      if (!(length(n) > 0.5)) n = {0, 0, 1};
+      for (int k = 0; k < 3; ++k) to.push_back(static_cast<float>(n[k]));
+      break;
+    }
+    case AttributeRole::TexCoord:
+      to.push_back(value[0]);
+      to.push_back(1.0f - value[1]);
+      break;
+    case AttributeRole::Color:
+      for (const float c : value) to.push_back(std::clamp(c, 0.0f, 1.0f));
+      break;
+    case AttributeRole::Other:
+      to.insert(to.end(), value.begin(), value.end());
+      break;
+  }
+}
+
+// The faces' own normals: what a mesh without normals means in glTF, made explicit.
+AttributeLayer flat_normals(const Mesh& mesh) {
+  AttributeLayer layer{"normal", AttributeRole::Normal, Interpolation::Direction, 3, {}, {}};
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const auto corner = [&](std::size_t c) {
+      return mesh.positions[index_of(mesh.triangles[t][c])];
+    };
+    const Vec3d n = normalized(cross(corner(1) - corner(0), corner(2) - corner(0)));
+    for (int k = 0; k < 3; ++k) layer.values.push_back(static_cast<float>(n[k]));
+    layer.of_corner.insert(layer.of_corner.end(), 3, static_cast<AttributeId>(t));
+  }
+  return layer;
+}
+
+// Zero where floats hold every position exactly, else the middle of the bounding box.
+Vec3d origin_of(const Mesh& mesh) {
+  Vec3d low = mesh.positions[0], high = low;
+  bool exact = true;
+  for (const Vec3d& p : mesh.positions) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
+      exact = exact && double(float(p[k])) == p[k];
+    }
+  }
+  return exact ? Vec3d{} : low + (high - low) * 0.5;
+}
+
+class GlbWriter {
+ public:
+  // Adds a mesh and returns its root node.
+  Result<std::size_t> add(const Mesh& mesh) {
+    if (mesh.triangles.empty()) return fail(Error::NoTriangles, "nothing to write");
+    std::vector<const AttributeLayer*> layers;
+    AttributeLayer flat;
+    if (mesh.normals() == nullptr) {
+      flat = flat_normals(mesh);
+      layers.push_back(&flat);
+    }
+    for (const AttributeLayer& layer : mesh.layers) layers.push_back(&layer);
+    const SplitVertices split = split_vertices(mesh, layers);
+    const std::vector<std::size_t> streams = streams_of(layers);
+    const Vec3d origin = origin_of(mesh);
+    const std::vector<std::size_t> materials = add_materials(mesh);
+
+    Json root = Json::object(), children = Json::array();
+    if (origin != Vec3d{}) root["translation"] = std::array{origin.x, origin.y, origin.z};
+    Job job{mesh, split, layers, streams, origin, {}};
+    job.local_index.assign(split.count(), kNone);
+
+    const std::vector<std::uint32_t> order = triangles_by_part_and_material(mesh);
+    for (std::size_t begin = 0; begin < order.size();) {
+      const std::uint32_t part = part_of(mesh, order[begin]);
+      Json primitives = Json::array();
+      while (begin < order.size() && part_of(mesh, order[begin]) == part) {
+        const std::uint32_t material = material_of(mesh, order[begin]);
+        std::size_t end = begin;
+        while (end < order.size() && part_of(mesh, order[end]) == part &&
+               material_of(mesh, order[end]) == material) {
+          ++end;
+        }
+        Json primitive = add_primitive(job, std::span(order).subspan(begin, end - begin));
+        if (material != kNone) primitive["material"] = materials[material];
+        primitives.push_back(std::move(primitive));
+        begin = end;
+      }
+      const bool named = part != kNone && part < mesh.parts.size() && !mesh.parts[part].empty();
+      Json gltf_mesh = Json::object();
+      if (named) gltf_mesh["name"] = mesh.parts[part];
+      gltf_mesh["primitives"] = std::move(primitives);
+      meshes_.push_back(std::move(gltf_mesh));
+      Json node = Json::object();
+      if (named) node["name"] = mesh.parts[part];
+      node["mesh"] = meshes_.size() - 1;
+      const bool only_part = begin == order.size() && children.empty();
+      if (only_part) {
+        root.update(node);
+      } else {
+        nodes_.push_back(std::move(node));
+        children.push_back(nodes_.size() - 1);
+      }
+    }
+    if (!children.empty()) root["children"] = std::move(children);
+    nodes_.push_back(std::move(root));
+    return nodes_.size() - 1;
+  }
+
+  Json& node(std::size_t index) { return nodes_[index]; }
+  void use_extension(const char* name) { extensions_.push_back(name); }
+
+  // The file, with one scene of one root node.
+  Result<std::vector<std::byte>> finish(std::size_t root) {
+    Json json = Json::object();
+    json["asset"] = {{"version", "2.0"}, {"generator", kGenerator}};
+    if (!extensions_.empty()) json["extensionsUsed"] = extensions_;
+    json["scene"] = 0;
+    Json scene = Json::object();
+    scene["nodes"] = Json::array();
+    scene["nodes"].push_back(root);
+    json["scenes"] = Json::array();
+    json["scenes"].push_back(std::move(scene));
+    json["nodes"] = std::move(nodes_);
+    json["meshes"] = std::move(meshes_);
+    if (!materials_.empty()) json["materials"] = material_json();
+
+    // Views of four-byte values first, so that each begins at a multiple of four (3.6.2.4).
+    Json views = Json::array();
+    std::size_t length = 0;
+    const auto add_view = [&](std::size_t bytes, std::size_t stride, std::uint32_t target) {
+      Json view = {{"buffer", 0}, {"byteOffset", length}, {"byteLength", bytes}};
+      if (stride > 0) view["byteStride"] = stride;
+      view["target"] = target;
+      views.push_back(std::move(view));
+      length += bytes;
+      return views.size() - 1;
+    };
+    std::vector<std::size_t> view_of_stream;
+    for (const FloatStream& stream : streams_) {
+      view_of_stream.push_back(add_view(stream.values.size() * sizeof(float),
+                                        stream.semantic.dimension * sizeof(float), kArrayBuffer));
+    }
+    std::size_t wide_view = 0, narrow_view = 0;
+    if (!wide_.empty()) wide_view = add_view(wide_.size() * 4, 0, kElementArrayBuffer);
+    if (!narrow_.empty()) narrow_view = add_view(narrow_.size() * 2, 0, kElementArrayBuffer);
+    for (std::size_t a = 0; a < accessors_.size(); ++a) {
+      const std::size_t stream = stream_of_accessor_[a];
+      accessors_[a]["bufferView"] = stream == kNarrow ? narrow_view
+                                    : stream == kWide ? wide_view
+                                                      : view_of_stream[stream];
+    }
+    json["accessors"] = std::move(accessors_);
+    json["bufferViews"] = std::move(views);
+    json["buffers"] = Json::array();
+    json["buffers"].push_back({{"byteLength", length}});
+    return put_together(json, length);
+  }
+
+ private:
+  static constexpr std::size_t kNarrow = std::size_t(-1), kWide = std::size_t(-2);
+
+  struct Job {
+    const Mesh& mesh;
+    const SplitVertices& split;
+    const std::vector<const AttributeLayer*>& layers;
+    const std::vector<std::size_t>& streams;  // of positions, then of each layer
+    Vec3d origin;
+    std::vector<std::uint32_t> local_index;  // per split vertex: in this primitive, or kNone
+  };
+
+  static std::uint32_t part_of(const Mesh& mesh, std::uint32_t t) {
+    return mesh.part_of_triangle.empty() ? kNone
+                                         : static_cast<std::uint32_t>(mesh.part_of_triangle[t]);
+  }
+  static std::uint32_t material_of(const Mesh& mesh, std::uint32_t t) {
+    return mesh.material_of_triangle.empty()
+               ? kNone
+               : static_cast<std::uint32_t>(mesh.material_of_triangle[t]);
+  }
+
+  static std::vector<std::uint32_t> triangles_by_part_and_material(const Mesh& mesh) {
+    std::vector<std::uint32_t> order(mesh.triangle_count());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t t) {
+      return std::pair(part_of(mesh, t), material_of(mesh, t));
+    });
+    return order;
+  }
+
+  // Levels of one asset have the same layers, so they share streams.
+  std::vector<std::size_t> streams_of(std::span<const AttributeLayer* const> layers) {
+    std::vector<Semantic> semantics = {{"POSITION", 3, AttributeRole::Other}};
+    for (Semantic& semantic : semantics_of(layers)) semantics.push_back(std::move(semantic));
+    std::vector<std::size_t> result;
+    for (Semantic& semantic : semantics) {
+      const auto found = std::ranges::find_if(streams_, [&](const FloatStream& stream) {
+        return stream.semantic.name == semantic.name &&
+               stream.semantic.dimension == semantic.dimension;
+      });
+      result.push_back(static_cast<std::size_t>(found - streams_.begin()));
+      if (found == streams_.end()) streams_.push_back({std::move(semantic), {}});
+    }
+    return result;
+  }
+
+  std::vector<std::size_t> add_materials(const Mesh& mesh) {
+    std::vector<std::size_t> result;
+    for (const Material& material : mesh.materials) {
+      const auto found = std::ranges::find(materials_, material);
+      result.push_back(static_cast<std::size_t>(found - materials_.begin()));
+      if (found == materials_.end()) materials_.push_back(material);
+    }
+    return result;
+  }
+
+  Json add_primitive(Job& job, std::span<const std::uint32_t> triangles) {
+    std::vector<std::uint32_t> vertices;  // split vertices in order of first use
+    std::vector<std::uint32_t> indices;
+    indices.reserve(3 * triangles.size());
+    for (std::uint32_t t : triangles) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t s = job.split.of_corner[3 * t + c];
+        if (job.local_index[s] == kNone) {
+          job.local_index[s] = static_cast<std::uint32_t>(vertices.size());
+          vertices.push_back(s);
+        }
+        indices.push_back(job.local_index[s]);
+      }
+    }
+    for (std::uint32_t s : vertices) job.local_index[s] = kNone;
+
+    Json attributes = Json::object();
+    attributes["POSITION"] = add_positions(job, vertices);
+    for (std::size_t l = 0; l < job.layers.size(); ++l) {
+      FloatStream& stream = streams_[job.streams[l + 1]];
+      const std::size_t offset = stream.values.size() * sizeof(float);
+      for (std::uint32_t s : vertices) {
+        append_value(stream.semantic, job.layers[l]->value(job.split.values[l][s]), stream.values);
+      }
+      attributes[stream.semantic.name] = add_accessor(job.streams[l + 1], offset, kFloat,
+                                                      vertices.size(), stream.semantic.dimension);
+    }
+    return {{"attributes", std::move(attributes)},
+            {"indices", add_indices(indices, vertices.size())}};
+  }
+
+  std::size_t add_positions(const Job& job, const std::vector<std::uint32_t>& vertices) {
+    FloatStream& stream = streams_[job.streams[0]];
+    const std::size_t offset = stream.values.size() * sizeof(float);
+    std::array<float, 3> low, high;
+    low.fill(std::numeric_limits<float>::max());
+    high.fill(std::numeric_limits<float>::lowest());
+    for (std::uint32_t s : vertices) {
+      const Vec3d p = job.mesh.positions[job.split.position[s]] - job.origin;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float x = static_cast<float>(p[static_cast<int>(k)]);
+        low[k] = std::min(low[k], x);
+        high[k] = std::max(high[k], x);
+        stream.values.push_back(x);
+      }
+    }
+    const std::size_t accessor = add_accessor(job.streams[0], offset, kFloat, vertices.size(), 3);
+    accessors_[accessor]["min"] = low;
+    accessors_[accessor]["max"] = high;
+    return accessor;
+  }
+
+  // The largest 16-bit index means "restart" (3.7.2.1), so 65535 vertices are the most.
+  std::size_t add_indices(const std::vector<std::uint32_t>& indices, std::size_t vertex_count) {
+    if (vertex_count > 65535) {
+      const std::size_t offset = wide_.size() * 4;
+      wide_.insert(wide_.end(), indices.begin(), indices.end());
+      return add_accessor(kWide, offset, kUnsignedInt, indices.size(), 1);
+    }
+    const std::size_t offset = narrow_.size() * 2;
+    for (std::uint32_t i : indices) narrow_.push_back(static_cast<std::uint16_t>(i));
+    return add_accessor(kNarrow, offset, kUnsignedShort, indices.size(), 1);
+  }
+
+  // The bufferView is known at the end, when the streams have their sizes.
+  std::size_t add_accessor(std::size_t stream, std::size_t offset, std::uint32_t type,
+                           std::size_t count, std::uint32_t dimension) {
+    static constexpr std::array kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+    accessors_.push_back({{"bufferView", 0},
+                          {"byteOffset", offset},
+                          {"componentType", type},
+                          {"count", count},
+                          {"type", kTypes[dimension - 1]}});
+    stream_of_accessor_.push_back(stream);
+    return accessors_.size() - 1;
+  }
+
+  // A texture's name goes into `extras`, where the reader finds it again: an image that is not
+  // there would make the file invalid.
+  Json material_json() const {
+    Json materials = Json::array();
+    for (const Material& material : materials_) {
+      std::array<float, 4> color = material.base_color;
+      for (float& c : color) c = std::clamp(c, 0.0f, 1.0f);
+      Json entry = Json::object();
+      if (!material.name.empty()) entry["name"] = material.name;
+      entry["pbrMetallicRoughness"] = {
+          {"baseColorFactor", color}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
+      if (color[3] < 1) entry["alphaMode"] = "BLEND";
+      if (!material.base_color_texture.empty()) {
+        entry["extras"] = {{"base_color_texture", material.base_color_texture}};
+      }
+      materials.push_back(std::move(entry));
+    }
+    return materials;
+  }
+
+  Result<std::vector<std::byte>> put_together(const Json& json, std::size_t length) const {
+    // Names may be in any encoding; what is not UTF-8 is replaced.
+    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const std::size_t padded = (length + 3) / 4 * 4;
+    const std::size_t total = 12 + 8 + text.size() + 8 + padded;
+    if (total > std::numeric_limits<std::uint32_t>::max()) {
+      return fail(Error::OverLimit, "a GLB holds at most 4 GiB, this would be " +
+                                        std::to_string(total) + " bytes; write a coarser level");
+    }
+    std::vector<std::byte> bytes(total);
+    std::byte* to = bytes.data();
+    const auto put = [&](const void* from, std::size_t size) {
+      if (size > 0) std::memcpy(to, from, size);
+      to += size;
+    };
+    const auto put_u32 = [&](std::size_t value) {
+      for (int shift = 0; shift < 32; shift += 8) *to++ = std::byte(value >> shift & 0xff);
+    };
+    put("glTF", 4);
+    put_u32(2);
+    put_u32(total);
+    put_u32(text.size());
+    put("JSON", 4);
+    put(text.data(), text.size());
+    put_u32(padded);
+    put("BIN", 4);  // with its zero
+    for (const FloatStream& stream : streams_) {
+      put(stream.values.data(), stream.values.size() * sizeof(float));
+    }
+    put(wide_.data(), wide_.size() * 4);
+    put(narrow_.data(), narrow_.size() * 2);
+    return bytes;
+  }
+
+  std::vector<FloatStream> streams_;
+  std::vector<std::uint32_t> wide_;
+  std::vector<std::uint16_t> narrow_;
+  std::vector<Material> materials_;
+  Json accessors_ = Json::array(), nodes_ = Json::array(), meshes_ = Json::array();
+  std::vector<std::size_t> stream_of_accessor_;
+  std::vector<std::string> extensions_;
+};
+
+}  // namespace
+
+Result<std::vector<std::byte>> write_glb(const Mesh& mesh) {
+  GlbWriter writer;
+  const Result<std::size_t> root = writer.add(mesh);
+  if (!root.ok()) return root.failure();
+  return writer.finish(*root);
+}
+
+// MSFT_lod: the finest node lists the coarser ones, which no scene refers to.
+Result<std::vector<std::byte>> export_lod_glb(std::span<const Mesh> levels_finest_first,
+                                              std::span<const double> screen_coverage) {
+  if (levels_finest_first.empty()) return fail(Error::NoTriangles, "no level to write");
+  if (!screen_coverage.empty() && screen_coverage.size() != levels_finest_first.size()) {
+    return fail(Error::BadValue, std::to_string(screen_coverage.size()) + " screen coverages for " +
+                                     std::to_string(levels_finest_first.size()) + " levels");
+  }
+  GlbWriter writer;
+  std::vector<std::size_t> roots;
+  for (const Mesh& level : levels_finest_first) {
+    const Result<std::size_t> root = writer.add(level);
+    if (!root.ok()) return root.failure();
+    roots.push_back(*root);
+  }
+  if (roots.size() > 1) {
+    writer.use_extension("MSFT_lod");
+    const std::vector<std::size_t> coarser(roots.begin() + 1, roots.end());
+    writer.node(roots[0])["extensions"] = {{"MSFT_lod", {{"ids", coarser}}}};
+  }
+  if (!screen_coverage.empty()) {
+    writer.node(roots[0])["extras"] = {
+        {"MSFT_screencoverage",
+         std::vector<double>(screen_coverage.begin(), screen_coverage.end())}};
+  }
+  return writer.finish(roots[0]);
+}
+
+}  // namespace crease
