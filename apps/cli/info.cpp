@@ -112,19 +112,6 @@ std::string mesh_text(const Json& json) {
   return text;
 }
 
-// The longest chain of contractions, each of which stands on the one before: what a decoder that
-// refines one place must go through.
-std::size_t depth_of(const ProgressiveArrays& arrays) {
-  std::vector<std::uint32_t> depth_of_vertex(arrays.vertex_count());
-  std::uint32_t deepest = 0;
-  for (std::size_t i = 0; i < arrays.contraction_count(); ++i) {
-    std::uint32_t& kept = depth_of_vertex[index_of(arrays.kept(i))];
-    kept = std::max(kept, depth_of_vertex[index_of(arrays.removed(i))]) + 1;
-    deepest = std::max(deepest, kept);
-  }
-  return deepest;
-}
-
 Report file_report(const CreaseFile& file) {
   Report report;
   const Mesh mesh = ProgressiveMesh(file.arrays).extract();
@@ -147,7 +134,7 @@ Report file_report(const CreaseFile& file) {
              {"attributes", bits.attributes}}},
            {"bands", bands},
            {"blocks", block_count(file.info)},
-           {"depth", depth_of(*file.arrays)},
+           {"depth", hierarchy_depth(*file.arrays)},
            {"linear_bytes",
             {{"crease", linear.crease},
              {"wedge", linear.wedge},
