@@ -1,5 +1,5 @@
-// Pictures without a display: OpenGL 3.3 core through EGL (Mesa llvmpipe where there is no GPU), the
-// three-part drawing of DB03. No GL type here.
+// Pictures without a display: OpenGL 3.3 core through EGL (Mesa llvmpipe where there is no GPU),
+// the three-part drawing of DB03. No GL type here.
 //
 //   std::vector<Panel> panels{{.list = pm.draw_list(), .title = "20 %"}};
 //   Result<Image> image = render_panels(panels, RenderOptions{});
@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace crease {
@@ -27,32 +28,41 @@ struct Camera {
   int width_px = 1920, height_px = 1080;
   double pixels = 1;  // error allowed on screen
 };
-Result<Camera> parse_camera(std::string_view json);
 
-// A camera that sees the whole box from a three-quarter view. z is up.
-Camera fit_camera(const Vec3d& low, const Vec3d& high, int width_px, int height_px);
+// Reads the JSON of DESIGN 9. position and target are required, the rest has the defaults above.
+// A message names the field and what is wrong with it, or where the text stops being JSON.
+Result<Camera> parse_camera(std::string_view json);
+// What parse_camera reads back to the same camera.
+std::string format_camera(const Camera& camera);
+
+// A camera that sees the whole box, as large as it fits, from a three-quarter view: the low objects
+// (cities, terrain) from higher above than the tall ones. The side that faces the viewer is the
+// one that looks against the third axis of a right-handed frame with x to the right: -y for z up.
+Camera fit_camera(const Vec3d& low, const Vec3d& high, int width_px, int height_px,
+                  const Vec3d& up = {0, 0, 1});
 
 enum class Coloring : std::uint8_t {
-  Shaded,     // materials' base colours and vertex colours under a headlight and a hemisphere light
-  Kind,       // SN, FN and NSN triangles in three colours, shaded
-  Level,      // by `Panel::level_color`
-  Error,      // by `Panel::error` on one scale for all panels (blue small, red large)
+  Shaded,  // materials' base colours and vertex colours under a headlight and a hemisphere light
+  Kind,    // SN, FN and NSN triangles in three colours, shaded
+  Level,   // by `Panel::level_share`
+  Error,   // by `Panel::error_of_position` on one scale for all panels (blue small, red large)
 };
 
 struct Panel {
-  DrawList list;
-  std::string title;              // drawn at the panel's top; empty: nothing
-  float level_share = 0;          // for Coloring::Level: 0 full resolution .. 1 base
+  DrawList list{};
+  std::string title;      // drawn at the panel's top; empty: nothing
+  float level_share = 0;  // for Coloring::Level: 0 full resolution .. 1 base
   // For Coloring::Error: one value per position of the list, model units; or empty.
-  std::span<const float> error_of_position;
+  std::span<const float> error_of_position{};
 };
 
 struct RenderOptions {
   int width_px = 1920, height_px = 1080;  // of the whole picture; panels share it in a row or grid
-  std::optional<Camera> camera;           // else fit_camera of the first panel, the same for all
+  std::optional<Camera> camera{};         // else fitted to all panels; the same for all
+  Vec3d up{0, 0, 1};                      // for the fitted camera: many scans have y up
   Coloring coloring = Coloring::Shaded;
-  bool wireframe = false;                 // edges over the shaded surface
-  int columns = 0;                        // 0: as many as look best
+  bool wireframe = false;  // edges over the shaded surface
+  int columns = 0;         // 0: as many as look best
 };
 
 struct Image {
@@ -60,7 +70,15 @@ struct Image {
   std::vector<std::uint8_t> rgba;  // 4 * width * height, top row first
 };
 
-// Fails with NotSupported when no EGL device can draw, saying what was tried.
+// Panels are drawn from one camera, each under its title; a legend stands below them where the
+// colours mean something. Surfaces are two-sided: a normal that points away from the viewer's side
+// of its triangle is turned round. A camera for another shape than the panel's shows at least
+// what it would show in its own. Pictures larger than the device can draw are put together from
+// tiles. The same input gives the same picture on one device and driver.
+//
+// Time on llvmpipe, two cores, 1920 x 1080: see gl_scene.h. Fails with NotSupported when no EGL
+// device can draw, saying what was tried, and with BadValue for a size or a list that cannot be
+// meant. Threads: call from any; an OpenGL context that is current stays so.
 Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& options);
 Status write_png(const Image& image, const std::filesystem::path& path);
 

@@ -1,0 +1,125 @@
+#include "render/fit_camera.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace crease {
+
+namespace {
+
+constexpr double kFieldOfViewDeg = 35;  // a portrait lens: little distortion at the borders
+constexpr double kMargin = 1.06;        // the picture over the scene
+
+struct Direction {
+  Vec3d towards_eye, up;
+};
+
+// Three-quarter view from the front right. Low scenes from 33 degrees above, so that streets show;
+// objects as tall as wide from 20, so that they stand.
+Direction three_quarter(const Box& box, const Vec3d& up_wanted) {
+  Vec3d up = normalized(up_wanted);
+  if (up == Vec3d{}) up = {0, 0, 1};
+  // Right-handed frame with `up` as its third axis: x to the right unless up is along x.
+  const Vec3d first_axis = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  const Vec3d depth_axis = normalized(cross(up, first_axis));  // away from the viewer
+  const Vec3d right_axis = cross(depth_axis, up);
+
+  const Vec3d size = box.high - box.low;
+  const auto extent = [&](const Vec3d& axis) {
+    return std::abs(axis.x) * size.x + std::abs(axis.y) * size.y + std::abs(axis.z) * size.z;
+  };
+  const double tall = extent(up) / std::max({extent(right_axis), extent(depth_axis), 1e-300});
+  const double elevation = radians(33 - 13 * std::clamp((tall - 0.1) / 0.5, 0.0, 1.0));
+  const double azimuth = radians(32);  // from the front towards the right
+  const Vec3d level = right_axis * std::sin(azimuth) - depth_axis * std::cos(azimuth);
+  return {level * std::cos(elevation) + up * std::sin(elevation), up};
+}
+
+// Calls `visit` with every point less the first set's origin.
+template <typename Visit>
+void for_each(Scene scene, Visit visit) {
+  const Vec3d common = scene.empty() ? Vec3d{} : scene[0].origin;
+  for (const PointSet& set : scene) {
+    const Vec3d shift = set.origin - common;
+    for (const Vec3f& p : set.points) visit(shift + Vec3d{p.x, p.y, p.z});
+  }
+}
+
+Box box_of(Scene scene) {
+  Box box;
+  for_each(scene, [&](const Vec3d& p) { box.add(p); });
+  return box;
+}
+
+Camera fit(Scene scene, const Direction& direction, int width_px, int height_px) {
+  Camera camera;
+  camera.up = direction.up;
+  camera.width_px = width_px;
+  camera.height_px = height_px;
+  camera.vertical_fov_deg = kFieldOfViewDeg;
+  camera.position = direction.towards_eye;  // for the frame only
+  View frame = make_view(camera, double(width_px) / height_px);
+  const double tan_x = frame.tan_half_width / kMargin, tan_y = frame.tan_half_height / kMargin;
+
+  // With coordinates (r, u, b) in the frame, a point is between the left and right planes of an eye
+  // at (er, eu, eb) iff |r - er| <= tan_x (eb - b). So er lies between max(r + tan_x b) - tan_x eb
+  // and min(r - tan_x b) + tan_x eb, which leaves room for eb from half their distance on.
+  double r_high = -1e300, r_low = 1e300, u_high = -1e300, u_low = 1e300, b_high = -1e300;
+  double b_low = 1e300;
+  for_each(scene, [&](const Vec3d& p) {
+    const double r = dot(p, frame.right), u = dot(p, frame.above), b = dot(p, frame.back);
+    r_high = std::max(r_high, r + tan_x * b);
+    r_low = std::min(r_low, r - tan_x * b);
+    u_high = std::max(u_high, u + tan_y * b);
+    u_low = std::min(u_low, u - tan_y * b);
+    b_high = std::max(b_high, b);
+    b_low = std::min(b_low, b);
+  });
+  double eye_back = std::max((r_high - r_low) / (2 * tan_x), (u_high - u_low) / (2 * tan_y));
+  const double smallest = std::max(1e-6 * (std::abs(eye_back) + std::abs(b_high)), 1e-9);
+  eye_back = std::max(eye_back, b_high + smallest);  // a single point
+  camera.position = scene[0].origin + frame.right * ((r_high + r_low) / 2) +
+                    frame.above * ((u_high + u_low) / 2) + frame.back * eye_back;
+  camera.target = camera.position - frame.back * (eye_back - (b_low + b_high) / 2);
+  return camera;
+}
+
+}  // namespace
+
+Camera fit_camera_to(Scene scene, const Vec3d& up, int width_px, int height_px) {
+  const Box box = box_of(scene);
+  if (!box.empty) return fit(scene, three_quarter(box, up), width_px, height_px);
+  const Vec3f origin{};
+  const PointSet point{{}, std::span(&origin, 1)};
+  return fit(std::span(&point, 1), three_quarter(Box{}, up), width_px, height_px);
+}
+
+Camera fit_camera(const Vec3d& low, const Vec3d& high, int width_px, int height_px,
+                  const Vec3d& up) {
+  const Vec3d middle = (low + high) * 0.5;
+  std::vector<Vec3f> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3d corner{(i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y,
+                       (i & 4) ? high.z : low.z};
+    const Vec3d p = corner - middle;
+    corners.push_back({float(p.x), float(p.y), float(p.z)});
+  }
+  const PointSet points{middle, corners};
+  return fit_camera_to(std::span(&points, 1), up, std::max(1, width_px), std::max(1, height_px));
+}
+
+double projected_aspect(Scene scene, const Vec3d& up) {
+  const Box box = box_of(scene);
+  if (box.empty) return 1;
+  const Direction direction = three_quarter(box, up);
+  Camera camera;
+  camera.up = direction.up;
+  camera.position = direction.towards_eye;
+  const View frame = make_view(camera, 1);
+  Box flat;
+  for_each(scene, [&](const Vec3d& p) { flat.add({dot(p, frame.right), dot(p, frame.above), 0}); });
+  const Vec3d size = flat.high - flat.low;
+  return std::clamp((size.x + 1e-30) / (size.y + 1e-30), 0.1, 10.0);
+}
+
+}  // namespace crease

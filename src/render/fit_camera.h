@@ -1,0 +1,24 @@
+// The smallest picture that holds a set of points, seen from a three-quarter view.
+#pragma once
+
+#include "render/transform.h"
+
+#include <span>
+
+namespace crease {
+
+// Points of a scene: floats less an origin, as draw lists have them.
+struct PointSet {
+  Vec3d origin;
+  std::span<const Vec3f> points;
+};
+using Scene = std::span<const PointSet>;
+
+// As fit_camera, but as close as the points themselves allow, and not their box.
+Camera fit_camera_to(Scene scene, const Vec3d& up, int width_px, int height_px);
+
+// Width over height of the scene in the picture that fit_camera_to would make: what the layout of
+// panels goes by.
+double projected_aspect(Scene scene, const Vec3d& up);
+
+}  // namespace crease

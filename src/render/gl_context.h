@@ -1,0 +1,44 @@
+// An OpenGL 3.3 core context without a window, current on this thread while it lives.
+//
+//   Result<GlContext> gl = open_gl();
+//
+// First EGL's surfaceless platform (Mesa: a GPU where it finds one, else llvmpipe), then every EGL
+// device (NVIDIA's driver). All OpenGL of the project is in the files gl_*.
+#pragma once
+
+#include "crease/result.h"
+
+#include <string>
+
+namespace crease {
+
+class GlContext {
+ public:
+  GlContext(GlContext&& other) noexcept;
+  GlContext& operator=(GlContext&&) = delete;
+  ~GlContext();  // the context that was current before is current again
+
+  const std::string& renderer() const { return renderer_; }
+  int max_texture_size() const { return max_texture_size_; }
+  int max_texel_count() const { return max_texel_count_; }
+  int max_samples() const { return max_samples_; }
+
+ private:
+  friend Result<GlContext> open_gl();
+  GlContext() = default;
+
+  // EGL's handles, which are pointers.
+  void* display_ = nullptr;
+  void* context_ = nullptr;
+  void* previous_display_ = nullptr;
+  void* previous_context_ = nullptr;
+  void* previous_draw_ = nullptr;
+  void* previous_read_ = nullptr;
+  std::string renderer_;
+  int max_texture_size_ = 0, max_texel_count_ = 0, max_samples_ = 1;
+};
+
+// Fails with NotSupported, saying what was tried and how each try ended.
+Result<GlContext> open_gl();
+
+}  // namespace crease

@@ -1,0 +1,86 @@
+// OpenGL objects that delete themselves. The context that made them must be current when they do.
+#pragma once
+
+#include "crease/result.h"
+
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace crease {
+
+template <typename Traits>
+class GlObject {
+ public:
+  GlObject() = default;
+  static GlObject make() {
+    GlObject object;
+    object.id_ = Traits::make();
+    return object;
+  }
+  GlObject(GlObject&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  GlObject& operator=(GlObject&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~GlObject() {
+    if (id_ != 0) Traits::drop(id_);
+  }
+  GLuint id() const { return id_; }
+  explicit operator bool() const { return id_ != 0; }
+
+ private:
+  GLuint id_ = 0;
+};
+
+#define CREASE_GL_TRAITS(Name, plural)                        \
+  struct Name##Traits {                                       \
+    static GLuint make() {                                    \
+      GLuint id = 0;                                          \
+      glGen##plural(1, &id);                                  \
+      return id;                                              \
+    }                                                         \
+    static void drop(GLuint id) { glDelete##plural(1, &id); } \
+  };                                                          \
+  using Name = GlObject<Name##Traits>
+
+CREASE_GL_TRAITS(GlBuffer, Buffers);
+CREASE_GL_TRAITS(GlTexture, Textures);
+CREASE_GL_TRAITS(GlVertexArray, VertexArrays);
+CREASE_GL_TRAITS(GlFramebuffer, Framebuffers);
+CREASE_GL_TRAITS(GlRenderbuffer, Renderbuffers);
+#undef CREASE_GL_TRAITS
+
+struct GlProgramTraits {
+  static GLuint make() { return glCreateProgram(); }
+  static void drop(GLuint id) { glDeleteProgram(id); }
+};
+using GlProgram = GlObject<GlProgramTraits>;
+
+// A buffer that is read as a vertex or index array, as a texture of texels, or as both.
+struct GlArray {
+  GlBuffer buffer;
+  GlTexture texels;       // a buffer texture over all of it
+  std::size_t count = 0;  // texels
+
+  explicit operator bool() const { return count != 0; }
+};
+
+// `format` is the texel: GL_R32UI, GL_RGB32F, ...; `bytes` a whole number of texels.
+GlArray upload(std::span<const std::byte> bytes, std::size_t texel_bytes, GLenum format);
+
+template <typename T>
+GlArray upload(std::span<const T> values, GLenum format) {
+  return upload(std::as_bytes(values), sizeof(T), format);
+}
+
+void bind_texels(const GlArray& array, int unit);
+
+// Fails with NotSupported and the driver's log; the sources are ours, so the driver is to blame.
+Result<GlProgram> link_program(const std::string& vertex_source,
+                               const std::string& fragment_source);
+
+}  // namespace crease

@@ -1,0 +1,259 @@
+#include "render/gl_shaders.h"
+
+#include "render/palette.h"
+
+#include <cstdio>
+
+namespace crease {
+
+namespace {
+
+constexpr const char* kVertexShader = R"(
+uniform mat4 clip_from_list;
+uniform vec3 eye_in_list;
+out vec3 v_from_eye;
+
+#if PULLED
+uniform samplerBuffer positions;
+uniform usamplerBuffer indices;
+#else
+layout(location = 0) in vec3 a_position;
+#endif
+
+#if NORMALS == TRIANGLE
+flat out vec3 v_normal;
+uniform samplerBuffer normals;
+#else
+centroid out vec3 v_normal;
+#if PULLED
+uniform samplerBuffer normals;
+#else
+layout(location = 1) in vec3 a_normal;
+#endif
+#endif
+
+#if ALBEDO == CORNERS
+centroid out vec3 v_color;
+uniform samplerBuffer corner_colors;
+#endif
+
+#if ALBEDO == ERRORS
+centroid out float v_error;
+#if PULLED
+uniform samplerBuffer errors;
+#else
+layout(location = 2) in float a_error;
+#endif
+#endif
+
+#if MATERIALS && PULLED
+flat out vec3 v_material;
+uniform usamplerBuffer materials;
+uniform samplerBuffer material_colors;
+#endif
+
+#if WIREFRAME
+out vec3 v_corner;
+#endif
+
+void main() {
+#if PULLED
+  int vertex = int(texelFetch(indices, gl_VertexID).r);
+  vec3 position = texelFetch(positions, vertex).xyz;
+#else
+  vec3 position = a_position;
+#endif
+
+#if NORMALS == VERTEX && PULLED
+  v_normal = texelFetch(normals, vertex).xyz;
+#elif NORMALS == VERTEX
+  v_normal = a_normal;
+#elif NORMALS == TRIANGLE
+  v_normal = texelFetch(normals, gl_VertexID / 3).xyz;
+#elif NORMALS == CORNER
+  v_normal = texelFetch(normals, gl_VertexID).xyz;
+#endif
+
+#if ALBEDO == CORNERS
+  v_color = texelFetch(corner_colors, gl_VertexID).rgb;
+#elif ALBEDO == ERRORS && PULLED
+  v_error = texelFetch(errors, vertex).r;
+#elif ALBEDO == ERRORS
+  v_error = a_error;
+#endif
+
+#if MATERIALS && PULLED
+  v_material = texelFetch(material_colors, int(texelFetch(materials, gl_VertexID / 3).r)).rgb;
+#endif
+
+#if WIREFRAME
+  int corner = gl_VertexID % 3;
+  v_corner = vec3(corner == 0, corner == 1, corner == 2);
+#endif
+
+  v_from_eye = position - eye_in_list;
+  gl_Position = clip_from_list * vec4(position, 1);
+}
+)";
+
+// Lights and eye are infinitely far away for the shading, so that a flat face has exactly one
+// colour. Everything is linear; the framebuffer encodes sRGB.
+constexpr const char* kFragmentShader = R"(
+in vec3 v_from_eye;
+out vec4 color;
+
+uniform vec3 key_light, head_light, up;  // unit vectors towards
+
+#if NORMALS == TRIANGLE
+flat in vec3 v_normal;
+#else
+centroid in vec3 v_normal;
+#endif
+
+#if ALBEDO == UNIFORM
+uniform vec3 albedo;
+#elif ALBEDO == CORNERS
+centroid in vec3 v_color;
+#elif ALBEDO == ERRORS
+centroid in float v_error;
+uniform float error_scale;
+#endif
+#if MATERIALS && PULLED
+flat in vec3 v_material;
+#elif MATERIALS
+uniform usamplerBuffer materials;
+uniform samplerBuffer material_colors;
+#endif
+
+#if WIREFRAME
+in vec3 v_corner;
+uniform float line_px;
+
+// How much of the pixel the triangle's edges cover.
+float line_cover() {
+  vec3 change = sqrt(dFdx(v_corner) * dFdx(v_corner) + dFdy(v_corner) * dFdy(v_corner));
+  vec3 height_px = 1 / max(change, vec3(1e-6));
+  vec3 distance_px = max(v_corner, vec3(0)) * height_px;
+  // Lines closer together than they are wide fade to a tone, so that a dense mesh is not black.
+  vec3 fade = 0.25 + 0.75 * smoothstep(vec3(1.5), vec3(9), height_px / line_px);
+  vec3 cover = fade * clamp(0.5 * line_px + 0.5 - distance_px, 0, 1);
+  return max(cover.x, max(cover.y, cover.z));
+}
+#endif
+
+vec3 surface_color() {
+#if ALBEDO == ERRORS
+  return error_color(clamp(v_error * error_scale, 0, 1));
+#elif ALBEDO == UNIFORM
+  return albedo;
+#else
+  vec3 c = vec3(1);
+#if MATERIALS && PULLED
+  c = v_material;
+#elif MATERIALS
+  c = texelFetch(material_colors, int(texelFetch(materials, gl_PrimitiveID).r)).rgb;
+#endif
+#if ALBEDO == CORNERS
+  c *= v_color;
+#endif
+  return c;
+#endif
+}
+
+void main() {
+  vec3 n = normalize(v_normal);
+  // The normal of the side that is seen. Told by the triangle's plane and not by the normal itself,
+  // which may lean away near a silhouette and must then not be turned; and not by gl_FrontFacing,
+  // as files have triangles that run against their own normals.
+  vec3 plane = cross(dFdx(v_from_eye), dFdy(v_from_eye));
+  float seen_side = -dot(plane, v_from_eye);
+  if (dot(n, plane) * seen_side < 0) n = -n;
+
+  vec3 base = surface_color();
+  vec3 ambient = mix(vec3(0.135, 0.125, 0.118), vec3(0.330, 0.352, 0.385), 0.5 + 0.5 * dot(n, up));
+  // Wrapped round the surface, so that no terminator cuts a dome in two.
+  float key = 0.5 + 0.5 * dot(n, key_light);
+  key *= key;
+  float head = max(dot(n, head_light), 0);
+  vec3 half_way = normalize(key_light + head_light);
+  float shine = pow(max(dot(n, half_way), 0), 48);
+  vec3 light = base * (ambient + key * vec3(0.80, 0.775, 0.73) + head * 0.10) + vec3(0.03 * shine);
+#if WIREFRAME
+  light = mix(light, vec3(0.012, 0.016, 0.024), 0.85 * line_cover());
+#endif
+  color = vec4(light, 1);
+}
+)";
+
+std::string error_function() {
+  std::string text = "vec3 error_color(float share) {\n  const vec3 stops[" +
+                     std::to_string(kErrorStopCount) + "] = vec3[](";
+  for (std::size_t i = 0; i < kErrorStopCount; ++i) {
+    const Color c = linear_from_srgb(kErrorStops[i]);
+    char stop[96];
+    std::snprintf(stop, sizeof stop, "%s\n    vec3(%.6f, %.6f, %.6f)", i == 0 ? "" : ",",
+                  double(c[0]), double(c[1]), double(c[2]));
+    text += stop;
+  }
+  const std::string last = std::to_string(kErrorStopCount - 1);
+  return text + ");\n  float at = share * " + last + ".0;\n  int i = min(int(at), " + last +
+         " - 1);\n  return mix(stops[i], stops[i + 1], at - float(i));\n}\n";
+}
+
+std::string preamble(const ProgramKey& key) {
+  const auto define = [](const char* name, int value) {
+    return std::string("#define ") + name + " " + std::to_string(value) + "\n";
+  };
+  const bool materials = key.materials || key.albedo == AlbedoSource::Materials;
+  return "#version 330 core\n" + define("VERTEX", int(NormalSource::PerVertex)) +
+         define("TRIANGLE", int(NormalSource::PerTriangle)) +
+         define("CORNER", int(NormalSource::PerCorner)) +
+         define("UNIFORM", int(AlbedoSource::Uniform)) +
+         define("CORNERS", int(AlbedoSource::Corners)) +
+         define("ERRORS", int(AlbedoSource::Errors)) + define("NORMALS", int(key.normals)) +
+         define("ALBEDO", int(key.albedo)) + define("MATERIALS", materials) +
+         define("WIREFRAME", key.wireframe) + define("PULLED", key.pulled);
+}
+
+Result<Program> build_program(const ProgramKey& key) {
+  const std::string head = preamble(key);
+  Result<GlProgram> linked =
+      link_program(head + kVertexShader, head + error_function() + kFragmentShader);
+  if (!linked.ok()) return linked.failure();
+  Program p;
+  p.program = std::move(*linked);
+  const GLuint id = p.program.id();
+  glUseProgram(id);
+  const auto set_unit = [&](const char* name, int number) {
+    const GLint at = glGetUniformLocation(id, name);
+    if (at >= 0) glUniform1i(at, number);
+  };
+  set_unit("positions", unit::Positions);
+  set_unit("indices", unit::Indices);
+  set_unit("normals", unit::Normals);
+  set_unit("materials", unit::Materials);
+  set_unit("material_colors", unit::MaterialColors);
+  set_unit("corner_colors", unit::CornerColors);
+  set_unit("errors", unit::Errors);
+  p.clip_from_list = glGetUniformLocation(id, "clip_from_list");
+  p.eye_in_list = glGetUniformLocation(id, "eye_in_list");
+  p.albedo = glGetUniformLocation(id, "albedo");
+  p.error_scale = glGetUniformLocation(id, "error_scale");
+  p.key_light = glGetUniformLocation(id, "key_light");
+  p.head_light = glGetUniformLocation(id, "head_light");
+  p.up = glGetUniformLocation(id, "up");
+  p.line_px = glGetUniformLocation(id, "line_px");
+  return p;
+}
+
+}  // namespace
+
+Result<const Program*> ProgramCache::get(const ProgramKey& key) {
+  const auto known = programs_.find(key);
+  if (known != programs_.end()) return &known->second;
+  Result<Program> built = build_program(key);
+  if (!built.ok()) return built.failure();
+  return &programs_.emplace(key, std::move(*built)).first->second;
+}
+
+}  // namespace crease

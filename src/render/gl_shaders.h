@@ -1,0 +1,74 @@
+// The programs of the three-part drawing, one for each way a part can be stored and coloured.
+#pragma once
+
+#include "render/gl_objects.h"
+
+#include <cstdint>
+#include <map>
+
+namespace crease {
+
+// Where a fragment gets its normal from.
+enum class NormalSource : std::uint8_t {
+  PerVertex,    // SN: one per position, interpolated
+  PerTriangle,  // FN: one per triangle, fetched by its number
+  PerCorner,    // NSN: three per triangle, interpolated
+};
+
+enum class AlbedoSource : std::uint8_t {
+  Uniform,    // one for the part
+  Materials,  // by the triangle's material
+  Corners,    // a colour per corner, times the material if there are any
+  Errors,     // by a scalar per position, through the error scale
+};
+
+struct ProgramKey {
+  NormalSource normals = NormalSource::PerVertex;
+  AlbedoSource albedo = AlbedoSource::Uniform;
+  bool materials = false;  // with Corners
+  bool wireframe = false;
+  // Vertices are fetched by the shader, three per triangle, so that each may have its own
+  // attributes though positions are shared. Otherwise drawn indexed, positions being attributes.
+  bool pulled = false;
+
+  auto operator<=>(const ProgramKey&) const = default;
+};
+
+// Texture units of the buffer textures.
+namespace unit {
+enum : int {
+  Positions,
+  Indices,
+  Normals,
+  Materials,
+  MaterialColors,
+  CornerColors,
+  Errors
+};
+}  // namespace unit
+// Attribute locations when not pulled.
+namespace attribute {
+enum : GLuint {
+  Position,
+  Normal,
+  Error
+};
+}  // namespace attribute
+
+struct Program {
+  GlProgram program;
+  // Uniform locations, -1 where the program has no use for one.
+  GLint clip_from_list = -1, eye_in_list = -1, albedo = -1, error_scale = -1;
+  GLint key_light = -1, head_light = -1, up = -1, line_px = -1;
+};
+
+class ProgramCache {
+ public:
+  // Compiled on first use. Null and a failure kept in `failure` when the driver refuses.
+  Result<const Program*> get(const ProgramKey& key);
+
+ private:
+  std::map<ProgramKey, Program> programs_;
+};
+
+}  // namespace crease

@@ -1,0 +1,67 @@
+#include "render/gl_target.h"
+
+#include <algorithm>
+
+namespace crease {
+
+namespace {
+
+constexpr int kSamples = 4;
+
+GlRenderbuffer make_storage(int samples, GLenum format, int width, int height) {
+  GlRenderbuffer storage = GlRenderbuffer::make();
+  glBindRenderbuffer(GL_RENDERBUFFER, storage.id());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
+  return storage;
+}
+
+bool attach(GlFramebuffer& framebuffer, const GlRenderbuffer& color, const GlRenderbuffer* depth) {
+  framebuffer = GlFramebuffer::make();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color.id());
+  if (depth != nullptr) {
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth->id());
+  }
+  return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+}  // namespace
+
+Result<GlTarget> GlTarget::make(const GlContext& gl, int width, int height) {
+  GlTarget target;
+  const int samples = std::min(kSamples, gl.max_samples());
+  target.color_ = make_storage(samples, GL_SRGB8_ALPHA8, width, height);
+  target.depth_ = make_storage(samples, GL_DEPTH_COMPONENT32F, width, height);
+  target.resolved_color_ = make_storage(0, GL_SRGB8_ALPHA8, width, height);
+  if (!attach(target.multisampled_, target.color_, &target.depth_) ||
+      !attach(target.resolved_, target.resolved_color_, nullptr)) {
+    return fail(Error::NotSupported, "OpenGL (" + gl.renderer() + ") has no framebuffer of " +
+                                         std::to_string(width) + " x " + std::to_string(height) +
+                                         " pixels with " + std::to_string(samples) + " samples");
+  }
+  return target;
+}
+
+void GlTarget::begin(int width, int height) {
+  glBindFramebuffer(GL_FRAMEBUFFER, multisampled_.id());
+  glViewport(0, 0, width, height);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+  glEnable(GL_MULTISAMPLE);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  glClearColor(0, 0, 0, 0);
+  glClearDepth(1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void GlTarget::read(int width, int height, std::span<std::uint8_t> rgba) {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, multisampled_.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.id());
+  glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.id());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+}
+
+}  // namespace crease

@@ -1,0 +1,29 @@
+// A framebuffer with several samples a pixel, drawn in linear colours and read back as bytes.
+#pragma once
+
+#include "crease/result.h"
+#include "render/gl_context.h"
+#include "render/gl_objects.h"
+
+#include <cstdint>
+#include <span>
+
+namespace crease {
+
+class GlTarget {
+ public:
+  static Result<GlTarget> make(const GlContext& gl, int width, int height);
+
+  // Binds and clears to transparent black, so that alpha becomes the share of a pixel that is
+  // covered.
+  void begin(int width, int height);
+  // Averages the samples and copies width x height pixels, bottom row first, sRGB-encoded colours
+  // times coverage and coverage.
+  void read(int width, int height, std::span<std::uint8_t> rgba);
+
+ private:
+  GlFramebuffer multisampled_, resolved_;
+  GlRenderbuffer color_, depth_, resolved_color_;
+};
+
+}  // namespace crease

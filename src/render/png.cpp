@@ -1,0 +1,38 @@
+#include "crease/render.h"
+
+#include <png.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+namespace crease {
+
+// libpng's simplified interface: it reports through the image and never jumps. The file appears
+// under its name only when it is complete.
+Status write_png(const Image& image, const std::filesystem::path& path) {
+  const std::size_t bytes = std::size_t(image.width) * std::size_t(image.height) * 4;
+  if (image.width <= 0 || image.height <= 0 || image.rgba.size() != bytes) {
+    return fail(Error::BadValue, path.string() + ": the image has no pixels or not all of them");
+  }
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = png_uint_32(image.width);
+  png.height = png_uint_32(image.height);
+  png.format = PNG_FORMAT_RGBA;
+  std::filesystem::path part = path;
+  part += ".part";
+  if (png_image_write_to_file(&png, part.c_str(), 0, image.rgba.data(), 0, nullptr) == 0) {
+    const std::string why = errno != 0 ? std::strerror(errno) : png.message;
+    png_image_free(&png);
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);
+    return fail(Error::WriteFailed, path.string() + ": cannot write the picture: " + why);
+  }
+  std::error_code error;
+  std::filesystem::rename(part, path, error);
+  if (error) return fail(Error::WriteFailed, path.string() + ": " + error.message());
+  return Done{};
+}
+
+}  // namespace crease

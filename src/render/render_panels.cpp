@@ -1,0 +1,281 @@
+#include "crease/render.h"
+#include "render/fit_camera.h"
+#include "render/gl_context.h"
+#include "render/gl_scene.h"
+#include "render/gl_target.h"
+#include "render/layout.h"
+#include "render/legend.h"
+#include "render/palette.h"
+#include "render/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crease {
+
+namespace {
+
+constexpr int kMaxSide = 32768;
+
+// Each pixel of the picture is 2 x 2 pixels of the framebuffer with 4 samples each: edges get 17
+// steps, and highlights and lines do not flicker between neighbours.
+constexpr int kSupersampling = 2;
+
+// A larger framebuffer takes more memory (36 bytes a pixel), a smaller one draws the scene more
+// often.
+constexpr int kMaxTile = 4096;
+
+std::string panel_name(std::size_t i, const Panel& panel) {
+  return "panel " + std::to_string(i + 1) + (panel.title.empty() ? "" : " (" + panel.title + ")");
+}
+
+Status check_part(const DrawList& list, const DrawPart& part, std::size_t normal_count,
+                  std::size_t position_count, const char* kind) {
+  const std::size_t triangles = part.triangle_count();
+  const auto off = [&](const std::string& what) {
+    return fail(Error::BadValue, std::string(kind) + " part: " + what);
+  };
+  if (part.indices.size() != 3 * triangles) return off("indices are not three a triangle");
+  if (part.normals.size() != normal_count) return off("normals do not fit the triangles");
+  if (!part.materials.empty() && part.materials.size() != triangles) {
+    return off("materials are not one a triangle");
+  }
+  if (!part.colors.empty() && part.colors.size() != 3 * triangles) {
+    return off("colours are not three a triangle");
+  }
+  for (std::uint32_t i : part.indices) {
+    if (i >= position_count)
+      return off("index " + std::to_string(i) + " of " + std::to_string(position_count));
+  }
+  for (std::uint32_t m : part.materials) {
+    if (!list.materials.empty() && m >= list.materials.size()) {
+      return off("material " + std::to_string(m) + " of " + std::to_string(list.materials.size()));
+    }
+  }
+  return Done{};
+}
+
+// A driver may do anything with an index out of range, so none gets there.
+Status check_panel(const Panel& panel, int max_texel_count) {
+  const DrawList& list = panel.list;
+  const std::size_t sn_positions = std::min(list.vertex_normals.size(), list.positions.size());
+  for (const Status& status :
+       {check_part(list, list.sn, 0, sn_positions, "SN"),
+        check_part(list, list.fn, list.fn.triangle_count(), list.positions.size(), "FN"),
+        check_part(list, list.nsn, 3 * list.nsn.triangle_count(), list.positions.size(), "NSN")}) {
+    if (!status.ok()) return status;
+  }
+  if (!panel.error_of_position.empty() && panel.error_of_position.size() != list.positions.size()) {
+    return fail(Error::BadValue, "errors are not one a position");
+  }
+  const std::size_t largest = std::max({list.positions.size(), list.sn.indices.size(),
+                                        list.fn.indices.size(), list.nsn.indices.size()});
+  if (largest > std::size_t(max_texel_count)) {
+    return fail(Error::OverLimit, std::to_string(largest / 3) + " triangles of one kind; this " +
+                                      "device draws " + std::to_string(max_texel_count / 3));
+  }
+  return Done{};
+}
+
+struct ErrorScale {
+  double full = 1, max = 0;
+};
+
+// The red end is the 99.5th percentile over all panels: one far vertex must not turn all else blue.
+ErrorScale error_scale(std::span<const Panel> panels) {
+  std::vector<float> errors;
+  for (const Panel& panel : panels) {
+    for (float e : panel.error_of_position) {
+      if (std::isfinite(e)) errors.push_back(std::abs(e));
+    }
+  }
+  if (errors.empty()) return {};
+  const auto at = errors.begin() + std::ptrdiff_t(double(errors.size() - 1) * 0.995);
+  std::nth_element(errors.begin(), at, errors.end());
+  const double max = *std::max_element(at, errors.end());
+  const double full = *at > 0 ? double(*at) : max;
+  return {full > 0 ? full : 1, max};
+}
+
+// From encoded bytes to linear light, so that averages are of light.
+struct SrgbTable {
+  std::array<float, 256> linear{};
+  std::array<std::uint8_t, 4096> encoded{};
+  SrgbTable() {
+    for (std::size_t i = 0; i < linear.size(); ++i) linear[i] = linear_from_srgb(float(i) / 255);
+  }
+};
+
+std::uint8_t encode(float linear) {
+  return std::uint8_t(std::lround(255 * srgb_from_linear(linear)));
+}
+
+// The background's colour in a row, in encoded steps finer than a byte; linear in encoded values,
+// which looks even.
+std::array<float, 3> background_row(int y, int height) {
+  const float t = (float(y) + 0.5f) / float(height);
+  std::array<float, 3> c;
+  for (std::size_t i = 0; i < 3; ++i) {
+    c[i] = float(kBackgroundTop[i]) + t * (float(kBackgroundBottom[i]) - float(kBackgroundTop[i]));
+  }
+  return c;
+}
+
+// Ordered dither, so that 32 grey levels over 1000 rows show no bands.
+float dither(int x, int y) {
+  static constexpr std::uint8_t kBayer[4][4] = {
+      {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+  return (float(kBayer[y & 3][x & 3]) + 0.5f) / 16;
+}
+
+void fill_background(Image& image, const PixelRect& view) {
+  for (int y = 0; y < view.height; ++y) {
+    const std::array<float, 3> row = background_row(y, view.height);
+    for (int x = 0; x < view.width; ++x) {
+      std::uint8_t* pixel = &image.rgba[4 * (std::size_t(view.y + y) * std::size_t(image.width) +
+                                             std::size_t(view.x + x))];
+      for (std::size_t c = 0; c < 3; ++c) {
+        pixel[c] = std::uint8_t(std::min(255.0f, row[c] + dither(x, y)));
+      }
+      pixel[3] = 255;
+    }
+  }
+}
+
+// Lays a tile over the background that is already there. `tile` has `kSupersampling` pixels for
+// each of the picture's, bottom row first, colours times coverage.
+void lay_over(Image& image, const PixelRect& at, std::span<const std::uint8_t> tile) {
+  static const SrgbTable table;
+  constexpr int s = kSupersampling;
+  const std::size_t stride = std::size_t(at.width) * s;
+  for (int y = 0; y < at.height; ++y) {
+    for (int x = 0; x < at.width; ++x) {
+      float sum[4] = {};
+      for (int j = 0; j < s; ++j) {
+        const std::size_t row = std::size_t((at.height - 1 - y) * s + j);
+        const std::uint8_t* from = &tile[4 * (row * stride + std::size_t(x) * s)];
+        for (int i = 0; i < s; ++i, from += 4) {
+          for (int c = 0; c < 3; ++c) sum[c] += table.linear[from[c]];
+          sum[3] += float(from[3]);
+        }
+      }
+      if (sum[3] == 0) continue;
+      const float cover = sum[3] / (255 * s * s);
+      std::uint8_t* pixel = &image.rgba[4 * (std::size_t(at.y + y) * std::size_t(image.width) +
+                                             std::size_t(at.x + x))];
+      for (std::size_t c = 0; c < 3; ++c) {
+        pixel[c] = encode(sum[c] / (s * s) + (1 - cover) * table.linear[pixel[c]]);
+      }
+    }
+  }
+}
+
+// Draws one panel's view tile by tile.
+Status draw_view(Image& image, const PixelRect& view_rect, const GlScene& scene,
+                 const Camera& camera, const DrawStyle& style, GlTarget& target, int tile_px,
+                 ProgramCache& programs) {
+  const View view = make_view(camera, double(view_rect.width) / view_rect.height);
+  std::vector<std::uint8_t> pixels;
+  for (int y = 0; y < view_rect.height; y += tile_px) {
+    for (int x = 0; x < view_rect.width; x += tile_px) {
+      const int width = std::min(tile_px, view_rect.width - x);
+      const int height = std::min(tile_px, view_rect.height - y);
+      Window window;
+      window.left = double(x) / view_rect.width;
+      window.right = double(x + width) / view_rect.width;
+      window.top = 1 - double(y) / view_rect.height;
+      window.bottom = 1 - double(y + height) / view_rect.height;
+      const int draw_width = width * kSupersampling, draw_height = height * kSupersampling;
+      target.begin(draw_width, draw_height);
+      const Status drawn = scene.draw(programs, view, camera.up, window, style);
+      if (!drawn.ok()) return drawn;
+      pixels.resize(4 * std::size_t(draw_width) * std::size_t(draw_height));
+      target.read(draw_width, draw_height, pixels);
+      lay_over(image, {view_rect.x + x, view_rect.y + y, width, height}, pixels);
+    }
+  }
+  return Done{};
+}
+
+LegendContent legend_content(std::span<const Panel> panels, Coloring coloring,
+                             const ErrorScale& scale) {
+  LegendContent content{.coloring = coloring, .error_full = scale.full, .error_max = scale.max};
+  for (const Panel& panel : panels) {
+    content.has_sn |= panel.list.sn.triangle_count() > 0;
+    content.has_fn |= panel.list.fn.triangle_count() > 0;
+    content.has_nsn |= panel.list.nsn.triangle_count() > 0;
+  }
+  return content;
+}
+
+}  // namespace
+
+Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& options) {
+  if (panels.empty()) return fail(Error::BadValue, "no panel to draw");
+  if (options.width_px < 1 || options.height_px < 1 || options.width_px > kMaxSide ||
+      options.height_px > kMaxSide) {
+    return fail(Error::BadValue, "a picture of " + std::to_string(options.width_px) + " x " +
+                                     std::to_string(options.height_px) +
+                                     " pixels; each side is 1 to " + std::to_string(kMaxSide));
+  }
+  std::vector<PointSet> scene;
+  for (const Panel& panel : panels) scene.push_back({panel.list.origin, panel.list.positions});
+  const Layout layout = make_layout(
+      {.panel_count = panels.size(),
+       .width_px = options.width_px,
+       .height_px = options.height_px,
+       .columns = options.columns,
+       .content_aspect = options.camera
+                             ? double(options.camera->width_px) / options.camera->height_px
+                             : projected_aspect(scene, options.up),
+       .titles = std::ranges::any_of(panels, [](const Panel& p) { return !p.title.empty(); }),
+       .legend = options.coloring != Coloring::Shaded});
+  const PixelRect& size = layout.views.front();
+  if (size.width < 1 || size.height < 1) {
+    return fail(Error::BadValue, std::to_string(panels.size()) + " panels do not fit into " +
+                                     std::to_string(options.width_px) + " x " +
+                                     std::to_string(options.height_px) + " pixels");
+  }
+  const Camera camera =
+      options.camera ? *options.camera : fit_camera_to(scene, options.up, size.width, size.height);
+
+  Result<GlContext> gl = open_gl();
+  if (!gl.ok()) return gl.failure();
+  const int tile_px = std::min(kMaxTile, gl->max_texture_size()) / kSupersampling;
+  Result<GlTarget> target = GlTarget::make(*gl, std::min(tile_px, size.width) * kSupersampling,
+                                           std::min(tile_px, size.height) * kSupersampling);
+  if (!target.ok()) return target.failure();
+
+  Image image;
+  image.width = options.width_px;
+  image.height = options.height_px;
+  image.rgba.resize(4 * std::size_t(image.width) * std::size_t(image.height));
+  fill_rect(image, {0, 0, image.width, image.height}, kPageColor);
+  const ErrorScale scale = options.coloring == Coloring::Error ? error_scale(panels) : ErrorScale{};
+  ProgramCache programs;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const Status sound = check_panel(panels[i], gl->max_texel_count());
+    if (!sound.ok()) {
+      return fail(sound.failure().error, panel_name(i, panels[i]) + ": " + sound.failure().message);
+    }
+    fill_rect(image, layout.titles[i], kPageColor);
+    draw_title(image, panels[i].title, layout.titles[i], layout.title_px, kTextColor);
+    fill_background(image, layout.views[i]);
+    const DrawStyle style{.coloring = options.coloring,
+                          .wireframe = options.wireframe,
+                          .line_px = kSupersampling * std::max(1.0f, float(size.height) / 1080),
+                          .level_share = panels[i].level_share,
+                          .error_full = float(scale.full)};
+    const GlScene on_gpu(panels[i].list, panels[i].error_of_position);
+    const Status drawn =
+        draw_view(image, layout.views[i], on_gpu, camera, style, *target, tile_px, programs);
+    if (!drawn.ok()) return drawn.failure();
+  }
+  for (const PixelRect& separator : layout.separators) {
+    fill_rect(image, separator, kSeparatorColor);
+  }
+  draw_legend(image, layout.legend, legend_content(panels, options.coloring, scale));
+  return image;
+}
+
+}  // namespace crease

@@ -1,0 +1,88 @@
+#include "render/transform.h"
+
+#include <algorithm>
+
+namespace crease {
+
+namespace {
+
+// An axis that is surely not along `direction`.
+Vec3d any_other_axis(const Vec3d& direction) {
+  return std::abs(direction.y) < 0.9 * length(direction) ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
+}
+
+Vec3d corner_of(const Vec3d& low, const Vec3d& high, int i) {
+  return {(i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z};
+}
+
+}  // namespace
+
+View make_view(const Camera& camera, double aspect) {
+  View view;
+  view.eye = camera.position;
+  view.back = normalized(camera.position - camera.target);
+  if (view.back == Vec3d{}) view.back = {0, 0, 1};
+  view.right = cross(normalized(camera.up), view.back);
+  if (length(view.right) < 1e-6) view.right = cross(any_other_axis(view.back), view.back);
+  view.right = normalized(view.right);
+  view.above = cross(view.back, view.right);
+
+  const double camera_aspect = double(camera.width_px) / camera.height_px;
+  const double tan_half = std::tan(radians(camera.vertical_fov_deg) / 2);
+  view.tan_half_height = tan_half * std::max(1.0, camera_aspect / aspect);
+  view.tan_half_width = view.tan_half_height * aspect;
+  return view;
+}
+
+DepthRange depth_range(const View& view, const Vec3d& low, const Vec3d& high) {
+  double near = 1e300, far = 0;
+  for (int i = 0; i < 8; ++i) {
+    const double distance = -dot(corner_of(low, high, i) - view.eye, view.back);
+    near = std::min(near, distance);
+    far = std::max(far, distance);
+  }
+  if (far <= 0) return {};  // everything is behind the viewer
+  const double margin = 1e-3 * length(high - low) + 1e-6 * far;
+  far += margin;
+  return {std::max(near - margin, far / 20000), far};
+}
+
+Matrix4f clip_from_list(const View& view, const Vec3d& origin, const DepthRange& depth,
+                        const Window& window) {
+  const Vec3d shift = origin - view.eye;
+  const double n = depth.near, f = depth.far;
+  // The window of the frustum at distance 1.
+  const double x0 = (2 * window.left - 1) * view.tan_half_width;
+  const double x1 = (2 * window.right - 1) * view.tan_half_width;
+  const double y0 = (2 * window.bottom - 1) * view.tan_half_height;
+  const double y1 = (2 * window.top - 1) * view.tan_half_height;
+
+  // Rows of the clip matrix as (direction, constant) of the point's offset from the eye.
+  const Vec3d forward = -view.back;
+  const Vec3d row_x = view.right * (2 / (x1 - x0)) - forward * ((x1 + x0) / (x1 - x0));
+  const Vec3d row_y = view.above * (2 / (y1 - y0)) - forward * ((y1 + y0) / (y1 - y0));
+  const Vec3d row_z = forward * ((f + n) / (f - n));
+  const double constant_z = -2 * f * n / (f - n);
+
+  const std::array<Vec3d, 4> rows{row_x, row_y, row_z, forward};
+  Matrix4f m{};
+  for (std::size_t r = 0; r < 4; ++r) {
+    m[0 + r] = float(rows[r].x);
+    m[4 + r] = float(rows[r].y);
+    m[8 + r] = float(rows[r].z);
+    m[12 + r] = float(dot(rows[r], shift) + (r == 2 ? constant_z : 0));
+  }
+  return m;
+}
+
+void Box::add(const Vec3d& p) {
+  if (empty) {
+    low = high = p;
+    empty = false;
+    return;
+  }
+  low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+  high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+}
+
+}  // namespace crease

@@ -1,0 +1,51 @@
+// From model units to clip space, in doubles until the last step, so that city coordinates of
+// 10^6 m reach the float pipeline as small numbers.
+//
+//   View view = make_view(camera, aspect);
+//   upload(clip_from_list(view, list.origin, near_far, whole_picture));
+#pragma once
+
+#include "crease/render.h"
+
+#include <array>
+#include <span>
+
+namespace crease {
+
+// Column-major, as OpenGL takes it.
+using Matrix4f = std::array<float, 16>;
+
+// Right-handed frame at the eye: x right, y above, z back towards the viewer.
+struct View {
+  Vec3d eye, right, above, back;
+  double tan_half_width = 1, tan_half_height = 1;
+};
+
+struct DepthRange {
+  double near = 0.1, far = 100;
+};
+
+// The part of the picture that a tile shows, each 0..1 from the lower left.
+struct Window {
+  double left = 0, right = 1, bottom = 0, top = 1;
+};
+
+// `aspect` is width over height of the picture. A picture narrower or wider than the camera's
+// viewport shows at least what the viewport shows. An `up` along the line of sight is replaced by
+// another axis.
+View make_view(const Camera& camera, double aspect);
+
+// The distances between which all points lie, the near one never closer than 1/20,000 of the far
+// one, which is what 24 bits of depth can tell apart to a pixel.
+DepthRange depth_range(const View& view, const Vec3d& low, const Vec3d& high);
+
+Matrix4f clip_from_list(const View& view, const Vec3d& origin, const DepthRange& depth,
+                        const Window& window);
+
+struct Box {
+  Vec3d low, high;
+  bool empty = true;
+  void add(const Vec3d& p);
+};
+
+}  // namespace crease
