@@ -1,0 +1,259 @@
+"""What every command does when all is well, and the fields that scripts rely on (DESIGN 9)."""
+
+import hashlib
+import json
+import pathlib
+import struct
+
+import tool
+
+COMMANDS = ["build", "info", "extract", "compare", "render", "validate", "generate"]
+
+
+def digest(path):
+    return hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
+
+
+def png_size(path):
+    head = pathlib.Path(path).read_bytes()[:24]
+    assert head[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", head[16:24])
+
+
+def glb_json(path):
+    data = pathlib.Path(path).read_bytes()
+    magic, version, length, size, kind = struct.unpack("<4sIIII", data[:20])
+    assert magic == b"glTF" and version == 2 and length == len(data) and kind == 0x4E4F534A
+    return json.loads(data[20:20 + size])
+
+
+class Commands(tool.Case):
+    def has(self, value, *keys):
+        for key in keys:
+            self.assertIn(key, value)
+
+    def test_every_command_has_help_with_an_example(self):
+        self.assertIn("build", self.run_tool("--help").stdout)
+        for command in COMMANDS:
+            text = self.run_tool(command, "--help").stdout
+            self.assertIn(f"crease {command} ", text)
+            self.assertIn("Example", text)
+            for option in ("--json", "--threads", "--quiet"):
+                self.assertIn(option, text)
+
+    def test_version(self):
+        self.assertRegex(self.run_tool("--version").stdout, r"^crease \d+\.\d+\.\d+\n$")
+
+    def test_generate_makes_the_same_city_again_and_another_with_another_seed(self):
+        made = self.json("generate", "city", "-o", self.path("a.ply"), "--triangles", 3000)
+        self.has(made, "output", "triangles", "vertices", "parts", "seconds")
+        self.assertGreater(made["triangles"], 1000)
+        self.assertGreater(made["parts"], 1)
+        self.json("generate", "city", "-o", self.path("b.ply"), "--triangles", 3000)
+        self.json("generate", "city", "-o", self.path("c.ply"), "--triangles", 3000, "--seed", 2)
+        self.assertEqual(digest(self.path("a.ply")), digest(self.path("b.ply")))
+        self.assertNotEqual(digest(self.path("a.ply")), digest(self.path("c.ply")))
+
+    def test_build(self):
+        out = self.path("city.crease")
+        built = self.json("build", self.city(), "-o", out, "--precision", "16bits")
+        self.has(built, "triangles", "vertices", "seconds", "peak_memory", "bytes",
+                 "bits_per_vertex", "bands", "blocks", "import")
+        self.assertEqual(built["bytes"], pathlib.Path(out).stat().st_size)
+        self.assertAlmostEqual(built["bits_per_vertex"], 8 * built["bytes"] / built["vertices"])
+        self.assertGreater(built["peak_memory"], built["bytes"])
+
+    def test_build_is_the_same_to_the_byte_for_any_number_of_threads(self):
+        for placement in ("optimal", "endpoint"):
+            digests = set()
+            for threads in (1, 2, 7):
+                out = self.path(f"{placement}_{threads}.crease")
+                self.json("build", self.city(), "-o", out, "--threads", threads, "--placement",
+                          placement)
+                digests.add(digest(out))
+            self.assertEqual(len(digests), 1)
+
+    def test_build_of_several_files_makes_a_part_of_each(self):
+        a = self.write("a.obj", tool.SQUARE.format(z=0))
+        b = self.write("b.obj", tool.SQUARE.format(z=3))
+        out = self.path("both.crease")
+        self.assertEqual(self.json("build", a, b, "-o", out)["triangles"], 4)
+        self.assertEqual(self.json("info", out)["parts"], 2)
+
+    def test_build_prints_what_was_ugly_and_where_normals_come_from(self):
+        ugly = self.write("ugly.obj", tool.TETRAHEDRON + "f 1 1 2\nv 9 9 9\n")
+        done = self.run_tool("build", ugly, "-o", self.path("ugly.crease"))
+        self.assertRegex(done.stderr, r"1 triangles with two equal corners dropped")
+        self.assertRegex(done.stderr, r"1 isolated vertices dropped")
+        self.assertRegex(done.stderr, r"normals: .*\w")
+
+    def test_precision_is_a_length_or_bits(self):
+        model = self.write("square.obj", tool.SQUARE.format(z=0.123))
+        for text, step in (("0.25", 0.25), ("3bits", None)):
+            out = self.path("square.crease")
+            self.json("build", model, "-o", out, "--precision", text)
+            got = self.json("info", out)["precision"]
+            if step is not None:
+                self.assertEqual(got, step)
+            else:
+                self.assertTrue(1 / 8 <= got <= 1 / 6, got)
+
+    def test_normal_policies_change_the_kinds(self):
+        model = self.write("t.obj", tool.TETRAHEDRON)
+        flat = self.json("info", model, "--normals", "flat")
+        self.assertEqual((flat["fn_triangles"], flat["nsn_vertices"]), (4, 4))
+        smooth = self.json("info", model, "--normals", "smooth")
+        self.assertEqual((smooth["sn_triangles"], smooth["sn_vertices"]), (4, 4))
+        self.assertEqual(self.json("info", model, "--normals", "crease:10")["fn_triangles"], 4)
+
+    def test_info_of_a_crease_file(self):
+        info = self.json("info", self.built())
+        self.has(info, "triangles", "vertices", "sn_vertices", "nsn_vertices", "sn_triangles",
+                 "fn_triangles", "nsn_triangles", "attributes", "bytes", "bits_per_vertex", "bands",
+                 "blocks", "depth", "linear_bytes")
+        self.has(info["bits_per_vertex"], "total", "connectivity", "positions", "attributes")
+        self.has(info["linear_bytes"], "crease", "wedge", "replicated")
+        self.assertEqual(info["sn_triangles"] + info["fn_triangles"] + info["nsn_triangles"],
+                         info["triangles"])
+        self.assertEqual(info["sn_vertices"] + info["nsn_vertices"], info["vertices"])
+        self.assertEqual(info["attributes"][0]["role"], "normal")
+        self.assertEqual(info["bytes"], pathlib.Path(self.built()).stat().st_size)
+        self.assertEqual(sum(b["patches"] for b in info["bands"]), info["blocks"])
+        errors = [b["surface_error"] for b in info["bands"]]
+        self.assertEqual(errors, sorted(errors))
+        self.assertGreater(info["depth"], 3)
+        self.assertLess(info["linear_bytes"]["crease"], info["linear_bytes"]["replicated"])
+
+    def test_info_of_a_mesh_file_agrees_with_the_file_built_from_it(self):
+        mesh, file = self.json("info", self.city()), self.json("info", self.built())
+        self.has(mesh, "import", "bounds")
+        for key in ("triangles", "vertices", "sn_vertices", "fn_triangles", "nsn_triangles"):
+            self.assertEqual(mesh[key], file[key], key)
+
+    def test_extract_by_count_and_ratio(self):
+        full = self.json("info", self.built())["triangles"]
+        for option, value, most in (("--triangles", 500, 500), ("--ratio", 0.25, full / 4)):
+            out = self.path("level.ply")
+            level = self.json("extract", self.built(), "-o", out, option, value)
+            self.has(level, "asked", "triangles", "vertices", "stopped_by", "error",
+                     "error_measured", "bytes_read", "blocks_read", "seconds")
+            self.has(level["error"], "surface", "line", "degrees", "texture")
+            self.has(level["error_measured"], "surface_mean", "surface_max", "degrees_mean")
+            self.assertEqual(level["asked"], {option[2:]: value})
+            self.assertEqual(level["stopped_by"], "triangles")
+            self.assertTrue(0.9 * most <= level["triangles"] <= most)
+            self.assertEqual(self.json("info", out)["triangles"], level["triangles"])
+
+    def test_extract_by_error_keeps_its_promise_when_measured_anew(self):
+        full = self.path("full.ply")
+        self.json("extract", self.built(), "-o", full)
+        counts = []
+        for length in (0.05, 0.5, 5):
+            out = self.path("level.ply")
+            level = self.json("extract", self.built(), "-o", out, "--error", length, "--strict")
+            self.assertLessEqual(level["error_measured"]["surface_max"], length)
+            again = self.json("compare", full, out, "--samples", level["error_measured"]["samples"])
+            worst = max(again["distance"]["max"].values())
+            self.assertLessEqual(worst, length * 1.02)
+            self.assertIn(level["stopped_by"], ("error", "base"))
+            counts.append(level["triangles"])
+        self.assertEqual(counts, sorted(counts, reverse=True))
+        self.assertLess(counts[-1], counts[0])
+
+    def test_extract_by_error_zero_loses_nothing(self):
+        box = self.write("t.obj", tool.TETRAHEDRON)
+        level = self.json("extract", box, "-o", self.path("t.ply"), "--error", 0, "--strict")
+        self.assertEqual(level["triangles"], 4)
+        self.assertEqual(level["error_measured"]["surface_max"], 0)
+
+    def test_extract_writes_every_format_and_reads_any_mesh(self):
+        for extension in ("obj", "ply", "stl", "glb"):
+            out = self.path("level." + extension)
+            level = self.json("extract", self.city(), "-o", out, "--ratio", 0.5, "--samples", 0)
+            self.assertIsNone(level["error_measured"])
+            self.assertEqual(self.json("info", out)["triangles"], level["triangles"], extension)
+
+    def test_extract_of_everything_is_the_snapped_model(self):
+        out = self.path("all.ply")
+        self.json("extract", self.built(), "-o", out)
+        c = self.json("compare", self.city(), out, "--samples", 5000)
+        step = self.json("info", self.built())["precision"]
+        self.assertLess(max(c["distance"]["max"].values()), 2 * step)
+        self.assertLess(c["normal_deviation"]["mean"], 0.5)
+
+    def test_extract_writes_a_chain_with_a_manifest(self):
+        self.json("extract", self.built(), "-o", self.path("lod.glb"), "--levels", 3)
+        manifest = json.loads(pathlib.Path(self.path("lod.json")).read_text())
+        counts = [level["triangles"] for level in manifest["levels"]]
+        self.assertEqual(len(counts), 3)
+        for level, coarser in zip(counts, counts[1:]):
+            self.assertTrue(0.4 * level < coarser <= 0.51 * level, counts)
+        for level in manifest["levels"]:
+            self.has(level["error_measured"], "surface_max", "degrees_mean")
+            info = self.json("info", self.path(level["file"]))
+            self.assertEqual(info["triangles"], level["triangles"])
+
+    def test_extract_writes_a_chain_as_one_glb(self):
+        out = self.path("lod.glb")
+        report = self.json("extract", self.built(), "-o", out, "--levels", 3, "--lod-glb")
+        gltf = glb_json(out)
+        root = gltf["nodes"][gltf["scenes"][0]["nodes"][0]]
+        ids = root["extensions"]["MSFT_lod"]["ids"]
+        self.assertIn("MSFT_lod", gltf["extensionsUsed"])
+        self.assertEqual(len(root["extras"]["MSFT_screencoverage"]), 3)
+
+        def triangles(node):
+            node = gltf["nodes"][node]
+            own = 0
+            if "mesh" in node:
+                own = sum(gltf["accessors"][p["indices"]]["count"] // 3
+                          for p in gltf["meshes"][node["mesh"]]["primitives"])
+            return own + sum(map(triangles, node.get("children", [])))
+
+        counts = [triangles(gltf["scenes"][0]["nodes"][0])] + [triangles(i) for i in ids]
+        self.assertEqual(counts, [level["triangles"] for level in report["levels"]])
+        # A reader without the extension sees the finest level.
+        self.assertEqual(self.json("info", out)["triangles"], counts[0])
+
+    def test_compare_of_parallel_squares_is_their_distance(self):
+        a = self.write("a.obj", tool.SQUARE.format(z=0))
+        b = self.write("b.obj", tool.SQUARE.format(z=0.5))
+        c = self.json("compare", a, b, "--samples", 1000)
+        self.has(c, "distance", "normal_deviation", "samples")
+        for key in ("mean", "rms", "max"):
+            self.assertAlmostEqual(c["distance"][key]["a_to_b"], 0.5, 6)
+            self.assertAlmostEqual(c["distance"][key]["b_to_a"], 0.5, 6)
+            self.assertAlmostEqual(c["distance"][key + "_relative"]["a_to_b"], 0.5 / 2**0.5, 6)
+        self.has(c["normal_deviation"], "mean", "p95", "max")
+        self.assertAlmostEqual(c["normal_deviation"]["max"], 0, 3)
+        self.assertEqual(c["samples"], 1000)
+
+    def test_render(self):
+        out = self.path("levels.png")
+        view = self.write("cam.json", json.dumps(
+            {"position": [300, -300, 200], "target": [0, 0, 0], "up": [0, 0, 1]}))
+        picture = self.json("render", self.built(), "-o", out, "--levels", "1,0.2,0.02",
+                            "--control", "--size", "330x200", "--view", view)
+        self.assertEqual(len(picture["panels"]), 6)
+        self.assertEqual([p["control"] for p in picture["panels"]], [False] * 3 + [True] * 3)
+        self.assertEqual(png_size(out), (330, 200))
+        for color in ("kind", "level", "error"):
+            self.json("render", self.built(), "-o", out, "--ratio", 0.1, "--color", color,
+                      "--wireframe", "--size", "160x120")
+            self.assertEqual(png_size(out), (160, 120))
+        self.json("render", self.city(), "-o", out, "--size", "160x120")
+
+    def test_validate(self):
+        self.assertEqual(self.json("validate", self.built())["errors"], [])
+        self.assertTrue(self.json("validate", self.built())["ok"])
+
+    def test_quiet_leaves_standard_error_empty(self):
+        done = self.run_tool("build", self.city(), "-o", self.path("q.crease"), "--quiet")
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+        answer = self.run_tool("info", self.path("q.crease"), "--quiet")
+        self.assertIn("triangles", answer.stdout)
+        self.assertEqual(answer.stderr, "")
+
+
+if __name__ == "__main__":
+    tool.main()

@@ -1,0 +1,139 @@
+"""Every way to fail has its exit status, a message that names file, place and reason, and leaves
+nothing half done."""
+
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+
+import tool
+
+
+def limit_file_size():
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+
+class Failures(tool.Case):
+    def fails(self, exit_status, *arguments):
+        failed = self.json(*arguments, exit_status=exit_status)
+        self.assertEqual(failed["exit_status"], exit_status)
+        self.assertTrue(failed["error"]["message"])
+        return failed["error"]
+
+    def test_1_command_line(self):
+        city = self.city()
+        for arguments in ([], ["unknown"], ["build"], ["build", city], ["build", city, "--output"],
+                          ["info"], ["extract", city, "-o", "x.ply", "--ratio", "2"],
+                          ["extract", city, "-o", "x.ply", "--triangles", "0"],
+                          ["extract", city, "-o", "x.ply", "--triangles", "9", "--ratio", "0.5"],
+                          ["extract", city, "-o", "x.ply", "--lod-glb"],
+                          ["compare", city], ["render", city, "-o", "x.png", "--color", "pink"],
+                          ["generate", "castle", "-o", "x.ply"], ["info", city, "--threads", "-1"],
+                          ["view", city], ["serve", "."]):
+            self.run_tool(*arguments, exit_status=1)
+        for arguments in (["build", city, "-o", "x.crease", "--precision", "fine"],
+                          ["build", city, "-o", "x.crease", "--precision", "31bits"],
+                          ["build", city, "-o", "x.crease", "--precision", "-1"],
+                          ["build", city, "-o", "x.crease", "--normals", "soft"],
+                          ["extract", city, "-o", "x.ply", "--error", "1", "--samples", "0"],
+                          ["extract", city, "-o", "x.glb", "--levels", "2", "--ratio", "0.5"],
+                          ["render", city, "-o", "x.png", "--levels", "1,0,2"],
+                          ["render", city, "-o", "x.png", "--size", "10"]):
+            self.assertEqual(self.fails(1, *arguments)["name"], "CommandLine")
+
+    def test_2_input_cannot_be_read(self):
+        out = self.path("x.crease")
+        self.assertEqual(self.fails(2, "build", self.path("none.obj"), "-o", out)["name"], "NotFound")
+        self.assertIn("none.crease", self.fails(2, "info", self.path("none.crease"))["message"])
+        bad = self.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+        message = self.fails(2, "build", bad, "-o", out)["message"]
+        self.assertRegex(message, r"bad\.obj:4\b")
+        nothing = self.write("nothing.obj", "v 0 0 0\n")
+        self.fails(2, "build", nothing, "-o", out)
+        text = self.write("text.crease", "this is no model, whatever its name says\n" * 4)
+        self.assertEqual(self.fails(2, "info", text)["name"], "NotCrease")
+        self.assertEqual(self.fails(2, "validate", self.city())["name"], "NotCrease")
+        self.fails(2, "extract", text, "-o", self.path("x.ply"))
+        view = self.write("cam.json", "{\"position\": 3}")
+        self.assertIn("cam.json", self.fails(2, "render", self.city(), "-o", self.path("x.png"),
+                                             "--view", view)["message"])
+        self.assertFalse(os.path.exists(out))
+
+    def test_2_a_file_cut_anywhere_is_refused(self):
+        whole = pathlib.Path(self.built(1500)).read_bytes()
+        for share in (0, 0.01, 0.3, 0.6, 0.99):
+            cut = self.write("cut.crease", whole[:int(share * len(whole))])
+            self.fails(2, "extract", cut, "-o", self.path("x.ply"))
+        cut = self.write("cut.crease", whole[:-1])
+        self.fails(2, "info", cut)
+
+    def test_3_not_supported(self):
+        self.fails(3, "extract", self.city(), "-o", self.path("x.fbx"))
+        self.fails(3, "extract", self.city(), "-o", self.path("x.ply"), "--levels", 2)
+        self.fails(3, "generate", "city", "-o", self.path("x.doc"), "--triangles", 500)
+        self.fails(3, "render", self.city(), "-o", self.path("x.jpg"))
+        self.fails(3, "build", self.built(), "-o", self.path("x.crease"))
+
+    def test_4_cannot_write(self):
+        nowhere = self.path("no/such/folder/")
+        self.fails(4, "build", self.city(), "-o", nowhere + "x.crease")
+        self.fails(4, "extract", self.city(), "-o", nowhere + "x.ply", "--ratio", 0.5)
+        self.fails(4, "extract", self.city(), "-o", nowhere + "x.glb", "--levels", 2)
+        self.fails(4, "render", self.city(), "-o", nowhere + "x.png", "--size", "64x64")
+        self.fails(4, "generate", "city", "-o", nowhere + "x.ply", "--triangles", 500)
+
+    def test_4_a_full_disk_leaves_nothing_behind(self):
+        # A limit on file sizes stands in for a full disk: every write past it fails.
+        city = self.city()
+        before = self.files()
+        for arguments in (["build", city, "-o", self.path("x.crease")],
+                          ["extract", city, "-o", self.path("x.ply"), "--samples", "0"],
+                          ["extract", city, "-o", self.path("x.obj"), "--samples", "0"],
+                          ["extract", city, "-o", self.path("x.stl"), "--samples", "0"],
+                          ["extract", city, "-o", self.path("x.glb"), "--samples", "0"],
+                          ["generate", "city", "-o", self.path("y.ply"), "--triangles", "4000"]):
+            done = subprocess.run([tool.BINARY, *arguments], capture_output=True, text=True,
+                                  preexec_fn=limit_file_size)
+            self.assertEqual(done.returncode, 4, done.stderr)
+            self.assertEqual(self.files(), before, arguments)
+
+    def test_5_target_not_met(self):
+        model = self.write("t.obj", tool.TETRAHEDRON)  # levels of 4 and 2 triangles, then none
+        out = self.path("x.ply")
+        self.run_tool("extract", model, "-o", out, "--triangles", 1, "--strict", exit_status=5)
+        self.assertFalse(os.path.exists(out))
+        level = self.json("extract", model, "-o", out, "--triangles", 1)
+        self.assertEqual((level["stopped_by"], level["target_met"]), ("topology", False))
+        self.assertTrue(os.path.exists(out))
+
+    def test_6_validation_failed(self):
+        whole = bytearray(pathlib.Path(self.built(1500)).read_bytes())
+        for share in (0.2, 0.5, 0.9):
+            changed = bytearray(whole)
+            changed[int(share * len(changed))] ^= 0x10
+            result = self.json("validate", self.write("changed.crease", bytes(changed)),
+                               exit_status=6)
+            self.assertFalse(result["ok"])
+            self.assertTrue(result["errors"][0])
+        self.assertFalse(self.json("validate", self.write("cut.crease", bytes(whole[:-9])),
+                                   exit_status=6)["ok"])
+
+    def test_a_failed_command_leaves_the_old_output_and_nothing_else(self):
+        out = self.write("old.crease", "precious")
+        bad = self.write("bad.obj", "v 0 0 0\nf 1 2 3\n")
+        before = self.files()
+        self.fails(2, "build", bad, "-o", out)
+        self.assertEqual(pathlib.Path(out).read_text(), "precious")
+        self.assertEqual(self.files(), before)
+
+    def test_messages_are_one_line(self):
+        done = self.run_tool("info", self.path("none.ply"), exit_status=2)
+        self.assertRegex(done.stderr, re.compile(r"^crease: [^\n]*none\.ply[^\n]*\n$"))
+        self.assertEqual(done.stdout, "")
+
+
+if __name__ == "__main__":
+    tool.main()

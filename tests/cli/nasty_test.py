@@ -1,0 +1,64 @@
+"""The real models: each is built, or refused with a message that names the file and a reason."""
+
+import subprocess
+
+import tool
+
+BIGGEST_BYTES = 1_200_000  # packed; larger ones are for the benchmarks
+
+
+def models(folder):
+    endings = (".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".b3dm", ".zst", ".xz")
+    found = [p for p in (tool.SHARED / folder).rglob("*") if p.name.endswith(endings)]
+    return sorted(p for p in found if p.stat().st_size <= BIGGEST_BYTES)
+
+
+class Nasty(tool.Case):
+    def build(self, path, *options):
+        out = self.path("model.crease")
+        done = subprocess.run([tool.BINARY, "build", str(path), "-o", out, *options],
+                              capture_output=True, text=True, errors="replace")
+        return done, out
+
+    def test_broken_files_build_or_are_refused(self):
+        outcomes = {}
+        for path in models("nasty"):
+            with self.subTest(path.name):
+                done, out = self.build(path)
+                outcomes[path.name] = done.returncode
+                self.assertIn(done.returncode, (0, 2, 3), done.stderr)
+                if done.returncode == 0:
+                    self.assertTrue(self.json("validate", out)["ok"])
+                else:
+                    self.assertRegex(done.stderr, r"crease: .*" + path.name.split(".")[0])
+        refused = ("empty.obj", "empty.ply", "empty_header_only.ply", "empty_header_only.stl",
+                   "degenerate_only.obj", "values_inf_nan.obj", "values_inf_points.ply",
+                   "parse_zero_index.obj", "parse_relative_index_too_far.obj",
+                   "parse_huge_count.off", "truncated_chunk.glb", "truncated_ascii.ply",
+                   "truncated_after_header.glb", "truncated_by_one.glb", "parse_bad_json.glb",
+                   "node_loop_scene.gltf", "index_buffer_oob.gltf", "parse_utf16.obj")
+        built = ("topology_moebius.obj", "topology_three_on_an_edge.obj", "topology_soup.stl",
+                 "topology_everything_twice.obj", "orientation_mixed.stl", "degenerate_faces.obj",
+                 "parse_negative_indices.obj", "parse_concave_64gon.obj",
+                 "values_zero_normals.obj", "parse_triangle_strips.gltf",
+                 "everything_wrong_station.glb.xz")
+        for names, status in ((refused, 2), (built, 0)):
+            for name in names:
+                if name in outcomes:
+                    self.assertEqual(outcomes[name], status, name)
+
+    def test_good_files_build_and_lose_nothing(self):
+        for folder in ("cad", "attributes", "scan", "city"):
+            for path in models(folder)[:6]:
+                with self.subTest(path.name):
+                    done, out = self.build(path, "--quiet")
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    mesh, file = self.json("info", path), self.json("info", out)
+                    for key in ("triangles", "vertices", "parts", "materials"):
+                        self.assertEqual(mesh[key], file[key], key)
+                    self.assertEqual([(a["name"], a["dimension"]) for a in mesh["attributes"]],
+                                     [(a["name"], a["dimension"]) for a in file["attributes"]])
+
+
+if __name__ == "__main__":
+    tool.main()
