@@ -22,8 +22,11 @@ struct Range {  // [first, first + count), in elements
   std::uint32_t first = 0, count = 0;
 };
 
-// What the last switch of level wrote, for a renderer that keeps copies: sorted, disjoint, in
-// elements of the DrawList arrays. Counts of triangles need no upload.
+// What a renderer that keeps copies of the DrawList arrays has to fetch again after a switch of level:
+// sorted, disjoint, in elements of the arrays as they are now. Copies are taken whole at full
+// resolution, before the first switch; then the ranges of every switch keep the active part of them
+// right. Triangles that come back are in a range only if they changed meanwhile; the new counts need
+// no upload.
 struct DrawChanges {
   std::vector<Range> positions, vertex_normals;
   std::vector<Range> sn_indices, fn_indices, nsn_indices;  // in triangles

@@ -1,0 +1,279 @@
+// The state of hierarchy/linear_state.h, with the float buffers of three draw calls beside it.
+// While the level moves, elements are only marked; when it has arrived, those that are active are
+// computed from the state. So a switch costs O(corners that change) however long it is.
+//
+// Memory beside the shared arrays: a vertex 24, an SN vertex 12, a triangle 12, an FN triangle 13,
+// an NSN triangle 49; 48 a triangle where there are colours; change sets of a bit an element.
+#include "crease/progressive_mesh.h"
+
+#include "base/assert.h"
+#include "hierarchy/geometric_normal.h"
+#include "hierarchy/linear_state.h"
+#include "runtime/change_set.h"
+#include "runtime/draw_values.h"
+#include "runtime/extract_level.h"
+
+#include <algorithm>
+#include <array>
+
+namespace crease {
+
+namespace {
+
+enum Section {
+  kSn,
+  kFn,
+  kNsn,
+  kSectionCount
+};
+
+}  // namespace
+
+struct ProgressiveMesh::Impl {
+  explicit Impl(ProgressiveArraysPtr given);
+
+  struct TrianglePart {
+    std::uint32_t first = 0;                   // its first triangle
+    std::vector<Vec3f> normals;                // FN: 1 a triangle, NSN: 3
+    std::vector<std::array<float, 4>> colors;  // 3 a triangle, or empty
+    ChangeSet index_changes, normal_changes, color_changes;
+    std::uint32_t normals_per_triangle = 0;
+  };
+
+  // What LinearState calls while the level moves.
+  struct Marks {
+    Impl& mesh;
+    void position(std::uint32_t slot) { mesh.position_changes.mark(slot); }
+    void own_normal(std::uint32_t slot) { mesh.own_normal_changes.mark(slot); }
+    void corner(std::uint32_t c) {
+      const std::uint32_t t = c / 3;
+      TrianglePart& part = mesh.part_of(t);
+      part.index_changes.mark(t - part.first);
+      touched(c);
+    }
+    void index(std::uint32_t layer, std::uint32_t c) {
+      TrianglePart& part = mesh.part_of(c / 3);
+      if (layer == 0) part.normal_changes.mark(c / 3 - part.first);
+      if (layer == mesh.color_layer + 1) part.color_changes.mark(c / 3 - part.first);
+    }
+    void derived(std::uint32_t t) {
+      TrianglePart& part = mesh.part_of(t);
+      part.normal_changes.mark(t - part.first);
+    }
+    void touched(std::uint32_t c) {
+      const std::uint32_t t = c / 3;
+      TrianglePart& part = mesh.part_of(t);
+      if (mesh.state.is_derived(t)) part.normal_changes.mark(t - part.first);
+      if (!part.colors.empty()) part.color_changes.mark(t - part.first);
+    }
+  };
+
+  TrianglePart& part_of(std::uint32_t t) {
+    return parts[t < parts[kFn].first ? kSn : t < parts[kNsn].first ? kFn : kNsn];
+  }
+  std::uint32_t active_of(int section) const {
+    const SectionCounts& active = state.active();
+    return section == kSn   ? active.sn_triangles
+           : section == kFn ? active.fn_triangles
+                            : active.nsn_triangles;
+  }
+  Vec3f shown_normal(std::uint32_t c) const;
+  void refresh_normals(TrianglePart& part, std::size_t t);
+  void refresh_colors(TrianglePart& part, std::size_t t);
+  void arrive();
+  void move_to(std::size_t count);
+  DrawPart draw_part(int section) const;
+
+  ProgressiveArraysPtr arrays;
+  LinearState state;
+  std::vector<Vec3f> positions;
+  std::array<TrianglePart, kSectionCount> parts;
+  std::uint32_t color_layer = kMaxLayers;  // of arrays->layers; kMaxLayers: none
+  ChangeSet position_changes, own_normal_changes;
+  DrawChanges changes;
+  std::size_t base_triangles = 0;
+};
+
+ProgressiveMesh::Impl::Impl(ProgressiveArraysPtr given) : arrays(std::move(given)), state(*arrays) {
+  const SectionCounts& full = arrays->full;
+  base_triangles = full.triangles();
+  std::size_t wide = 0;
+  for (std::uint32_t word : arrays->contractions.headers) {
+    const PackedHeader h = unpack_header(word);
+    base_triangles -= (h.is_wide ? arrays->contractions.wide[wide++].lost : h.lost).triangles();
+  }
+  positions.reserve(state.positions.size());
+  for (const Vec3i& g : state.positions) positions.push_back(draw_position(arrays->grid, g));
+  for (std::uint32_t l = 0; l < arrays->layers.size() && color_layer == kMaxLayers; ++l) {
+    if (arrays->layers[l].role == AttributeRole::Color) color_layer = l;
+  }
+  position_changes.resize(full.vertices());
+  own_normal_changes.resize(full.sn_vertices);
+  const std::uint32_t counts[] = {full.sn_triangles, full.fn_triangles, full.nsn_triangles};
+  const std::uint32_t normals_per_triangle[] = {0, 1, 3};
+  std::uint32_t first = 0;
+  for (int s = 0; s < kSectionCount; ++s) {
+    TrianglePart& part = parts[s];
+    part.first = first;
+    first += counts[s];
+    part.normals_per_triangle = normals_per_triangle[s];
+    part.normals.resize(std::size_t(counts[s]) * part.normals_per_triangle);
+    if (color_layer != kMaxLayers) part.colors.resize(3 * std::size_t(counts[s]));
+    part.index_changes.resize(counts[s]);
+    part.normal_changes.resize(part.normals.empty() ? 0 : counts[s]);
+    part.color_changes.resize(part.colors.empty() ? 0 : counts[s]);
+    for (std::uint32_t t = 0; t < counts[s]; ++t) {
+      refresh_normals(part, t);
+      if (!part.colors.empty()) refresh_colors(part, t);
+    }
+  }
+}
+
+Vec3f ProgressiveMesh::Impl::shown_normal(std::uint32_t c) const {
+  const std::uint32_t t = c / 3;
+  if (state.is_derived(t)) {
+    const std::uint32_t* slots = &state.indices[3 * std::size_t(t)];
+    const Vec3f n = geometric_normal(state.positions[slots[0]], state.positions[slots[1]],
+                                     state.positions[slots[2]]);
+    if (n != Vec3f{}) return n;
+  }
+  return state.stored_normal(c);
+}
+
+void ProgressiveMesh::Impl::refresh_normals(TrianglePart& part, std::size_t t) {
+  const std::uint32_t n = part.normals_per_triangle;
+  const std::uint32_t first_corner = 3 * (part.first + static_cast<std::uint32_t>(t));
+  for (std::uint32_t k = 0; k < n; ++k) part.normals[t * n + k] = shown_normal(first_corner + k);
+}
+
+void ProgressiveMesh::Impl::refresh_colors(TrianglePart& part, std::size_t t) {
+  const std::uint32_t first_corner = 3 * (part.first + static_cast<std::uint32_t>(t));
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    part.colors[3 * t + k] = draw_color(state.value_of_corner(color_layer, first_corner + k));
+  }
+}
+
+void ProgressiveMesh::Impl::move_to(std::size_t count) {
+  Marks marks{*this};
+  while (state.applied() < count) state.apply(marks);
+  while (state.applied() > count) state.undo(marks);
+}
+
+void ProgressiveMesh::Impl::arrive() {
+  position_changes.take(positions.size(), changes.positions, [this](std::size_t v) {
+    positions[v] = draw_position(arrays->grid, state.positions[v]);
+  });
+  own_normal_changes.take(state.own_normals.size(), changes.vertex_normals, [](std::size_t) {});
+  std::vector<Range> none;
+  std::vector<Range>* const index_ranges[] = {&changes.sn_indices, &changes.fn_indices,
+                                              &changes.nsn_indices};
+  std::vector<Range>* const normal_ranges[] = {&none, &changes.fn_normals, &changes.nsn_normals};
+  std::vector<Range>* const color_ranges[] = {&changes.sn_colors, &changes.fn_colors,
+                                              &changes.nsn_colors};
+  for (int s = 0; s < kSectionCount; ++s) {
+    TrianglePart& part = parts[s];
+    const std::size_t active = active_of(s);
+    part.index_changes.take(active, *index_ranges[s], [](std::size_t) {});
+    if (!part.normals.empty()) {
+      part.normal_changes.take(active, *normal_ranges[s],
+                               [&](std::size_t t) { refresh_normals(part, t); });
+    }
+    if (!part.colors.empty()) {
+      part.color_changes.take(active, *color_ranges[s],
+                              [&](std::size_t t) { refresh_colors(part, t); });
+    }
+  }
+}
+
+DrawPart ProgressiveMesh::Impl::draw_part(int section) const {
+  const TrianglePart& part = parts[section];
+  const std::size_t count = active_of(section);
+  DrawPart draw;
+  draw.indices = triangles_of(state.indices, part.first, count, 3);
+  draw.normals = triangles_of(part.normals, 0, count, part.normals_per_triangle);
+  draw.materials = triangles_of(arrays->material_of_triangle, part.first, count, 1);
+  draw.colors = triangles_of(part.colors, 0, count, 3);
+  return draw;
+}
+
+ProgressiveMesh::ProgressiveMesh(ProgressiveArraysPtr arrays)
+    : impl_(std::make_unique<Impl>(std::move(arrays))) {}
+ProgressiveMesh::~ProgressiveMesh() = default;
+ProgressiveMesh::ProgressiveMesh(ProgressiveMesh&&) noexcept = default;
+
+std::size_t ProgressiveMesh::contraction_count() const {
+  return impl_->arrays->contractions.count();
+}
+std::size_t ProgressiveMesh::applied() const {
+  return impl_->state.applied();
+}
+
+void ProgressiveMesh::set_applied(std::size_t count) {
+  CREASE_ASSERT(count <= contraction_count());
+  impl_->move_to(count);
+  impl_->arrive();
+}
+
+void ProgressiveMesh::set_triangle_count(std::size_t count) {
+  LinearState& state = impl_->state;
+  Impl::Marks marks{*impl_};
+  while (triangle_count() > count && state.applied() < contraction_count()) state.apply(marks);
+  // Contractions that lose no triangle are undone as well.
+  while (state.applied() > 0 && triangle_count() + state.triangles_won_previous() <= count) {
+    state.undo(marks);
+  }
+  impl_->arrive();
+}
+
+void ProgressiveMesh::set_error(float surface_error) {
+  const std::vector<ErrorStep>& errors = impl_->arrays->contractions.errors;
+  const auto too_coarse = std::partition_point(
+      errors.begin(), errors.end(),
+      [surface_error](const ErrorStep& step) { return step.error.surface <= surface_error; });
+  set_applied(too_coarse == errors.end() ? contraction_count() : too_coarse->applied - 1);
+}
+
+std::size_t ProgressiveMesh::triangle_count() const {
+  return impl_->state.active().triangles();
+}
+std::size_t ProgressiveMesh::vertex_count() const {
+  return impl_->state.active().vertices();
+}
+std::size_t ProgressiveMesh::full_triangle_count() const {
+  return impl_->arrays->full.triangles();
+}
+std::size_t ProgressiveMesh::base_triangle_count() const {
+  return impl_->base_triangles;
+}
+
+LevelError ProgressiveMesh::error() const {
+  const std::vector<ErrorStep>& errors = impl_->arrays->contractions.errors;
+  const auto next = std::upper_bound(
+      errors.begin(), errors.end(), applied(),
+      [](std::size_t count, const ErrorStep& step) { return count < step.applied; });
+  return next == errors.begin() ? LevelError{} : std::prev(next)->error;
+}
+
+DrawList ProgressiveMesh::draw_list() const {
+  DrawList list;
+  list.origin = impl_->arrays->grid.origin;
+  list.positions = impl_->positions;
+  list.vertex_normals = impl_->state.own_normals;
+  list.sn = impl_->draw_part(kSn);
+  list.fn = impl_->draw_part(kFn);
+  list.nsn = impl_->draw_part(kNsn);
+  list.materials = impl_->arrays->materials;
+  return list;
+}
+
+const DrawChanges& ProgressiveMesh::changes() const {
+  return impl_->changes;
+}
+const ProgressiveArrays& ProgressiveMesh::arrays() const {
+  return *impl_->arrays;
+}
+Mesh ProgressiveMesh::extract() const {
+  return extract_level(*impl_->arrays, impl_->state);
+}
+
+}  // namespace crease
