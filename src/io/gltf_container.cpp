@@ -1,5 +1,6 @@
 // GLB and b3dm containers, "data:" URIs and files beside a .gltf.
 #include "io/gltf_document.h"
+#include "io/text.h"
 
 #include <algorithm>
 #include <array>
@@ -201,12 +202,12 @@ Result<std::vector<std::byte>> read_beside(const Source& source, const std::stri
   namespace fs = std::filesystem;
   if (source.folder == nullptr) {
     return fail_at_place(Error::NotFound, source, place,
-                         "refers to '" + std::string(uri) + "', and there is no folder to look in");
+                         "refers to " + in_quotes(uri) + ", and there is no folder to look in");
   }
   const std::string decoded = percent_decoded(uri);
   const auto outside = [&] {
     return fail_at_place(Error::BadValue, source, place,
-                         "'" + std::string(uri) + "' is not a file beside the glTF");
+                         in_quotes(uri) + " is not a file beside the glTF");
   };
   if (decoded.empty() || decoded.find('\0') != std::string::npos ||
       decoded.find("://") != std::string::npos || decoded.find('\\') != std::string::npos) {
@@ -220,7 +221,7 @@ Result<std::vector<std::byte>> read_beside(const Source& source, const std::stri
   const fs::path folder = fs::canonical(source.folder->empty() ? "." : *source.folder, error);
   if (error) return fail_at_place(Error::NotFound, source, place, "no folder to look in");
   const fs::path path = fs::canonical(folder / relative, error);
-  if (error) return fail_at_place(Error::NotFound, source, place, "no file '" + decoded + "'");
+  if (error) return fail_at_place(Error::NotFound, source, place, "no file " + in_quotes(decoded));
   const auto [in_folder, in_path] = std::ranges::mismatch(folder, path);
   if (in_folder != folder.end()) return outside();
   if (!fs::is_regular_file(path, error)) return outside();
@@ -228,7 +229,7 @@ Result<std::vector<std::byte>> read_beside(const Source& source, const std::stri
   const std::uintmax_t size = fs::file_size(path, error);
   std::ifstream file(path, std::ios::binary);
   if (error || !file) {
-    return fail_at_place(Error::ReadFailed, source, place, "cannot read '" + decoded + "'");
+    return fail_at_place(Error::ReadFailed, source, place, "cannot read " + in_quotes(decoded));
   }
   std::vector<std::byte> bytes(size);
   file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
