@@ -1,0 +1,191 @@
+#include "render/draw_arrays.h"
+#include "render/layout.h"
+#include "render/pixels.h"
+#include "support/mesh_zoo.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+namespace crease {
+
+namespace {
+
+int count_dark(const Image& image, const PixelRect& rect) {
+  int count = 0;
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    for (int x = rect.x; x < rect.x + rect.width; ++x) count += pixel_at(image, x, y)[0] < 120;
+  }
+  return count;
+}
+
+// Neither the page nor the background is as dark as a surface, or as saturated.
+bool is_surface(const Pixel& pixel) {
+  return pixel[2] < 216;
+}
+
+int count_surface(const Image& image, const PixelRect& rect) {
+  int count = 0;
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    for (int x = rect.x; x < rect.x + rect.width; ++x) {
+      count += is_surface(pixel_at(image, x, y));
+    }
+  }
+  return count;
+}
+
+RenderOptions size(int width, int height) {
+  RenderOptions options;
+  options.width_px = width;
+  options.height_px = height;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("each panel shows its own list under its own title") {
+  const DrawArrays sphere(smooth_sphere(16, 32)), box(hard_box(2));
+  const Panel panels[] = {{.list = sphere.list(), .title = "left"},
+                          {.list = DrawList{}, .title = ""},
+                          {.list = box.list(), .title = "right"}};
+  RenderOptions options = size(600, 260);
+  options.columns = 3;
+  const Result<Image> image = render_panels(panels, options);
+  REQUIRE(image.ok());
+  REQUIRE(image->width == 600);
+  REQUIRE(image->height == 260);
+  const Layout layout = make_layout(
+      {.panel_count = 3, .width_px = 600, .height_px = 260, .columns = 3, .titles = true});
+  CHECK(count_surface(*image, layout.views[0]) > 5000);
+  CHECK(count_surface(*image, layout.views[1]) == 0);
+  CHECK(count_surface(*image, layout.views[2]) > 800);
+  CHECK(count_dark(*image, layout.titles[0]) > 20);
+  CHECK(count_dark(*image, layout.titles[1]) == 0);
+  CHECK(count_dark(*image, layout.titles[2]) > 20);
+  REQUIRE(layout.separators.size() == 2);
+  for (const PixelRect& line : layout.separators) {
+    const Pixel expected{kSeparatorColor[0], kSeparatorColor[1], kSeparatorColor[2]};
+    CHECK(pixel_at(*image, line.x, line.y) == expected);
+    CHECK(pixel_at(*image, line.x, line.y + line.height - 1) == expected);
+  }
+}
+
+TEST_CASE("a legend stands below where colours mean something") {
+  const DrawArrays cylinder(hard_cylinder(16, 3));
+  for (const Coloring coloring : {Coloring::Kind, Coloring::Level, Coloring::Error}) {
+    RenderOptions options = size(700, 300);
+    options.coloring = coloring;
+    const Image image = draw(cylinder.list(), options);
+    const Layout layout =
+        make_layout({.panel_count = 1, .width_px = 700, .height_px = 300, .legend = true});
+    int colored = 0;
+    for (int y = layout.legend.y; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) colored += saturation(pixel_at(image, x, y)) > 0.3;
+    }
+    CHECK(colored > 200);
+    CHECK(count_dark(image, layout.legend) > 50);
+  }
+}
+
+TEST_CASE("the same input gives the same picture") {
+  const DrawArrays cylinder(hard_cylinder(24, 4));
+  RenderOptions options = size(333, 222);
+  options.wireframe = true;
+  CHECK(draw(cylinder.list(), options).rgba == draw(cylinder.list(), options).rgba);
+}
+
+TEST_CASE("a model far from the origin looks as it does at the origin") {
+  Mesh near = hard_cylinder(24, 4), far = near;
+  for (Vec3d& p : far.positions) p += Vec3d{390000, 5819000, 34};
+  const Image a = draw(DrawArrays(near).list(), size(300, 300));
+  const Image b = draw(DrawArrays(far).list(), size(300, 300));
+  int differing = 0;
+  for (int y = 0; y < 300; ++y) {
+    for (int x = 0; x < 300; ++x) {
+      differing += difference(pixel_at(a, x, y), pixel_at(b, x, y)) > 2;
+    }
+  }
+  CHECK(differing < 20);
+}
+
+TEST_CASE("a picture wider than one tile has no seam") {
+  const DrawArrays sphere(smooth_sphere(64, 128));
+  Camera camera;
+  camera.position = {-2.2, -6, 0};  // so that the sphere lies right of the middle
+  camera.target = {-2.2, 0, 0};
+  camera.vertical_fov_deg = 16;
+  camera.width_px = 2600;
+  camera.height_px = 500;
+  RenderOptions options = size(2600, 500);
+  options.camera = camera;
+  const Image image = draw(sphere.list(), options);
+  const double left = project(camera, {-1, 0, 0})[0], right = project(camera, {1, 0, 0})[0];
+  REQUIRE(left < 2000);
+  REQUIRE(right > 2100);
+  int rows = 0;
+  for (int y = 0; y < 500; ++y) {
+    for (int x = 2030; x < 2070; ++x) {
+      const Pixel a = pixel_at(image, x, y), b = pixel_at(image, x + 1, y);
+      const bool inside = std::abs(y - 250) < 150;
+      if (inside) CHECK(difference(a, b) <= 5);
+      rows += inside && is_surface(a);
+    }
+  }
+  CHECK(rows > 5000);
+}
+
+TEST_CASE("what cannot be drawn is refused with the panel and the reason") {
+  const DrawArrays box(hard_box(1));
+  const auto message = [](const Panel& panel) {
+    const Result<Image> image = render_panels(std::span(&panel, 1), size(64, 64));
+    return image.ok() ? std::string("drawn") : image.failure().message;
+  };
+  CHECK(render_panels({}, size(64, 64)).failure().error == Error::BadValue);
+  Panel good{.list = box.list(), .title = "box"};
+  CHECK(message(good) == "drawn");
+  for (const auto& [width, height] :
+       {std::pair(0, 64), std::pair(64, -1), std::pair(1 << 20, 64)}) {
+    const Result<Image> image = render_panels(std::span(&good, 1), size(width, height));
+    REQUIRE(!image.ok());
+    CHECK(image.failure().error == Error::BadValue);
+  }
+  const std::vector<Panel> many(500, good);
+  CHECK(!render_panels(many, size(40, 40)).ok());
+
+  Panel bad = good;
+  bad.list.positions = bad.list.positions.first(5);
+  CHECK(message(bad).find("panel 1 (box): FN part: index") == 0);
+  bad = good;
+  bad.list.fn.normals = bad.list.fn.normals.first(3);
+  CHECK(message(bad).find("normals do not fit") != std::string::npos);
+  bad = good;
+  const std::vector<std::uint32_t> materials(12, 7);
+  const std::vector<Material> one(1);
+  bad.list.fn.materials = materials;
+  bad.list.materials = one;
+  CHECK(message(bad).find("material 7 of 1") != std::string::npos);
+  bad = good;
+  const std::vector<float> errors(3);
+  bad.error_of_position = errors;
+  CHECK(message(bad).find("errors are not one a position") != std::string::npos);
+}
+
+TEST_CASE("the whole zoo can be drawn, in every way") {
+  const std::vector<ZooMesh> zoo = mesh_zoo();
+  std::vector<DrawArrays> arrays;
+  for (const ZooMesh& z : zoo) arrays.emplace_back(z.mesh);
+  std::vector<Panel> panels;
+  for (std::size_t i = 0; i < zoo.size(); ++i) {
+    panels.push_back({.list = arrays[i].list(), .title = zoo[i].name});
+  }
+  for (const bool wireframe : {false, true}) {
+    RenderOptions options = size(640, 480);
+    options.wireframe = wireframe;
+    const Result<Image> image = render_panels(panels, options);
+    REQUIRE(image.ok());
+    CHECK(count_surface(*image, {0, 0, 640, 480}) > 5000);
+  }
+}
+
+}  // namespace crease
