@@ -10,7 +10,8 @@ set(CREASE_LAYER_generate  base mesh)
 set(CREASE_LAYER_measure   base mesh)
 set(CREASE_LAYER_simplify  base mesh hierarchy)
 set(CREASE_LAYER_codec     base mesh hierarchy)
-set(CREASE_LAYER_pipeline  base mesh hierarchy io simplify codec)
+set(CREASE_LAYER_codec_encode base mesh hierarchy codec)  # the build's half of src/codec
+set(CREASE_LAYER_pipeline  base mesh hierarchy io simplify codec codec_encode)
 set(CREASE_LAYER_runtime   base mesh hierarchy codec)
 set(CREASE_LAYER_render    base mesh runtime)
 

@@ -153,12 +153,15 @@ std::optional<Failure> check_stream_sizes(const ProgressiveArrays& a) {
   }
   if (end != p.blocks.size()) return broken("wrong number of block words");
   std::uint32_t applied = 0;
+  std::array<float, 4> least{};
   for (const ErrorStep& step : p.errors) {
     if (step.applied <= applied || step.applied > p.count()) return broken("errors out of order");
     applied = step.applied;
     const LevelError& e = step.error;
-    if (!all_finite(std::array{e.surface, e.line, e.degrees, e.texture})) {
-      return broken("an error is not finite");
+    const std::array errors{e.surface, e.line, e.degrees, e.texture};
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      if (!std::isfinite(errors[k]) || errors[k] < least[k]) return broken("an error goes down");
+      least[k] = errors[k];
     }
   }
   return std::nullopt;

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace crease {
+
+// XXH3-64 with seed 0, of `first` followed by `second`.
+std::uint64_t checksum(std::span<const std::byte> first, std::span<const std::byte> second = {});
+
+}  // namespace crease
