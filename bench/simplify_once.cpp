@@ -1,0 +1,53 @@
+// One timed run of crease's whole sequence, in a process of its own so that the peak of its memory
+// is its own. Prints seconds and the peak bytes beside the input.
+//
+//   bench_simplify_once INPUT.bin THREADS
+#include "crease/simplify.h"
+#include "models.h"
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+namespace {
+
+// The most and the present resident memory, bytes.
+std::size_t from_status(const char* key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    if (word != key) continue;
+    std::size_t kilobytes = 0;
+    status >> kilobytes;
+    return kilobytes * 1024;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace crease;
+  exchange::Mesh input;
+  if (argc != 3 || !exchange::read_mesh(argv[1], input)) return 2;
+  Mesh mesh = bench::from_exchange(input, "scan");
+  input = {};
+  const Grid grid = make_grid(mesh, {});
+  snap(mesh, grid);
+
+  // Peak from here on: writing 5 resets the high-water mark.
+  std::ofstream("/proc/self/clear_refs") << "5" << std::flush;
+  const std::size_t before = from_status("VmRSS:");
+  const auto start = std::chrono::steady_clock::now();
+  const auto sequence = simplify(mesh, grid, {.threads = std::atoi(argv[2]), .progress = {}});
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!sequence.ok()) return 3;
+  const std::size_t peak = from_status("VmHWM:");
+  std::printf("%.6f %zu %zu\n", seconds, peak > before ? peak - before : 0,
+              sequence->contractions.size());
+  return 0;
+}
