@@ -71,8 +71,8 @@ PatchResult PatchSimplifier::run() {
     heap_.pop_back();
     const Vertex &a = vertices_[entry.a], &b = vertices_[entry.b];
     if (!a.alive || !b.alive || a.version + b.version != entry.stamp) continue;
-    const Placed placed = place(entry.a, entry.b);
-    const double cost = placed.cost + ring_cost(entry.a, entry.b, placed.position);
+    const Placed placed = place_legally(entry.a, entry.b);
+    const double cost = placed.cost;
     if (!(cost <= steering_.cost_limit)) continue;  // a later band, or a neighbour, brings it back
     if (static_cast<float>(cost) > entry.cost && !heap_.empty() &&
         static_cast<float>(cost) > heap_.front().cost) {
@@ -267,7 +267,7 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
       if (told) continue;
       result_.changes.push_back({static_cast<Index>(layer), AttributeId{from}, AttributeId{result.id}});
     }
-    if (work.blends && joined.quadric.own.weight > 0) {
+    if (work.steers && joined.quadric.own.weight > 0) {
       square_error = std::max(square_error, joined.quadric.at(target, work.dimension, result.value) /
                                                 joined.quadric.own.weight);
       square_weight = 1;

@@ -66,20 +66,20 @@ double PatchSimplifier::fold_cost(Index moved, Index other, const Vec3d& target,
 // Vertices joined to both ends without a triangle over the pair: afterwards two sheets share an
 // edge there, or two triangles coincide.
 double PatchSimplifier::coincidence_cost(Index a, Index b) {
-  mark_now_ += 2;
+  const Index beside_a = ++mark_now_, told = ++mark_now_;
   std::size_t shared = 0;
   for (Index t : triangles_of(a)) {
-    for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = mark_now_;
+    for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = beside_a;
   }
   for (Index t : triangles_of(a)) {
     if (corner_of(t, b) < 0) continue;
-    for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = mark_now_ + 1;
+    for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = told;
   }
   for (Index t : triangles_of(b)) {
     for (Index c = 0; c < 3; ++c) {
       const Index v = vertex_of_corner_[3 * t + c];
-      if (v == a || v == b || mark_[v] != mark_now_) continue;
-      mark_[v] = mark_now_ + 1;
+      if (v == a || v == b || mark_[v] != beside_a) continue;
+      mark_[v] = told;
       ++shared;
     }
   }

@@ -164,6 +164,16 @@ void PatchSimplifier::load_quadrics() {
       if (!work_.layers[l].blends) continue;
       Index w[3];
       for (Index c = 0; c < 3; ++c) w[c] = wedge_of_corner_[l][3 * t + c];
+      if (!work_.layers[l].steers) {  // merged values are means, weighted by area
+        for (Index corner : w) {
+          AttributeQuadric& mean = wedges_[l][corner].quadric;
+          mean.own.weight += area;
+          for (int j = 0; j < work_.layers[l].dimension; ++j) {
+            mean.d[j] += area * wedges_[l][corner].value[j];
+          }
+        }
+        continue;
+      }
       AttributeQuadric quadric;
       quadric.own.weight = area;
       for (int j = 0; j < work_.layers[l].dimension; ++j) {
@@ -192,9 +202,13 @@ void PatchSimplifier::load_edges() {
         if (w > v) sides.push_back({w, t});
       }
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-      return a.other != b.other ? a.other < b.other : a.triangle < b.triangle;
-    });
+    // A dozen entries, nearly always: insertion beats a general sort. Triangles come in order.
+    for (std::size_t i = 1; i < sides.size(); ++i) {
+      const Side side = sides[i];
+      std::size_t at = i;
+      for (; at > 0 && sides[at - 1].other > side.other; --at) sides[at] = sides[at - 1];
+      sides[at] = side;
+    }
     for (std::size_t i = 0, next = 0; i < sides.size(); i = next) {
       next = i + 1;
       while (next < sides.size() && sides[next].other == sides[i].other) ++next;

@@ -12,6 +12,9 @@ namespace {
 // Among contractions that cost nothing, short edges go first: they make the better triangles.
 constexpr double kLengthShare = 1e-10;
 
+// What rounding to the grid is worth: less than this is no reason to leave an end, grid units.
+constexpr double kGridNoise = 0.5;
+
 // The optimum stays within this many pair lengths of the pair's middle.
 constexpr double kReach = 1.0;
 
@@ -99,19 +102,24 @@ void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
 void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_.layers[l];
-    if (!layer.blends) continue;
+    if (!layer.steers) continue;
     const double scale = layer_scale(l);
     const std::vector<Wedge>& wedges = wedges_[l];
     const Slice wa = wedges_of(l, a), wb = wedges_of(l, b);
     if (wa.count == 1 && wb.count == 1) {
       const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
       if ((!x.pinned && !y.pinned) || x.id == y.id) {
-        // The ordinary case: inside a smooth surface.
-        AttributeQuadric both = x.quadric;
-        both.add(y.quadric, layer.dimension);
+        // The ordinary case: inside a smooth surface, or on a flat one.
         if (x.pinned || y.pinned) {
-          both.add_fixed(sum, layer.dimension, x.value, scale);
+          x.quadric.add_fixed(sum, layer.dimension, x.value, scale);
+          y.quadric.add_fixed(sum, layer.dimension, x.value, scale);
+        } else if (layer.dimension == 3) {
+          AttributeQuadric::add_reduced_pair<3>(x.quadric, y.quadric, sum, scale);
+        } else if (layer.dimension == 2) {
+          AttributeQuadric::add_reduced_pair<2>(x.quadric, y.quadric, sum, scale);
         } else {
+          AttributeQuadric both = x.quadric;
+          both.add(y.quadric, layer.dimension);
           both.add_reduced(sum, layer.dimension, scale);
         }
         continue;
@@ -136,7 +144,7 @@ void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
 void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum) {
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_.layers[l];
-    if (!layer.blends) continue;
+    if (!layer.steers) continue;
     const std::vector<Wedge>& wedges = wedges_[l];
     join_wedges(l, kept, removed, joined_);
     for (const Joined& joined : joined_) {
@@ -151,7 +159,7 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
   }
 }
 
-PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b) {
+PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, Quadric* cost_if_kept) {
   const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
   const Vec3d along = pb - pa;
   const double length2 = dot(along, along);
@@ -165,16 +173,19 @@ PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b) {
     }
   }
   const double tie = kLengthShare * length2 * sum.weight;
+  const double grid_noise = kGridNoise * kGridNoise * sum.weight;
 
   if (steering_.placement == Placement::Endpoint) {
-    Quadric at_a = sum, at_b = sum;
-    add_endpoint_attribute_costs(a, b, at_a);
-    add_endpoint_attribute_costs(b, a, at_b);
-    const double cost_a = at_a.at(pa), cost_b = at_b.at(pb);
+    Quadric if_kept[2] = {sum, sum};
+    add_endpoint_attribute_costs(a, b, if_kept[0]);
+    add_endpoint_attribute_costs(b, a, if_kept[1]);
+    if (cost_if_kept) std::copy_n(if_kept, 2, cost_if_kept);
+    const double cost_a = if_kept[0].at(pa), cost_b = if_kept[1].at(pb);
     return cost_a < cost_b ? Placed{cost_a + tie, pa} : Placed{cost_b + tie, pb};
   }
 
   add_attribute_costs(a, b, sum);
+  if (cost_if_kept) cost_if_kept[0] = cost_if_kept[1] = sum;
   const double cost_a = sum.at(pa), cost_b = sum.at(pb);
   Placed best = cost_a < cost_b ? Placed{cost_a, pa} : Placed{cost_b, pb};
   const Vec3d middle = (pa + pb) * 0.5;
@@ -184,8 +195,29 @@ PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b) {
   if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
   x = rounded(x);
   const double cost_x = sum.at(x);
-  if (cost_x < best.cost - tie) best = {cost_x, x};
+  if (cost_x < best.cost - tie - grid_noise) best = {cost_x, x};
   best.cost += tie;
+  return best;
+}
+
+// The best place, the ring included: where the optimum would fold a triangle, an end of the pair or
+// its middle may not.
+PatchSimplifier::Placed PatchSimplifier::place_legally(Index a, Index b) {
+  Quadric cost_if_kept[2];
+  Placed best = place(a, b, cost_if_kept);
+  const double ring = ring_cost(a, b, best.position);
+  const double free_cost = best.cost;
+  best.cost += ring;
+  if (!(ring > 0)) return best;
+  const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
+  const Vec3d others[] = {pa, pb, rounded((pa + pb) * 0.5)};
+  const int count = steering_.placement == Placement::Endpoint ? 2 : 3;
+  for (int i = 0; i < count; ++i) {
+    const double cost = std::max(free_cost, cost_if_kept[i == 1].at(others[i]));
+    if (!(cost < best.cost)) continue;
+    const double total = cost + ring_cost(a, b, others[i]);
+    if (total < best.cost) best = {total, others[i]};
+  }
   return best;
 }
 

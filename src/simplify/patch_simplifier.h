@@ -96,7 +96,9 @@ class PatchSimplifier {
   void find_virtual_pairs();
 
   // pair_cost.cpp
-  Placed place(Index a, Index b);
+  // `cost_if_kept`: when given, the cost as a function of the place, for keeping a's or b's values.
+  Placed place(Index a, Index b, Quadric* cost_if_kept = nullptr);
+  Placed place_legally(Index a, Index b);
   void join_wedges(std::size_t layer, Index a, Index b, std::vector<Joined>& joined);
   void add_attribute_costs(Index a, Index b, Quadric& sum);
   void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum);

@@ -32,7 +32,21 @@ struct Quadric {
     c += w * d * d;
   }
 
-  void add(const Quadric& o, double scale = 1) {
+  void add(const Quadric& o) {
+    a00 += o.a00;
+    a01 += o.a01;
+    a02 += o.a02;
+    a11 += o.a11;
+    a12 += o.a12;
+    a22 += o.a22;
+    b0 += o.b0;
+    b1 += o.b1;
+    b2 += o.b2;
+    c += o.c;
+    weight += o.weight;
+  }
+
+  void add(const Quadric& o, double scale) {
     a00 += scale * o.a00;
     a01 += scale * o.a01;
     a02 += scale * o.a02;
@@ -137,6 +151,41 @@ struct AttributeQuadric {
       sum.b2 -= scale * v * g[j][2];
       sum.c += scale * v * (own.weight * v - 2 * d[j]);
     }
+  }
+
+  // add_reduced() of x and y joined, without making the joined quadric: the inner loop of the
+  // simplifier inside a smooth surface.
+  template <int kDimension>
+  static void add_reduced_pair(const AttributeQuadric& x, const AttributeQuadric& y, Quadric& sum,
+                               double scale) {
+    const double area = x.own.weight + y.own.weight;
+    if (!(area > 0)) return;
+    const double s = scale / area;
+    double a00 = 0, a01 = 0, a02 = 0, a11 = 0, a12 = 0, a22 = 0, b0 = 0, b1 = 0, b2 = 0, c = 0;
+    for (int j = 0; j < kDimension; ++j) {
+      const double g0 = x.g[j][0] + y.g[j][0], g1 = x.g[j][1] + y.g[j][1],
+                   g2 = x.g[j][2] + y.g[j][2], d0 = x.d[j] + y.d[j];
+      a00 += g0 * g0;
+      a01 += g0 * g1;
+      a02 += g0 * g2;
+      a11 += g1 * g1;
+      a12 += g1 * g2;
+      a22 += g2 * g2;
+      b0 += g0 * d0;
+      b1 += g1 * d0;
+      b2 += g2 * d0;
+      c += d0 * d0;
+    }
+    sum.a00 += scale * (x.own.a00 + y.own.a00) - s * a00;
+    sum.a01 += scale * (x.own.a01 + y.own.a01) - s * a01;
+    sum.a02 += scale * (x.own.a02 + y.own.a02) - s * a02;
+    sum.a11 += scale * (x.own.a11 + y.own.a11) - s * a11;
+    sum.a12 += scale * (x.own.a12 + y.own.a12) - s * a12;
+    sum.a22 += scale * (x.own.a22 + y.own.a22) - s * a22;
+    sum.b0 += scale * (x.own.b0 + y.own.b0) - s * b0;
+    sum.b1 += scale * (x.own.b1 + y.own.b1) - s * b1;
+    sum.b2 += scale * (x.own.b2 + y.own.b2) - s * b2;
+    sum.c += scale * (x.own.c + y.own.c) - s * c;
   }
 
   // The error at x with the value `value`.

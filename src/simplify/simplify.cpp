@@ -30,6 +30,9 @@ constexpr double kBandShare = 0.45;
 // Below this many triangles one last band goes all the way.
 constexpr std::size_t kLastBand = 64;
 
+// More than any contraction costs, and less than what is never done (infinity).
+constexpr double kNoLimit = 1e300;
+
 // Positions are rounded to the grid: this much surface error is not error, grid units.
 constexpr double kGridNoise = 0.6;
 
@@ -51,6 +54,7 @@ WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
     layer.source = &source;
     layer.dimension = static_cast<int>(source.dimension);
     layer.blends = source.interpolation != Interpolation::Categorical;
+    layer.steers = layer.blends && source.role != AttributeRole::Other;
     layer.is_direction = source.interpolation == Interpolation::Direction;
     layer.is_normal = source.role == AttributeRole::Normal;
     layer.of_corner.reserve(source.of_corner.size());
@@ -174,7 +178,7 @@ class Simplifier {
 
   Result<ContractionSequence> run(SimplifyStatistics* statistics) {
     const std::size_t input_triangles = work_.live.size();
-    double limit = 0, factor = 16;
+    double limit = 0, factor = 6;
     for (int band = 0; work_.live.size() > 1; ++band) {
       const std::size_t before = work_.live.size();
       const double done = 1 - double(before) / double(input_triangles);
@@ -194,9 +198,9 @@ class Simplifier {
       steering.normal_scale = options_.normal_weight * edge;
       const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= 3);
       if (band == 0) limit = first_limit(steering, triangle_area);
-      steering.cost_limit = last ? HUGE_VAL : limit;
+      steering.cost_limit = last ? kNoLimit : limit;
       steering.virtual_distance =
-          last ? HUGE_VAL : 2 * std::sqrt(limit / (triangle_area * 6));
+          last ? kNoLimit : 2 * std::sqrt(limit / (triangle_area * 6));
       if (!run_band(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");
       }

@@ -18,6 +18,7 @@ struct WorkLayer {
   const AttributeLayer* source = nullptr;
   int dimension = 1;
   bool blends = true;                        // not categorical
+  bool steers = false;                       // counts in the cost: normals, texture coordinates, colours
   bool is_direction = false;
   bool is_normal = false;
   double length_per_unit = 0;                // what one unit of the attribute is worth as a distance,

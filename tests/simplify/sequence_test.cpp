@@ -1,0 +1,81 @@
+// What a contraction sequence promises, on the zoo and on real models: it is legal, and it is the
+// same to the bit whatever the number of threads.
+#include "crease/import.h"
+#include "crease/simplify.h"
+#include "support/mesh_zoo.h"
+#include "support/shared_data.h"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+using namespace crease;
+
+namespace {
+
+template <typename T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+bool same_sequence(const ContractionSequence& a, const ContractionSequence& b) {
+  static_assert(sizeof(Contraction) == 52, "no padding, so bits can be compared");
+  bool same = same_bits(a.contractions, b.contractions) && same_bits(a.changes, b.changes) &&
+              same_bits(a.derived, b.derived) && a.new_values.size() == b.new_values.size();
+  for (std::size_t l = 0; same && l < a.new_values.size(); ++l) {
+    same = same_bits(a.new_values[l], b.new_values[l]);
+  }
+  return same;
+}
+
+void check_all(Mesh mesh, std::uint32_t patch_triangles) {
+  const Grid grid = make_grid(mesh, {});
+  snap(mesh, grid);
+  for (Placement placement : {Placement::Optimal, Placement::Endpoint}) {
+    SimplifyOptions options;
+    options.placement = placement;
+    options.patch_triangles = patch_triangles;
+    options.threads = 1;
+    const ContractionSequence one = *simplify(mesh, grid, options);
+    const Status legal = check_contractions(mesh, one);
+    CHECK_MESSAGE(legal.ok(), (legal.ok() ? "" : legal.failure().message));
+    for (int threads : {2, 7}) {
+      options.threads = threads;
+      CHECK(same_sequence(one, *simplify(mesh, grid, options)));
+    }
+    if (placement == Placement::Optimal) continue;
+    // Endpoint placement never moves a vertex to a new place and makes no new attribute values.
+    for (const std::vector<float>& values : one.new_values) CHECK(values.empty());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("sequences of the zoo are legal and the same for 1, 2 and 7 threads") {
+  for (const ZooMesh& z : mesh_zoo()) {
+    CAPTURE(z.name);
+    check_all(z.mesh, 200);  // many patches even for small meshes
+  }
+}
+
+TEST_CASE("sequences of real models are legal and the same for 1, 2 and 7 threads") {
+  for (const char* name : {"cad/hoppe_cessna.obj.zst", "city/berlin_52k.obj.zst",
+                           "attributes/pirate.obj.zst", "nasty/topology_everything_twice.obj"}) {
+    const std::filesystem::path path = shared_model(name);
+    if (path.empty()) continue;
+    CAPTURE(name);
+    check_all(import_mesh(path, {})->mesh, 4000);
+  }
+}
+
+TEST_CASE("work that is told to stop stops and says so") {
+  Mesh mesh = smooth_sphere(40, 40);
+  const Grid grid = make_grid(mesh, {});
+  snap(mesh, grid);
+  SimplifyOptions options;
+  options.progress = [](const char*, double) { return false; };
+  const Result<ContractionSequence> stopped = simplify(mesh, grid, options);
+  REQUIRE(!stopped.ok());
+  CHECK(stopped.failure().error == Error::Interrupted);
+}

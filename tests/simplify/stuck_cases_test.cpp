@@ -1,0 +1,153 @@
+// The cases in which simplifiers stop short or lose the shading (DESIGN 4), as tests of shape:
+// counts of triangles and degrees, never time.
+#include "crease/compare.h"
+#include "crease/simplify.h"
+#include "mesh/normals.h"
+#include "support/mesh_zoo.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <map>
+
+using namespace crease;
+
+namespace {
+
+struct Reached {
+  std::size_t triangles = 0;
+  Comparison apart;
+  Mesh mesh;
+};
+
+// The finest level with at most `target` triangles, beside the input.
+Reached reduce(Mesh mesh, std::size_t target) {
+  const Grid grid = make_grid(mesh, {});
+  snap(mesh, grid);
+  const ContractionSequence sequence = *simplify(mesh, grid, {});
+  // Triangles that each contraction takes away tell which prefix it is.
+  std::size_t low = 0, high = sequence.contractions.size();
+  const auto count_at = [&](std::size_t n) {
+    const Level level = apply_contractions(mesh, sequence, n);
+    return static_cast<std::size_t>(std::count(level.alive.begin(), level.alive.end(), true));
+  };
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (count_at(middle) <= target) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  Reached reached;
+  reached.mesh = mesh_of_level(mesh, sequence, apply_contractions(mesh, sequence, low));
+  reached.triangles = reached.mesh.triangle_count();
+  CompareOptions options;
+  options.samples = 20'000;
+  reached.apart = compare_meshes(mesh, reached.mesh, options);
+  return reached;
+}
+
+double relative(double distance, const Reached& reached) { return distance / reached.apart.diagonal; }
+
+// Edges by how many triangles meet there.
+std::map<std::size_t, std::size_t> edges_by_valence(const Mesh& mesh) {
+  std::map<std::pair<VertexId, VertexId>, std::size_t> triangles_of_edge;
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const VertexId a = t[c], b = t[(c + 1) % 3];
+      ++triangles_of_edge[{std::min(a, b), std::max(a, b)}];
+    }
+  }
+  std::map<std::size_t, std::size_t> edges;
+  for (const auto& [edge, count] : triangles_of_edge) ++edges[count];
+  return edges;
+}
+
+}  // namespace
+
+TEST_CASE("a faceted sphere reaches 10 % and stays a sphere with facets") {
+  const Mesh sphere = faceted_sphere(45, 45);
+  const Reached reached = reduce(sphere, sphere.triangle_count() / 10);
+  CHECK(reached.triangles <= sphere.triangle_count() / 10);
+  CHECK(reached.triangles >= sphere.triangle_count() / 10 - 4);
+  CHECK(relative(reached.apart.distance.a_to_b.mean, reached) < 2e-3);
+  CHECK(reached.apart.normal_deviation.mean < 8);
+}
+
+TEST_CASE("a box goes to 12 triangles and loses nothing") {
+  const Reached reached = reduce(hard_box(24), 12);
+  CHECK(reached.triangles == 12);
+  CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-6);
+  CHECK(relative(reached.apart.distance.b_to_a.max, reached) < 1e-6);
+  CHECK(reached.apart.normal_deviation.max < 1e-3);
+}
+
+TEST_CASE("a cylinder at 10 % keeps its rims") {
+  const Mesh cylinder = hard_cylinder(64, 30);
+  const Reached reached = reduce(cylinder, cylinder.triangle_count() / 10);
+  CHECK(reached.triangles <= cylinder.triangle_count() / 10);
+  CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-4);
+  CHECK(reached.apart.normal_deviation.mean < 0.05);
+}
+
+TEST_CASE("a box with half a degree of noise is a box once its normals are joined") {
+  Mesh box = noisy_box(24, 0.5);
+  join_normals(*box.normals(), box, 1);
+  const Reached reached = reduce(box, 12);
+  CHECK(reached.triangles == 12);
+  CHECK(relative(reached.apart.distance.b_to_a.max, reached) < 1e-6);
+  CHECK(reached.apart.normal_deviation.max < 1e-3);
+}
+
+TEST_CASE("crossing walls go down to what the joints need, and the joints stay whole") {
+  constexpr int kWalls = 4;
+  const Mesh walls = crossing_walls(kWalls, 12);
+  // Each wall of either direction falls into kWalls + 1 rectangles.
+  const Reached reached = reduce(walls, 2 * kWalls * (kWalls + 1) * 2);
+  CHECK(reached.triangles <= 2 * kWalls * (kWalls + 1) * 2);
+  CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-6);
+  CHECK(relative(reached.apart.distance.b_to_a.max, reached) < 1e-6);
+  CHECK(reached.apart.normal_deviation.max < 1e-3);
+  // Every joint is one edge of four triangles: none has come apart into edges of two.
+  CHECK(edges_by_valence(reached.mesh)[4] == kWalls * kWalls);
+}
+
+TEST_CASE("a gear goes to what its shape needs") {
+  constexpr int kTeeth = 40;
+  const Mesh wheel = gear(kTeeth);
+  const std::size_t outline = 4 * kTeeth;
+  const Reached reached = reduce(wheel, 2 * outline + 2 * (outline - 2));
+  CHECK(reached.triangles <= 2 * outline + 2 * (outline - 2));
+  CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-6);
+  CHECK(reached.apart.normal_deviation.max < 1e-3);
+}
+
+TEST_CASE("city blocks go to 12 triangles each") {
+  const Reached reached = reduce(city_blocks(6, 4), 36 * 12);
+  CHECK(reached.triangles == 36 * 12);
+  CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-6);
+  CHECK(reached.apart.normal_deviation.max < 1e-3);
+}
+
+TEST_CASE("a corner of many sectors keeps every sector's normal") {
+  constexpr int kSectors = 12;
+  const Reached reached = reduce(sector_fan(kSectors, 6), kSectors);
+  CHECK(reached.triangles <= kSectors);
+  CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-6);
+  CHECK(reached.apart.normal_deviation.max < 1e-3);
+}
+
+TEST_CASE("every zoo mesh goes all the way down") {
+  for (const ZooMesh& z : mesh_zoo()) {
+    CAPTURE(z.name);
+    Mesh mesh = z.mesh;
+    const Grid grid = make_grid(mesh, {});
+    snap(mesh, grid);
+    SimplifyStatistics statistics;
+    const Result<ContractionSequence> sequence = simplify(mesh, grid, {}, &statistics);
+    REQUIRE(sequence.ok());
+    const Level base = apply_contractions(mesh, *sequence, sequence->contractions.size());
+    CHECK(std::count(base.alive.begin(), base.alive.end(), true) <= 4);
+  }
+}
