@@ -1,6 +1,6 @@
 #include "crease/progressive_mesh.h"
 #include "runtime/draw_values.h"
-#include "runtime/level_equality.h"
+#include "support/level_equality.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 #include "crease/progressive_mesh.h"
-#include "runtime/level_equality.h"
+#include "support/level_equality.h"
 
 #include <doctest/doctest.h>
 

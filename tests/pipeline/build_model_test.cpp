@@ -1,0 +1,82 @@
+#include "crease/build.h"
+#include "crease/progressive_mesh.h"
+#include "support/level_equality.h"
+#include "support/mesh_zoo.h"
+
+#include <doctest/doctest.h>
+
+namespace crease {
+namespace {
+
+Case simplified(Mesh mesh, Placement placement) {
+  Case c;
+  c.mesh = std::move(mesh);
+  const Grid grid = make_grid(c.mesh, {});
+  snap(c.mesh, grid);
+  SimplifyOptions options;
+  options.placement = placement;
+  Result<ContractionSequence> sequence = simplify(c.mesh, grid, options);
+  REQUIRE(sequence.ok());
+  c.sequence = std::move(*sequence);
+  c.arrays = std::make_shared<const ProgressiveArrays>(
+      arrange(c.mesh, c.sequence, restructure(c.mesh, c.sequence), &c.arrangement));
+  return c;
+}
+
+TEST_CASE("what the simplifier makes is valid, and every level is that of the plain simulation") {
+  for (const ZooMesh& z : mesh_zoo()) {
+    for (Placement placement : {Placement::Endpoint, Placement::Optimal}) {
+      CAPTURE(z.name);
+      CAPTURE(static_cast<int>(placement));
+      const Case c = simplified(z.mesh, placement);
+      const Status valid = check_contractions(c.mesh, c.sequence);
+      CHECK_MESSAGE(valid.ok(), (valid.ok() ? "" : valid.failure().message));
+      const Status sound = check_progressive_arrays(*c.arrays);
+      CHECK_MESSAGE(sound.ok(), (sound.ok() ? "" : sound.failure().message));
+      if (!valid.ok() || !sound.ok()) continue;
+      ProgressiveMesh pm(c.arrays);
+      const std::size_t count = pm.contraction_count();
+      const std::size_t step = 1 + count / 25;
+      for (std::size_t n = 0; n <= count; n += step) {
+        CAPTURE(n);
+        pm.set_applied(n);
+        CHECK(difference(c, pm, apply_contractions(c.mesh, c.sequence, n)) == "");
+      }
+      pm.set_applied(0);
+      CHECK(difference(c, pm, apply_contractions(c.mesh, c.sequence, 0)) == "");
+    }
+  }
+}
+
+TEST_CASE("a smooth mesh stays smooth under the simplifier: three sections, two of them empty") {
+  for (Placement placement : {Placement::Endpoint, Placement::Optimal}) {
+    const Case c = simplified(smooth_sphere(24, 32), placement);
+    CHECK(c.arrays->full.fn_triangles == 0);
+    CHECK(c.arrays->full.nsn_triangles == 0);
+    CHECK(c.arrays->full.nsn_vertices == 0);
+  }
+}
+
+TEST_CASE("a built model is its file, and a stopped build says so") {
+  const Result<Built> built = build_model(hard_cylinder(24, 4), {});
+  REQUIRE(built.ok());
+  const Result<CreaseFile> file = decode_crease(built->file_bytes, {});
+  REQUIRE(file.ok());
+  CHECK(encode_crease(*built->arrays, file->info.bands) == built->file_bytes);
+  CHECK(validate_crease(built->file_bytes).empty());
+  CHECK(file->info.bands.size() == built->statistics.bands.size());
+  CHECK(file->arrays->full.triangles() == hard_cylinder(24, 4).triangle_count());
+
+  for (const char* stage : {"arrange", "encode"}) {
+    BuildOptions options;
+    options.simplify.progress = [stage](const char* now, double) {
+      return std::string(now) != stage;
+    };
+    const Result<Built> stopped = build_model(hard_cylinder(24, 4), options);
+    REQUIRE(!stopped.ok());
+    CHECK(stopped.failure().error == Error::Interrupted);
+  }
+}
+
+}  // namespace
+}  // namespace crease
