@@ -6,14 +6,15 @@
 set -eu
 cd "$(dirname "$0")/.."
 build=${CREASE_BENCH_BUILD:-build/bench}
+mkdir -p "$build"
 if [ ! -f "$build/build.ninja" ]; then
   launcher=
   command -v ccache > /dev/null && launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
   cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DCREASE_BENCH=ON -DCREASE_TESTS=OFF \
-    $launcher > "$build.log" 2>&1 || { cat "$build.log" >&2; exit 1; }
+    $launcher > "$build/setup.log" 2>&1 || { cat "$build/setup.log" >&2; exit 1; }
 fi
-cmake --build "$build" --target peer_vtk peer_cgal peer_openmesh "$@" > "$build.log" 2>&1 || {
-  cat "$build.log" >&2
+cmake --build "$build" --target peer_vtk peer_cgal peer_openmesh "$@" > "$build/setup.log" 2>&1 || {
+  cat "$build/setup.log" >&2
   exit 1
 }
 if [ ! -d "$build/bench_cache/node_modules/meshoptimizer" ]; then
