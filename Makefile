@@ -16,7 +16,7 @@ all:
 demo:
 	scripts/setup.sh
 	scripts/build.sh release crease
-	scripts/demo.sh $(if $(MODEL),'$(MODEL)')
+	scripts/demo.py $(if $(MODEL),'$(MODEL)')
 
 test:
 	scripts/setup.sh
