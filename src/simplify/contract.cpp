@@ -38,7 +38,8 @@ void PatchSimplifier::push(Index a, Index b) {
   if (vertices_[a].locked || vertices_[b].locked) return;
   const double cost = place(a, b).cost;
   if (!(cost <= steering_.cost_limit)) return;
-  heap_.push_back({static_cast<float>(cost), a, b, vertices_[a].version + vertices_[b].version});
+  heap_.push_back({static_cast<float>(cost), a, b, vertices_[a].version + vertices_[b].version,
+                   kNone});
   std::push_heap(heap_.begin(), heap_.end());
 }
 
@@ -54,14 +55,37 @@ void PatchSimplifier::push_ring(Index v) {
     }
   }
   for (Index w : ring_) push(std::min(v, w), std::max(v, w));
+  for (Index w : ring_) release(w);
+}
+
+void PatchSimplifier::hold(const Entry& entry, double cost) {
+  const Index id = static_cast<Index>(held_.size());
+  held_.push_back({entry.a, entry.b, held_of_vertex_[entry.a], held_of_vertex_[entry.b], true});
+  held_of_vertex_[entry.a] = held_of_vertex_[entry.b] = id;
+  if (!(cost <= steering_.cost_limit)) return;
+  heap_.push_back({static_cast<float>(cost), entry.a, entry.b, entry.stamp, id});
+  std::push_heap(heap_.begin(), heap_.end());
+}
+
+void PatchSimplifier::release(Index v) {
+  Index i = held_of_vertex_[v];
+  held_of_vertex_[v] = kNone;
+  while (i != kNone) {
+    Held& pair = held_[i];
+    i = pair.a == v ? pair.next_of_a : pair.next_of_b;
+    if (!pair.waiting) continue;
+    pair.waiting = false;
+    if (vertices_[pair.a].alive && vertices_[pair.b].alive) push(pair.a, pair.b);
+  }
 }
 
 PatchResult PatchSimplifier::run() {
   result_.new_values.resize(layer_count());
+  held_of_vertex_.assign(vertices_.size(), kNone);
   for (const auto& [a, b] : pairs_) {
     const double cost = place(a, b).cost;
     if (!(cost <= steering_.cost_limit)) continue;
-    heap_.push_back({static_cast<float>(cost), a, b, 0});
+    heap_.push_back({static_cast<float>(cost), a, b, 0, kNone});
   }
   std::make_heap(heap_.begin(), heap_.end());
 
@@ -71,13 +95,16 @@ PatchResult PatchSimplifier::run() {
     heap_.pop_back();
     const Vertex &a = vertices_[entry.a], &b = vertices_[entry.b];
     if (!a.alive || !b.alive || a.version + b.version != entry.stamp) continue;
+    if (entry.held != kNone) {
+      if (!held_[entry.held].waiting) continue;
+      held_[entry.held].waiting = false;
+    }
     const Placed placed = place_legally(entry.a, entry.b);
     const double cost = placed.cost;
-    if (!(cost <= steering_.cost_limit)) continue;  // a later band, or a neighbour, brings it back
-    if (static_cast<float>(cost) > entry.cost && !heap_.empty() &&
-        static_cast<float>(cost) > heap_.front().cost) {
-      heap_.push_back({static_cast<float>(cost), entry.a, entry.b, entry.stamp});
-      std::push_heap(heap_.begin(), heap_.end());
+    const float next = heap_.empty() ? HUGE_VALF : heap_.front().cost;
+    if (!(cost <= steering_.cost_limit) ||
+        (static_cast<float>(cost) > entry.cost && static_cast<float>(cost) > next)) {
+      hold(entry, cost);
       continue;
     }
     contract(entry.a, entry.b, placed.position, cost);

@@ -73,6 +73,7 @@ class PatchSimplifier {
     float cost;
     Index a, b;
     Index stamp;
+    Index held;  // in held_, or kNone
     bool operator<(const Entry& o) const {  // std heaps put the largest first
       return cost != o.cost ? cost > o.cost : a != o.a ? a > o.a : b > o.b;
     }
@@ -121,6 +122,8 @@ class PatchSimplifier {
   void derive_where_better(Index kept);
   void push(Index a, Index b);
   void push_ring(Index v);
+  void hold(const Entry& entry, double cost);
+  void release(Index v);
 
   Vec3d normal_of(Index t) const;  // twice the area long
   Vec3d normal_if_moved(Index t, Index moved, const Vec3d& target) const;
@@ -160,6 +163,16 @@ class PatchSimplifier {
   double last_key_ = 0;
 
   PatchResult result_;
+
+  // Pairs that would fold something wait in the heap at that higher cost. When a neighbour has moved
+  // they may have become legal, so they are tried again at once, and the waiting entry is void.
+  struct Held {
+    Index a, b;
+    Index next_of_a, next_of_b;  // in the lists of their vertices
+    bool waiting;
+  };
+  std::vector<Held> held_;
+  std::vector<Index> held_of_vertex_;  // head of a list in held_, or kNone
 
   // Scratch of one contraction.
   std::vector<Joined> joined_;
