@@ -76,9 +76,9 @@ struct Image {
 // what it would show in its own. Pictures larger than the device can draw are put together from
 // tiles. The same input gives the same picture on one device and driver.
 //
-// Time on llvmpipe, two cores, 1920 x 1080: see gl_scene.h. Fails with NotSupported when no EGL
-// device can draw, saying what was tried, and with BadValue for a size or a list that cannot be
-// meant. Threads: call from any; an OpenGL context that is current stays so.
+// Each list is uploaded once. llvmpipe on two cores, 1920 x 1080: 2 M triangles in 4 s. Fails with
+// NotSupported when no EGL device can draw, saying what was tried, and with BadValue for a size or
+// a list that cannot be meant. Threads: call from any; an OpenGL context that is current stays so.
 Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& options);
 Status write_png(const Image& image, const std::filesystem::path& path);
 

@@ -3,6 +3,7 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <utility>
@@ -113,7 +114,8 @@ GlContext::GlContext(GlContext&& other) noexcept
       renderer_(std::move(other.renderer_)),
       max_texture_size_(other.max_texture_size_),
       max_texel_count_(other.max_texel_count_),
-      max_samples_(other.max_samples_) {}
+      max_samples_(other.max_samples_),
+      can_reverse_depth_(other.can_reverse_depth_) {}
 
 GlContext::~GlContext() {
   if (context_ == nullptr) return;
@@ -157,6 +159,7 @@ Result<GlContext> open_gl() {
   gl.max_texture_size_ = std::min(gl.max_texture_size_, int(renderbuffer));
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &gl.max_texel_count_);
   glGetIntegerv(GL_MAX_SAMPLES, &gl.max_samples_);
+  gl.can_reverse_depth_ = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
   return gl;
 }
 

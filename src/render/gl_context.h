@@ -22,6 +22,9 @@ class GlContext {
   int max_texture_size() const { return max_texture_size_; }
   int max_texel_count() const { return max_texel_count_; }
   int max_samples() const { return max_samples_; }
+  // Depth may run from 1 at the viewer to 0 far away, where floats are densest (GL 4.5 or
+  // extension).
+  bool can_reverse_depth() const { return can_reverse_depth_; }
 
  private:
   friend Result<GlContext> open_gl();
@@ -36,6 +39,7 @@ class GlContext {
   void* previous_read_ = nullptr;
   std::string renderer_;
   int max_texture_size_ = 0, max_texel_count_ = 0, max_samples_ = 1;
+  bool can_reverse_depth_ = false;
 };
 
 // Fails with NotSupported, saying what was tried and how each try ended.

@@ -81,9 +81,7 @@ GlScene::Part GlScene::upload_part(const DrawPart& list) {
 Status GlScene::draw(ProgramCache& programs, const View& view, const Vec3d& up,
                      const Window& window, const DrawStyle& style) const {
   const DepthRange depth = depth_range(view, box_.low, box_.high);
-  const Matrix4f clip = clip_from_list(view, origin_, depth, window);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
+  const Matrix4f clip = clip_from_list(view, origin_, depth, window, style.reversed_depth);
   for (const auto& [part, kind] :
        {std::pair(&sn_, TriangleKind::SN), std::pair(&fn_, TriangleKind::FN),
         std::pair(&nsn_, TriangleKind::NSN)}) {

@@ -14,9 +14,10 @@ namespace crease {
 struct DrawStyle {
   Coloring coloring = Coloring::Shaded;
   bool wireframe = false;
-  float line_px = 1;      // width of wireframe lines, in pixels of the framebuffer
-  float level_share = 0;  // Coloring::Level
-  float error_full = 1;   // Coloring::Error: the error at the scale's red end
+  float line_px = 1;            // width of wireframe lines, in pixels of the framebuffer
+  float level_share = 0;        // Coloring::Level
+  float error_full = 1;         // Coloring::Error: the error at the scale's red end
+  bool reversed_depth = false;  // as the target has it
 };
 
 class GlScene {

@@ -170,14 +170,20 @@ void main() {
   if (dot(n, plane) * seen_side < 0) n = -n;
 
   vec3 base = surface_color();
-  vec3 ambient = mix(vec3(0.135, 0.125, 0.118), vec3(0.330, 0.352, 0.385), 0.5 + 0.5 * dot(n, up));
+  vec3 ambient = mix(vec3(0.110, 0.100, 0.092), vec3(0.290, 0.312, 0.345), 0.5 + 0.5 * dot(n, up));
   // Wrapped round the surface, so that no terminator cuts a dome in two.
-  float key = 0.5 + 0.5 * dot(n, key_light);
-  key *= key;
+  float key = pow(0.5 + 0.5 * dot(n, key_light), 2.3);
   float head = max(dot(n, head_light), 0);
+  vec3 lights = ambient + key * vec3(0.86, 0.84, 0.80) + head * 0.08;
+#if ALBEDO == ERRORS
+  lights = mix(vec3(1), lights, 0.6);  // form enough, and the scale can still be read
+#endif
   vec3 half_way = normalize(key_light + head_light);
   float shine = pow(max(dot(n, half_way), 0), 48);
-  vec3 light = base * (ambient + key * vec3(0.80, 0.775, 0.73) + head * 0.10) + vec3(0.03 * shine);
+  vec3 light = base * lights + vec3(0.03 * shine);
+  // White walls in full light bend towards white and do not clip.
+  vec3 above = max(light - 0.75, vec3(0));
+  light = min(light, vec3(0.75)) + 0.25 * (1 - exp(-4 * above));
 #if WIREFRAME
   light = mix(light, vec3(0.012, 0.016, 0.024), 0.85 * line_cover());
 #endif

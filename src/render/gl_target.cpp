@@ -29,6 +29,7 @@ bool attach(GlFramebuffer& framebuffer, const GlRenderbuffer& color, const GlRen
 
 Result<GlTarget> GlTarget::make(const GlContext& gl, int width, int height) {
   GlTarget target;
+  target.reversed_depth_ = gl.can_reverse_depth();
   const int samples = std::min(kSamples, gl.max_samples());
   target.color_ = make_storage(samples, GL_SRGB8_ALPHA8, width, height);
   target.depth_ = make_storage(samples, GL_DEPTH_COMPONENT32F, width, height);
@@ -51,7 +52,12 @@ void GlTarget::begin(int width, int height) {
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glClearColor(0, 0, 0, 0);
-  glClearDepth(1);
+  // Float depth is finest near 0. With 0 far away two planes 5 cm apart stay apart at 1 km; with 1
+  // there, a lawn flickers into the pavement below it at 150 m.
+  if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glClearDepth(reversed_depth_ ? 0 : 1);
+  glDepthFunc(reversed_depth_ ? GL_GREATER : GL_LESS);
+  glEnable(GL_DEPTH_TEST);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 

@@ -22,6 +22,7 @@ class GlTarget {
   void read(int width, int height, std::span<std::uint8_t> rgba);
 
  private:
+  bool reversed_depth_ = false;
   GlFramebuffer multisampled_, resolved_;
   GlRenderbuffer color_, depth_, resolved_color_;
 };

@@ -22,7 +22,7 @@ inline constexpr ColorSrgb kBackgroundTop{250, 251, 252}, kBackgroundBottom{218,
 inline constexpr ColorSrgb kTextColor{38, 43, 51}, kPageColor{255, 255, 255};
 inline constexpr ColorSrgb kSeparatorColor{196, 202, 210};
 
-inline constexpr ColorSrgb kDefaultSurface{214, 208, 199};  // warm light grey
+inline constexpr ColorSrgb kDefaultSurface{224, 217, 207};  // warm light grey
 
 // Apart in hue and lightness for all common kinds of colour vision.
 ColorSrgb kind_color(TriangleKind kind);

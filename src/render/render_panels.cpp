@@ -265,7 +265,8 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
                           .wireframe = options.wireframe,
                           .line_px = kSupersampling * std::max(1.0f, float(size.height) / 1080),
                           .level_share = panels[i].level_share,
-                          .error_full = float(scale.full)};
+                          .error_full = float(scale.full),
+                          .reversed_depth = gl->can_reverse_depth()};
     const GlScene on_gpu(panels[i].list, panels[i].error_of_position);
     const Status drawn =
         draw_view(image, layout.views[i], on_gpu, camera, style, *target, tile_px, programs);

@@ -48,7 +48,7 @@ DepthRange depth_range(const View& view, const Vec3d& low, const Vec3d& high) {
 }
 
 Matrix4f clip_from_list(const View& view, const Vec3d& origin, const DepthRange& depth,
-                        const Window& window) {
+                        const Window& window, bool reversed_depth) {
   const Vec3d shift = origin - view.eye;
   const double n = depth.near, f = depth.far;
   // The window of the frustum at distance 1.
@@ -61,8 +61,8 @@ Matrix4f clip_from_list(const View& view, const Vec3d& origin, const DepthRange&
   const Vec3d forward = -view.back;
   const Vec3d row_x = view.right * (2 / (x1 - x0)) - forward * ((x1 + x0) / (x1 - x0));
   const Vec3d row_y = view.above * (2 / (y1 - y0)) - forward * ((y1 + y0) / (y1 - y0));
-  const Vec3d row_z = forward * ((f + n) / (f - n));
-  const double constant_z = -2 * f * n / (f - n);
+  const Vec3d row_z = forward * (reversed_depth ? -n / (f - n) : (f + n) / (f - n));
+  const double constant_z = (reversed_depth ? 1 : -2) * f * n / (f - n);
 
   const std::array<Vec3d, 4> rows{row_x, row_y, row_z, forward};
   Matrix4f m{};

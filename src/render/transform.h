@@ -2,7 +2,7 @@
 // 10^6 m reach the float pipeline as small numbers.
 //
 //   View view = make_view(camera, aspect);
-//   upload(clip_from_list(view, list.origin, near_far, whole_picture));
+//   upload(clip_from_list(view, list.origin, near_far, Window{}, false));
 #pragma once
 
 #include "crease/render.h"
@@ -36,11 +36,12 @@ struct Window {
 View make_view(const Camera& camera, double aspect);
 
 // The distances between which all points lie, the near one never closer than 1/20,000 of the far
-// one, which is what 24 bits of depth can tell apart to a pixel.
+// one: inside a scene that costs the first 5 cm of a kilometre.
 DepthRange depth_range(const View& view, const Vec3d& low, const Vec3d& high);
 
+// Depth from -1 at the near plane to 1, or reversed from 1 to 0.
 Matrix4f clip_from_list(const View& view, const Vec3d& origin, const DepthRange& depth,
-                        const Window& window);
+                        const Window& window, bool reversed_depth);
 
 struct Box {
   Vec3d low, high;
