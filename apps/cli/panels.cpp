@@ -30,7 +30,8 @@ std::string level_name(const ProgressiveMesh& mesh) {
   if (mesh.applied() == 0) return "original";
   const double share =
       static_cast<double>(mesh.triangle_count()) / static_cast<double>(mesh.full_triangle_count());
-  return in_percent(std::round(share * 1e4) / 1e4);
+  const double digit = std::pow(10.0, std::floor(std::log10(share)) - 1);
+  return in_percent(std::round(share / digit) * digit);  // 19.98 % is 20 %
 }
 
 }  // namespace
