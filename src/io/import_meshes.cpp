@@ -23,13 +23,14 @@ void append_layers(Mesh& to, std::vector<AttributeLayer> from, std::size_t befor
     const auto same = std::find_if(to.layers.begin(), to.layers.end(), [&](const auto& candidate) {
       return is_same_layer(candidate, layer);
     });
-    if (same == to.layers.end()) {
-      AttributeLayer fresh = layer;
+    const auto at = static_cast<std::size_t>(same - to.layers.begin());
+    if (at == to.layers.size()) {
+      AttributeLayer fresh{layer.name, layer.role, layer.interpolation, layer.dimension, {}, {}};
       fresh.values.assign(layer.dimension, 0.0f);
       fresh.of_corner.assign(3 * before, AttributeId{0});
       to.layers.push_back(std::move(fresh));
     }
-    AttributeLayer& target = same == to.layers.end() ? to.layers.back() : *same;
+    AttributeLayer& target = to.layers[at];
     const auto first = static_cast<std::uint32_t>(target.value_count());
     target.values.insert(target.values.end(), layer.values.begin(), layer.values.end());
     for (AttributeId a : layer.of_corner) {

@@ -24,9 +24,9 @@ inline constexpr double kCoplanarDeg = 0.01;
 // Which edges are soft. Edges inside a face of the source always are.
 struct SoftEdges {
   double max_angle_deg = 30;                         // between the triangles' normals; 180: all edges
-  std::span<const std::uint32_t> smoothing_group;    // per triangle. If given, soft iff both sides
+  std::span<const std::uint32_t> smoothing_group{};  // per triangle. If given, soft iff both sides
                                                      // are in one group other than 0
-  std::span<const std::uint32_t> face_of_triangle;   // the source's polygons; empty: triangles
+  std::span<const std::uint32_t> face_of_triangle{};  // the source's polygons; empty: triangles
 };
 
 // One unit normal a triangle, the same for all triangles of a face. A triangle without area takes

@@ -1,0 +1,122 @@
+#include "crease/import.h"
+
+#include "io/polygon_model.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace crease {
+namespace {
+
+TEST_CASE("normal policies are read from words") {
+  CHECK(parse_normal_policy("keep")->kind == NormalPolicy::Kind::Keep);
+  CHECK(parse_normal_policy("flat")->kind == NormalPolicy::Kind::Flat);
+  CHECK(parse_normal_policy("smooth")->kind == NormalPolicy::Kind::Smooth);
+  const Result<NormalPolicy> crease = parse_normal_policy("crease:42.5");
+  REQUIRE(crease.ok());
+  CHECK(crease->kind == NormalPolicy::Kind::Crease);
+  CHECK(crease->crease_angle_deg == 42.5);
+  for (const char* bad : {"", "crease", "crease:", "crease:x", "crease:181", "crease:-1", "crease:nan", "Flat"}) {
+    CAPTURE(bad);
+    REQUIRE(!parse_normal_policy(bad).ok());
+    CHECK(parse_normal_policy(bad).failure().error == Error::CommandLine);
+  }
+}
+
+TEST_CASE("a file without an ending is told by its first bytes") {
+  CHECK(import_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "model").report.format == "OBJ");
+  CHECK(import_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "model").report.format == "OFF");
+  CHECK(refusal_of("\x7f"
+                   "ELF and more",
+                   "model")
+            .find("not a format known here") != std::string::npos);
+  CHECK(refusal_of("", "a.obj") == "a.obj: byte 0: empty file");
+}
+
+TEST_CASE("a file that is not there is not found") {
+  const Result<Imported> missing = import_mesh("/no/such/folder/a.obj", {});
+  REQUIRE(!missing.ok());
+  CHECK(missing.failure().error == Error::NotFound);
+  CHECK(missing.failure().message.starts_with("/no/such/folder/a.obj: cannot be opened"));
+}
+
+TEST_CASE("import stops when it is asked to") {
+  ImportOptions options;
+  options.progress = [](const char*, double) { return false; };
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const Result<Imported> got = import_bytes(std::as_bytes(std::span(obj)), "a.obj", options);
+  REQUIRE(!got.ok());
+  CHECK(got.failure().error == Error::Interrupted);
+}
+
+TEST_CASE("what is ugly is counted") {
+  const Imported in = import_text(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nv 2 0 0\nv 1 0 0\n"
+      "f 1 2 3\nf 3 2 1\nf 1 2 6\nf 1 2 5\nf 1 2\n",
+      "a.obj");
+  CHECK(in.report.degenerate_triangles == 1);
+  CHECK(in.report.duplicate_triangles == 1);
+  CHECK(in.report.zero_area_triangles == 1);
+  CHECK(in.report.isolated_vertices == 1);
+  CHECK(in.report.welded_vertices == 1);
+  CHECK(in.mesh.triangle_count() == 3);
+}
+
+TEST_CASE("several files become one mesh with shared vertices and a part a file") {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "crease_import_test";
+  std::filesystem::create_directories(folder);
+  const std::vector<std::filesystem::path> paths{folder / "a.obj", folder / "b.obj", folder / "c.off"};
+  std::ofstream(paths[0]) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.5 0.5\nusemtl red\nf 1/1 2/1 3/1\n";
+  std::ofstream(paths[1]) << "v 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl blue\nf 1 2 3\n";
+  std::ofstream(paths[2]) << "OFF\n3 1 0\n1 1 0\n2 2 0\n0 1 0\n3 0 1 2\n";
+  const Result<Imported> in = import_meshes(paths, {});
+  REQUIRE(in.ok());
+  const Mesh& mesh = in->mesh;
+  CHECK(check_mesh(mesh).ok());
+  CHECK(mesh.triangle_count() == 3);
+  CHECK(mesh.vertex_count() == 5);
+  CHECK(mesh.parts == std::vector<std::string>{"a.obj", "b.obj", "c.off"});
+  CHECK(mesh.normals()->value_count() == 1);
+  REQUIRE(mesh.layers.size() == 2);
+  CHECK(mesh.layers[1].value_count() == 2);  // one, and zero where files have none
+  REQUIRE(mesh.materials.size() == 3);
+  CHECK(mesh.materials[index_of(mesh.material_of_triangle[1])].name == "blue");
+  CHECK(mesh.materials[index_of(mesh.material_of_triangle[2])].name.empty());
+  CHECK(in->report.format == "OBJ, OFF");
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("noise on corner normals goes when it is asked to") {
+  // A box whose corner normals are off by up to half a degree, split as exporters do it.
+  std::string obj;
+  const PolygonModel cube = polygon_cube();
+  std::string faces;
+  int count = 0;
+  for (const PolygonModel::Face& face : cube.faces) {
+    faces += "f";
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vec3d& p = cube.positions[face.corners[i]];
+      const Vec3d& n = cube.normals[face.normals[i]];
+      const double off = 0.005 * ((count % 3) - 1), other = 0.005 * ((count / 3 % 3) - 1);
+      obj += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
+      obj += "vn " + std::to_string(n.x + off * n.y) + " " + std::to_string(n.y + off * n.z) + " " +
+             std::to_string(n.z + other * n.x) + "\n";
+      ++count;
+      faces += " " + std::to_string(count) + "//" + std::to_string(count);
+    }
+    faces += "\n";
+  }
+  obj += faces;
+  CHECK(import_text(obj, "a.obj").mesh.normals()->value_count() > 6);
+  ImportOptions options;
+  options.same_normal_deg = 1;
+  const Imported joined = import_text(obj, "a.obj", options);
+  CHECK(joined.mesh.normals()->value_count() == 6);
+  CHECK(joined.report.joined_normals > 0);
+  CHECK(hard_edges(joined.mesh) == hard_edges(cube));
+}
+
+}  // namespace
+}  // namespace crease

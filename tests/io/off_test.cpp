@@ -1,0 +1,54 @@
+#include "io/polygon_model.h"
+
+#include <doctest/doctest.h>
+
+namespace crease {
+namespace {
+
+TEST_CASE("comments, blank lines and counts on the first line") {
+  CHECK(import_text("# first\n\nOFF 3 1 0 # counts\n\n0 0 0\n1 0 0 # b\n#\n0 1 0\n3 0 1 2\n", "a.off")
+            .mesh.triangle_count() == 1);
+  CHECK(import_text("3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.off").mesh.triangle_count() == 1);
+}
+
+TEST_CASE("normals, colours and texture coordinates of vertices") {
+  const Mesh mesh = import_text("STCNOFF\n3 1 0\n"
+                                "0 0 0 0 0.6 0.8 255 0 0 255 0 0\n"
+                                "1 0 0 0 0.6 0.8 255 0 0 255 1 0\n"
+                                "0 1 0 0 0.6 0.8 0 51 0 255 0 1\n3 0 1 2\n",
+                                "a.off")
+                        .mesh;
+  REQUIRE(mesh.layers.size() == 3);
+  CHECK(mesh.layers[0].values == std::vector<float>{0, 0.6f, 0.8f});
+  CHECK(mesh.layers[1].role == AttributeRole::TexCoord);
+  CHECK(mesh.layers[2].role == AttributeRole::Color);
+  CHECK(mesh.layers[2].value(mesh.layers[2].of_corner[2])[1] == doctest::Approx(0.2));
+}
+
+TEST_CASE("colours of faces, as components and as an index") {
+  const std::string square = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  const Mesh components = import_text(square + "3 0 1 2 1 0 0\n3 0 2 3\n", "a.off").mesh;
+  REQUIRE(components.layers.size() == 2);
+  const AttributeLayer& color = components.layers[1];
+  CHECK(color.value(color.of_corner[0])[1] == 0);
+  CHECK(color.value(color.of_corner[3])[1] == 1);  // none: white
+  const Mesh index = import_text(square + "3 0 1 2 5\n3 0 2 3 6\n", "a.off").mesh;
+  REQUIRE(index.layers.size() == 2);
+  CHECK(index.layers[1].interpolation == Interpolation::Categorical);
+  CHECK(index.layers[1].value_count() == 2);
+}
+
+TEST_CASE("every refusal names the line and the reason") {
+  const std::string three = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
+  CHECK(refusal_of(three + "3 0 1 3\n", "a.off") == "a.off:6: face index 3 of 3 vertices");
+  CHECK(refusal_of(three + "4 0 1 2\n", "a.off") == "a.off:6: face promises 4 corners and has 3");
+  CHECK(refusal_of(three, "a.off") == "a.off:5: the file ends; face 0 of 1 expected");
+  CHECK(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n", "a.off") ==
+        "a.off:5: vertex 2 of 3 is not finite");
+  CHECK(refusal_of("OFF BINARY\n", "a.off") == "a.off:1: binary OFF; convert it to text");
+  CHECK(refusal_of("4OFF\n1 1 0\n", "a.off").starts_with("a.off:1: OFF of more than three dimensions"));
+  CHECK(refusal_of("OFF\n353535235358 6 0\n0 0 0\n", "a.off").starts_with("a.off:2: the header promises"));
+}
+
+}  // namespace
+}  // namespace crease

@@ -1,0 +1,210 @@
+#include "io/byte_sink.h"
+#include "io/polygon_model.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+namespace crease {
+namespace {
+
+const AttributeLayer* layer_named(const Mesh& mesh, std::string_view name) {
+  for (const AttributeLayer& layer : mesh.layers) {
+    if (layer.name == name) return &layer;
+  }
+  return nullptr;
+}
+
+std::vector<float> value_at(const AttributeLayer& layer, std::size_t corner) {
+  const auto value = layer.value(layer.of_corner[corner]);
+  return {value.begin(), value.end()};
+}
+
+const std::string kThreePoints = "0 0 0\n1 0 0\n0 1 0\n";
+std::string header(const std::string& vertex, const std::string& face) {
+  return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+         vertex + "element face 1\nproperty list uchar int vertex_indices\n" + face + "end_header\n";
+}
+
+// The same file in text and in both binary orders.
+std::string binary_ply(bool big_endian) {
+  std::string out = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+                    "_endian 1.0\nelement vertex 4\nproperty double x\nproperty float y\nproperty short z\n"
+                    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                    "element face 2\nproperty int region\nproperty list uchar ushort vertex_indices\n"
+                    "end_header\n";
+  const auto add = [&](auto x) {
+    auto bytes = std::bit_cast<std::array<char, sizeof x>>(x);
+    if (big_endian) std::reverse(bytes.begin(), bytes.end());
+    out.append(bytes.data(), bytes.size());
+  };
+  const double xs[] = {390123.001, 390124, 390124, 390123};
+  const float ys[] = {0, 0.5f, 1, 1};
+  for (int i = 0; i < 4; ++i) {
+    add(xs[i]);
+    add(ys[i]);
+    add(static_cast<std::int16_t>(-i));
+    for (int c = 0; c < 3; ++c) add(static_cast<std::uint8_t>(51 * i));
+  }
+  for (int f = 0; f < 2; ++f) {
+    add(static_cast<std::int32_t>(-7 + f));
+    add(std::uint8_t{3});
+    for (int c : {0, 1 + f, 2 + f}) add(static_cast<std::uint16_t>(c));
+  }
+  return out;
+}
+
+TEST_CASE("both binary orders hold the same mesh") {
+  const Mesh little = import_text(binary_ply(false), "a.ply").mesh;
+  const Mesh big = import_text(binary_ply(true), "a.ply").mesh;
+  CHECK(little.positions == big.positions);
+  CHECK(little.triangles == big.triangles);
+  CHECK(little.positions[0] == Vec3d{390123.001, 0, 0});
+  CHECK(little.positions[3].z == -3);
+  REQUIRE(layer_named(little, "region"));
+  CHECK(layer_named(little, "region")->interpolation == Interpolation::Categorical);
+  CHECK(value_at(*layer_named(little, "region"), 3) == std::vector<float>{-6});
+  CHECK(value_at(*layer_named(little, "color"), 1)[0] == doctest::Approx(0.2));
+}
+
+TEST_CASE("a binary file cut anywhere is refused with the byte") {
+  const std::string whole = binary_ply(false);
+  for (std::size_t size = whole.find("end_header") + 11; size < whole.size(); ++size) {
+    CAPTURE(size);
+    const std::string message = refusal_of(std::string(whole.data(), size), "a.ply");
+    CHECK(message.starts_with("a.ply: byte "));
+  }
+}
+
+TEST_CASE("unknown properties are kept: linear per vertex, categorical per face if integer") {
+  const Mesh mesh = import_text(header("property float heat\n", "property uchar label\nproperty float wear\n") +
+                                    "0 0 0 1.5\n1 0 0 2.5\n0 1 0 3.5\n3 0 1 2 9 0.25\n",
+                                "a.ply")
+                        .mesh;
+  REQUIRE(layer_named(mesh, "heat"));
+  CHECK(layer_named(mesh, "heat")->interpolation == Interpolation::Linear);
+  CHECK(value_at(*layer_named(mesh, "heat"), 2) == std::vector<float>{3.5f});
+  REQUIRE(layer_named(mesh, "label"));
+  CHECK(layer_named(mesh, "label")->interpolation == Interpolation::Categorical);
+  CHECK(value_at(*layer_named(mesh, "label"), 1) == std::vector<float>{9});
+  REQUIRE(layer_named(mesh, "wear"));
+  CHECK(layer_named(mesh, "wear")->interpolation == Interpolation::Linear);
+}
+
+TEST_CASE("texture coordinates under every usual name") {
+  for (const char* names : {"s t", "u v", "texture_u texture_v", "texture_s texture_t"}) {
+    CAPTURE(names);
+    const std::string both(names);
+    const std::size_t blank = both.find(' ');
+    const std::string properties = "property float " + both.substr(0, blank) + "\nproperty float " +
+                                   both.substr(blank + 1) + "\n";
+    const Mesh mesh =
+        import_text(header(properties, "") + "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n", "a.ply").mesh;
+    REQUIRE(layer_named(mesh, "uv"));
+    CHECK(layer_named(mesh, "uv")->role == AttributeRole::TexCoord);
+    CHECK(value_at(*layer_named(mesh, "uv"), 2) == std::vector<float>{0, 1});
+  }
+}
+
+TEST_CASE("texture coordinates per corner make seams, and the texture becomes the material") {
+  const Mesh mesh = import_text(
+      "ply\nformat ascii 1.0\ncomment TextureFile my skin.png\nelement vertex 4\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+      "property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+      "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0.5 0.5 1 1 0 1\n",
+      "a.ply").mesh;
+  const AttributeLayer* uv = layer_named(mesh, "uv");
+  REQUIRE(uv);
+  CHECK(uv->of_corner[0] != uv->of_corner[3]);
+  CHECK(uv->of_corner[2] == uv->of_corner[4]);
+  REQUIRE(mesh.materials.size() == 1);
+  CHECK(mesh.materials[0].base_color_texture == "my skin.png");
+}
+
+TEST_CASE("normals of faces are used where vertices have none") {
+  const Mesh mesh = import_text(header("", "property float nx\nproperty float ny\nproperty float nz\n") +
+                                    kThreePoints + "3 0 1 2 0 0.6 0.8\n",
+                                "a.ply")
+                        .mesh;
+  CHECK(value_at(*mesh.normals(), 1) == std::vector<float>{0, 0.6f, 0.8f});
+}
+
+TEST_CASE("triangle strips turn every other triangle and break at -1") {
+  const Mesh mesh = import_text(
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 0\n8 0 1 2 3 -1 3 1 4\n",
+      "a.ply").mesh;
+  REQUIRE(mesh.triangle_count() == 3);
+  for (std::size_t t = 0; t < 2; ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    const Vec3d& p = mesh.positions[index_of(a)];
+    CHECK(cross(mesh.positions[index_of(b)] - p, mesh.positions[index_of(c)] - p).z > 0);
+  }
+}
+
+TEST_CASE("unknown elements and lists are passed over") {
+  const Imported in = import_text(
+      "ply\nformat ascii 1.0\nelement camera 1\nproperty float focus\nproperty list uchar float k\n"
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty list uchar int ring\n"
+      "element face 1\nproperty list uchar int vertex_index\nend_header\n"
+      "35 2 1 1\n0 0 0 0\n1 0 0 1 5\n0 1 0 0\n\n3 0 1 2\n",
+      "a.ply");
+  CHECK(in.mesh.triangle_count() == 1);
+  CHECK(in.report.notes.size() == 2);
+}
+
+TEST_CASE("rows that hold more than the header says keep what is certain") {
+  const Imported in = import_text(header("", "property uchar red\nproperty uchar green\nproperty uchar blue\n") +
+                                      kThreePoints + "3 0 1 2 9 1 1 1 1 1\n",
+                                  "a.ply");
+  CHECK(in.mesh.triangle_count() == 1);
+  CHECK(layer_named(in.mesh, "color") == nullptr);
+  CHECK(in.report.notes.size() == 1);
+}
+
+TEST_CASE("colours in floats, in shorts and per face") {
+  const std::string three = "property float red\nproperty float green\nproperty float blue\n";
+  const Mesh floats = import_text(header(three, "") + "0 0 0 0 0 1\n1 0 0 0.5 0 1\n0 1 0 0 0 1\n3 0 1 2\n",
+                                  "a.ply").mesh;
+  CHECK(value_at(*layer_named(floats, "color"), 1) == std::vector<float>{0.5f, 0, 1});
+  const std::string shorts = "property ushort red\nproperty ushort green\nproperty ushort blue\n";
+  const Mesh faces = import_text(header("", shorts) + kThreePoints + "3 0 1 2 65535 0 65535\n", "a.ply").mesh;
+  CHECK(value_at(*layer_named(faces, "color"), 1) == std::vector<float>{1, 0, 1});
+}
+
+TEST_CASE("every refusal names the place and the reason") {
+  CHECK(refusal_of("plx\n", "a.ply") == "a.ply:1: does not begin with 'ply'");
+  CHECK(refusal_of("ply\nformat ascii 1.0\n", "a.ply") == "a.ply:2: the header has no end_header");
+  CHECK(refusal_of("ply\nformat ascii 1.0\nelement vertex 3\nproperty quad x\nend_header\n", "a.ply") ==
+        "a.ply:4: unknown property type 'quad'");
+  CHECK(refusal_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n", "a.ply")
+            .find("vertices have no y") != std::string::npos);
+  CHECK(refusal_of(header("", "") + kThreePoints + "3 0 1 3\n", "a.ply") ==
+        "a.ply:13: vertex index 3 of 3 vertices");
+  CHECK(refusal_of(header("", "") + kThreePoints + "3 0 1 -1\n", "a.ply") ==
+        "a.ply:13: vertex index -1 of 3 vertices");
+  CHECK(refusal_of(header("", "") + "0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "a.ply") ==
+        "a.ply:11: vertex 1 is not finite");
+  CHECK(refusal_of(header("", "") + "0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "a.ply") ==
+        "a.ply:11: vertex 1 of 3 has too few numbers");
+  CHECK(refusal_of(header("", "") + kThreePoints + "3 0 1 x\n", "a.ply") ==
+        "a.ply:13: face 0 of 1: not a number: 'x'");
+}
+
+TEST_CASE("counts beyond the file's size take no memory") {
+  for (const char* count : {"4294967295", "9223372036854775807", "1000000000000"}) {
+    const std::string huge = std::string("ply\nformat binary_little_endian 1.0\nelement vertex ") + count +
+                             "\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc";
+    CHECK(refusal_of(huge, "a.ply").find("promises") != std::string::npos);
+  }
+  const std::string list = "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\n"
+                           "property float y\nproperty float z\nelement face 1\n"
+                           "property list uint int vertex_indices\nend_header\n\xff\xff\xff\x7f";
+  CHECK(refusal_of(list, "a.ply").find("a list longer than the file") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace crease

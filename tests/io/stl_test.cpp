@@ -1,0 +1,65 @@
+#include "io/byte_sink.h"
+#include "io/polygon_model.h"
+
+#include <doctest/doctest.h>
+
+namespace crease {
+namespace {
+
+std::string binary_stl(std::uint32_t promised, int facets, std::uint16_t attribute = 0) {
+  ByteSink out;
+  out.text(std::string(80, 'x'));
+  out.u32(promised);
+  for (int f = 0; f < facets; ++f) {
+    for (int i = 0; i < 12; ++i) out.f32(i < 3 ? 0.0f : static_cast<float>((i + f) * (i + f) % 7));
+    out.u16(attribute);
+  }
+  const std::vector<std::byte> bytes = out.take();
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+TEST_CASE("binary is told by its size") {
+  const Imported in = import_text(binary_stl(2, 2), "a.stl");
+  CHECK(in.report.format == "binary STL");
+  CHECK(in.mesh.triangle_count() == 2);
+}
+
+TEST_CASE("a binary file that is cut off is refused, one that is too long is read") {
+  CHECK(refusal_of(binary_stl(3, 2), "a.stl") ==
+        "a.stl: byte 184: the header promises 3 facets, 234 bytes");
+  CHECK(refusal_of(binary_stl(0xffffffff, 2), "a.stl").starts_with("a.stl: byte 184: the header promises"));
+  CHECK(import_text(binary_stl(1, 2), "a.stl").mesh.triangle_count() == 1);
+}
+
+TEST_CASE("attribute bytes are carried as a category") {
+  const Mesh mesh = import_text(binary_stl(2, 2, 0x1234), "a.stl").mesh;
+  REQUIRE(mesh.layers.size() == 2);
+  CHECK(mesh.layers[1].name == "stl_attribute");
+  CHECK(mesh.layers[1].interpolation == Interpolation::Categorical);
+  CHECK(mesh.layers[1].values == std::vector<float>{0x1234});
+}
+
+TEST_CASE("several solids in a text are parts; case and layout do not matter") {
+  const std::string facet =
+      "FACET NORMAL 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop ENDFACET\n";
+  const Mesh mesh = import_text("solid first one\n" + facet + "endsolid first one\nsolid second\n" + facet +
+                                    "endsolid\n",
+                                "a.stl")
+                        .mesh;
+  CHECK(mesh.parts == std::vector<std::string>{"first one", "second"});
+  CHECK(mesh.vertex_count() == 3);
+}
+
+TEST_CASE("every refusal names the line and the reason") {
+  CHECK(refusal_of("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", "a.stl") ==
+        "a.stl:4: vertex: not a number: ''");
+  CHECK(refusal_of("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n", "a.stl") ==
+        "a.stl:4: vertex is not finite");
+  CHECK(refusal_of("solid a\nfacet normal 0 0 1\nendfacet\n", "a.stl") ==
+        "a.stl:3: a facet without three vertices");
+  CHECK(refusal_of("solid a\nfacet normal 0 0 1\n", "a.stl") == "a.stl:2: the file ends inside a solid");
+  CHECK(refusal_of("hello\n", "a.stl") == "a.stl:1: not a word of STL: 'hello'");
+}
+
+}  // namespace
+}  // namespace crease
