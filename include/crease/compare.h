@@ -4,9 +4,10 @@
 //   c.distance.a_to_b.mean / c.diagonal    relative to the bounding box of a
 //
 // Samples are drawn uniformly by area on each surface; each looks for the closest point on the
-// other through a bounding volume hierarchy (Embree), evaluated in doubles. Normals are interpolated from
-// corner normals. Where several triangles lie within a hair of the closest distance (on a hard
-// edge), the one whose normal agrees best counts, so that a sample on an edge is not punished.
+// other through a bounding volume hierarchy (Embree), evaluated in doubles. Normals are
+// interpolated from corner normals. Where several triangles lie within a hair of the closest
+// distance (on a hard edge), the one whose normal agrees best counts, so that a sample on an edge
+// is not punished.
 #pragma once
 
 #include "crease/mesh.h"
@@ -25,18 +26,18 @@ struct Spread {
 struct Comparison {
   struct {
     Spread a_to_b, b_to_a;
-  } distance;                                       // model units
+  } distance;  // model units
   struct {
-    double mean = 0, p95 = 0, max = 0;              // both ways together
-  } normal_deviation;                               // degrees
-  double diagonal = 0;                              // of a's bounding box, model units
-  std::size_t samples = 0;                          // on each surface
+    double mean = 0, p95 = 0, max = 0;  // both ways together
+  } normal_deviation;                   // degrees
+  double diagonal = 0;                  // of a's bounding box, model units
+  std::size_t samples = 0;              // on each surface
 };
 
 struct CompareOptions {
   std::size_t samples = 200'000;  // on each surface; all vertices count for distance max besides
   std::uint32_t seed = 1;
-  int threads = 0;                // 0: all
+  int threads = 0;  // 0: all
 };
 
 // Both meshes need triangles and normals. The result does not depend on the number of threads.

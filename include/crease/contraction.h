@@ -36,7 +36,8 @@ struct LevelError {
 // Where v_s may stand.
 enum class Placement : std::uint8_t {
   Endpoint,  // at p or at q; the PM stores one bit (DB03 swapVectors), attributes are inherited
-  Optimal,   // where the error is least; the PM stores a vector (DB03 delta) and new attribute values
+  Optimal,   // where the error is least; the PM stores a vector (DB03 delta) and new attribute
+             // values
 };
 
 // At the corners of v_s, in one layer, attribute `from` becomes `to`. `to` may be a value that the
@@ -49,12 +50,12 @@ struct AttributeChange {
 };
 
 struct Contraction {
-  VertexId removed{};              // p
-  VertexId kept{};                 // q, whose slot is v_s afterwards
-  Vec3i position{};                // of v_s, grid units
-  LevelError error;                // at v_s; not less than those of p and q (monotone up the tree)
-  std::uint32_t first_change = 0;  // its attribute changes: changes[first_change ..
-  std::uint32_t change_count = 0;  //                               + change_count)
+  VertexId removed{};               // p
+  VertexId kept{};                  // q, whose slot is v_s afterwards
+  Vec3i position{};                 // of v_s, grid units
+  LevelError error;                 // at v_s; not less than those of p and q (monotone up the tree)
+  std::uint32_t first_change = 0;   // its attribute changes: changes[first_change ..
+  std::uint32_t change_count = 0;   //                               + change_count)
   std::uint32_t first_derived = 0;  // likewise in derived
   std::uint32_t derived_count = 0;
 };
@@ -62,10 +63,10 @@ struct Contraction {
 struct ContractionSequence {
   Grid grid;
   Placement placement = Placement::Optimal;
-  std::vector<Contraction> contractions;        // finest first
+  std::vector<Contraction> contractions;  // finest first
   std::vector<AttributeChange> changes;
-  std::vector<TriangleId> derived;              // input triangles; each appears at most once
-  std::vector<std::vector<float>> new_values;   // per layer: values that follow the input's
+  std::vector<TriangleId> derived;             // input triangles; each appears at most once
+  std::vector<std::vector<float>> new_values;  // per layer: values that follow the input's
 
   std::span<const AttributeChange> changes_of(const Contraction& c) const {
     return std::span<const AttributeChange>(changes).subspan(c.first_change, c.change_count);
@@ -77,24 +78,25 @@ struct ContractionSequence {
 
 // One level of detail as plain arrays, triangle t of the input at its old index while it is alive.
 struct Level {
-  std::vector<Vec3i> positions;           // per input vertex, grid units
-  std::vector<Triangle> triangles;        // per input triangle
-  std::vector<bool> alive;                // per input triangle
-  std::vector<bool> derived;              // per input triangle: shows its geometric normal
+  std::vector<Vec3i> positions;     // per input vertex, grid units
+  std::vector<Triangle> triangles;  // per input triangle
+  std::vector<bool> alive;          // per input triangle
+  std::vector<bool> derived;        // per input triangle: shows its geometric normal
   std::vector<std::vector<AttributeId>> of_corner;  // per layer, 3 per input triangle
 };
 
 // The first `count` contractions applied one by one to the snapped mesh, by the definition above.
 // Time O(count * triangles around a vertex). The oracle; the fast way is ProgressiveMesh.
-Level apply_contractions(const Mesh& snapped, const ContractionSequence& sequence, std::size_t count);
+Level apply_contractions(const Mesh& snapped, const ContractionSequence& sequence,
+                         std::size_t count);
 
 // That level as a mesh of its own: live triangles in input order, used vertices and attribute
 // values only, derived normals computed. Attribute values come from the input, then new_values.
 Mesh mesh_of_level(const Mesh& snapped, const ContractionSequence& sequence, const Level& level);
 
 // The first invariant that does not hold, in words: ids in range and alive when used, errors
-// monotone up the tree, derived at most once, attribute changes only of attributes that stand at v_s,
-// endpoints where the placement says so. Time O(contractions * triangles around a vertex).
+// monotone up the tree, derived at most once, attribute changes only of attributes that stand at
+// v_s, endpoints where the placement says so. Time O(contractions * triangles around a vertex).
 Status check_contractions(const Mesh& snapped, const ContractionSequence& sequence);
 
 }  // namespace crease

@@ -2,7 +2,8 @@
 // one normal each, NSN triangles with three. No renderer is named here.
 //
 //   DrawList list = progressive_mesh.draw_list();
-//   upload(list.positions); draw_indexed(list.sn.indices); draw_flat(list.fn.indices, list.fn.normals);
+//   upload(list.positions); draw_indexed(list.sn.indices); draw_flat(list.fn.indices,
+//   list.fn.normals);
 #pragma once
 
 #include "crease/mesh.h"
@@ -18,8 +19,8 @@ namespace crease {
 
 // One of the three parts. Triangle t has corners indices[3 * t ..], all three from `positions`.
 struct DrawPart {
-  std::span<const std::uint32_t> indices;    // 3 * triangle_count
-  std::span<const Vec3f> normals;            // SN: empty; FN: triangle_count; NSN: 3 * triangle_count
+  std::span<const std::uint32_t> indices;  // 3 * triangle_count
+  std::span<const Vec3f> normals;          // SN: empty; FN: triangle_count; NSN: 3 * triangle_count
   std::span<const std::uint32_t> materials;  // triangle_count, or empty
   // Linear RGBA 0..1 per corner, 3 * triangle_count, or empty when the mesh has no colour layer.
   std::span<const std::array<float, 4>> colors;

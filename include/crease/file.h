@@ -20,7 +20,7 @@ struct FileInfo {
   std::uint16_t version = 0;
   std::uint64_t bytes = 0;
   struct Section {
-    std::string name;         // "positions", "contractions", ...
+    std::string name;  // "positions", "contractions", ...
     std::uint64_t offset = 0, bytes = 0;
   };
   std::vector<Section> sections;

@@ -26,8 +26,8 @@ namespace crease {
 // Where a mesh without normals gets them from, and whether given ones are used.
 struct NormalPolicy {
   enum class Kind { Keep, Flat, Smooth, Crease };
-  Kind kind = Kind::Keep;         // Keep: the file's; without any, the format's default (below)
-  double crease_angle_deg = 30;   // Crease: edges sharper than this are hard
+  Kind kind = Kind::Keep;        // Keep: the file's; without any, the format's default (below)
+  double crease_angle_deg = 30;  // Crease: edges sharper than this are hard
 };
 // "keep", "flat", "smooth" or "crease:ANGLE".
 Result<NormalPolicy> parse_normal_policy(std::string_view text);
@@ -42,18 +42,18 @@ struct ImportOptions {
 
 // What was ugly, and what was done about it. Printed by the command line tool.
 struct ImportReport {
-  std::string format;                     // "OBJ", "binary STL", ...
-  std::string normals;                    // where the normals come from, in words
-  std::size_t polygons = 0;               // faces with more than three corners, triangulated
-  std::size_t degenerate_triangles = 0;   // two equal corners: dropped
-  std::size_t duplicate_triangles = 0;    // kept
-  std::size_t zero_area_triangles = 0;    // kept
-  std::size_t isolated_vertices = 0;      // dropped
-  std::size_t welded_vertices = 0;        // stored vertices less distinct positions
-  std::size_t zero_normals = 0;           // replaced by the geometric normal
-  std::size_t bad_attribute_values = 0;   // attribute values that were not finite: set to zero
-  std::size_t joined_normals = 0;         // by same_normal_deg
-  std::vector<std::string> notes;         // anything else worth a line: ignored elements, ...
+  std::string format;                    // "OBJ", "binary STL", ...
+  std::string normals;                   // where the normals come from, in words
+  std::size_t polygons = 0;              // faces with more than three corners, triangulated
+  std::size_t degenerate_triangles = 0;  // two equal corners: dropped
+  std::size_t duplicate_triangles = 0;   // kept
+  std::size_t zero_area_triangles = 0;   // kept
+  std::size_t isolated_vertices = 0;     // dropped
+  std::size_t welded_vertices = 0;       // stored vertices less distinct positions
+  std::size_t zero_normals = 0;          // replaced by the geometric normal
+  std::size_t bad_attribute_values = 0;  // attribute values that were not finite: set to zero
+  std::size_t joined_normals = 0;        // by same_normal_deg
+  std::vector<std::string> notes;        // anything else worth a line: ignored elements, ...
 };
 
 struct Imported {
@@ -63,8 +63,8 @@ struct Imported {
 
 // Reads one file; `.zst` and `.xz` are unpacked on the way. The format is told from the name and,
 // where that says nothing, from the first bytes. Formats' own default for absent normals:
-// glTF, CityJSON and OFF polygons flat; STL crease 30 degrees; OBJ smoothing groups, without them and for
-// PLY and OFF crease 30 degrees. Time O(n log n), memory about three times the mesh.
+// glTF, CityJSON and OFF polygons flat; STL crease 30 degrees; OBJ smoothing groups, without them
+// and for PLY and OFF crease 30 degrees. Time O(n log n), memory about three times the mesh.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options);
 
 // The same for bytes in memory; `name` tells the format and appears in messages. Files that a glTF

@@ -67,7 +67,7 @@ struct Mesh {
   std::vector<MaterialId> material_of_triangle;  // triangle_count, or empty: no materials
   std::vector<PartId> part_of_triangle;          // triangle_count, or empty: one part
   std::vector<Material> materials;
-  std::vector<std::string> parts;                // names of objects, groups or scene nodes
+  std::vector<std::string> parts;  // names of objects, groups or scene nodes
 
   std::size_t vertex_count() const { return positions.size(); }
   std::size_t triangle_count() const { return triangles.size(); }

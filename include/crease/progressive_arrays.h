@@ -1,13 +1,15 @@
 // DB03's result as plain arrays: what a file holds and ProgressiveMesh moves in.
 //
-// Vertices are slots [SN | NSN], triangles [SN | FN | NSN]; in each section what lives longest comes
-// first, and what a contraction removes are the last active ones, so that every level is a prefix of
-// every section (DB03 8.3). All arrays are at full resolution; the packed contractions lead on.
+// Vertices are slots [SN | NSN], triangles [SN | FN | NSN]; in each section what lives longest
+// comes first, and what a contraction removes are the last active ones, so that every level is a
+// prefix of every section (DB03 8.3). All arrays are at full resolution; the packed contractions
+// lead on.
 //
 // Slots and classes are fixed for the whole life of a progressive mesh:
 // (1) An SN slot v owns a normal, normals[v] at full resolution. It may change with a contraction.
 // (2) An SN triangle has three SN slots at every level and uses their own normals. It stores none.
-// (3) An FN triangle has one normal on all corners at every level until it is derived (contraction.h).
+// (3) An FN triangle has one normal on all corners at every level until it is derived
+// (contraction.h).
 //     That normal never changes, DB03's rule (b).
 // (4) All others are NSN and store three.
 // A triangle of SN vertices is thus FN or NSN from the start when some contraction gives a slot two
@@ -35,9 +37,7 @@ struct SectionCounts {
   std::uint32_t sn_triangles = 0, fn_triangles = 0, nsn_triangles = 0;
 
   std::size_t vertices() const { return std::size_t(sn_vertices) + nsn_vertices; }
-  std::size_t triangles() const {
-    return std::size_t(sn_triangles) + fn_triangles + nsn_triangles;
-  }
+  std::size_t triangles() const { return std::size_t(sn_triangles) + fn_triangles + nsn_triangles; }
   bool operator==(const SectionCounts&) const = default;
 };
 
@@ -54,8 +54,8 @@ struct ProgressiveLayer {
   std::uint32_t dimension = 1;
   Storage storage = Storage::Corner;
   std::vector<float> values;  // dimension a value. Vertex: value v is slot v's own, others follow
-  // Vertex: for every triangle its row in `indices`, or kNone: it uses the slots' own values. Empty:
-  // all do.
+  // Vertex: for every triangle its row in `indices`, or kNone: it uses the slots' own values.
+  // Empty: all do.
   std::vector<std::uint32_t> row_of_triangle;
   // Value indices. Corner: 3 a triangle; Face: 1 a triangle; Vertex: 3 a row.
   std::vector<std::uint32_t> indices;
@@ -78,22 +78,22 @@ struct ErrorStep {
 // One contraction each, in order; what is of variable length lies in streams that are read with
 // cursors in both directions. hierarchy/packed_contraction.h reads and makes the headers.
 //
-// Bytes a contraction: slot kept 4, header 4, delta 12 (Optimal only; Endpoint has DB03's swapVectors
-// as a bit), corner change 4 each. Where it happens: own normal changes 12, own values of the other
-// layers change 4 a component, error grows 20, counts beyond the header 24, and a block of 4 + 4 a
-// group + 8 for every corner that changes an attribute index, 4 for every triangle that becomes
-// derived, 4 for every touched corner (DrawList would not notice otherwise: the corner keeps its slot,
-// but the slot moved under a derived triangle, or changed its colour).
+// Bytes a contraction: slot kept 4, header 4, delta 12 (Optimal only; Endpoint has DB03's
+// swapVectors as a bit), corner change 4 each. Where it happens: own normal changes 12, own values
+// of the other layers change 4 a component, error grows 20, counts beyond the header 24, and a
+// block of 4 + 4 a group + 8 for every corner that changes an attribute index, 4 for every triangle
+// that becomes derived, 4 for every touched corner (DrawList would not notice otherwise: the corner
+// keeps its slot, but the slot moved under a derived triangle, or changed its colour).
 struct PackedContractions {
-  std::vector<std::uint32_t> kept;      // slot of v_s; the slot removed is the last active one
+  std::vector<std::uint32_t> kept;  // slot of v_s; the slot removed is the last active one
   std::vector<std::uint32_t> headers;
-  std::vector<Vec3i> deltas;            // Placement::Optimal: added to the kept slot's position
-  std::vector<WideCounts> wide;         // of those with the header's bit, in order
-  std::vector<std::uint32_t> corners;   // 3 * triangle + corner, where the removed slot becomes kept
-  std::vector<std::uint32_t> own;       // xor of float bits: normal first, then the other layers
+  std::vector<Vec3i> deltas;           // Placement::Optimal: added to the kept slot's position
+  std::vector<WideCounts> wide;        // of those with the header's bit, in order
+  std::vector<std::uint32_t> corners;  // 3 * triangle + corner, where the removed slot becomes kept
+  std::vector<std::uint32_t> own;      // xor of float bits: normal first, then the other layers
   std::vector<std::uint32_t> block_ends;  // in `blocks`, for those with the header's bit, in order
   std::vector<std::uint32_t> blocks;
-  std::vector<ErrorStep> errors;        // ascending; before the first one there is no error
+  std::vector<ErrorStep> errors;  // ascending; before the first one there is no error
 
   std::size_t count() const { return kept.size(); }
 };
@@ -101,14 +101,14 @@ struct PackedContractions {
 struct ProgressiveArrays {
   Grid grid;
   Placement placement = Placement::Optimal;
-  SectionCounts full;                      // at full resolution
-  std::vector<Vec3i> positions;            // per slot, grid units
-  std::vector<std::uint32_t> indices;      // 3 slots a triangle
+  SectionCounts full;                  // at full resolution
+  std::vector<Vec3i> positions;        // per slot, grid units
+  std::vector<std::uint32_t> indices;  // 3 slots a triangle
   std::string normal_name = "normal";
-  std::vector<Vec3f> normals;              // own normals of the SN slots, then others (DB03 rebuilt)
-  std::vector<std::uint32_t> fn_normals;   // 1 index a FN triangle
-  std::vector<std::uint32_t> nsn_normals;  // 3 indices a NSN triangle
-  std::vector<ProgressiveLayer> layers;    // beside normals
+  std::vector<Vec3f> normals;             // own normals of the SN slots, then others (DB03 rebuilt)
+  std::vector<std::uint32_t> fn_normals;  // 1 index a FN triangle
+  std::vector<std::uint32_t> nsn_normals;           // 3 indices a NSN triangle
+  std::vector<ProgressiveLayer> layers;             // beside normals
   std::vector<std::uint32_t> material_of_triangle;  // or empty
   std::vector<std::uint32_t> part_of_triangle;      // or empty
   std::vector<Material> materials;
@@ -117,9 +117,9 @@ struct ProgressiveArrays {
 };
 using ProgressiveArraysPtr = std::shared_ptr<const ProgressiveArrays>;
 
-// The first thing that is not as said above, in words. It follows every contraction, so that whoever
-// moves in arrays that pass it need check nothing. Time O(arrays and records), memory about the
-// arrays' own.
+// The first thing that is not as said above, in words. It follows every contraction, so that
+// whoever moves in arrays that pass it need check nothing. Time O(arrays and records), memory about
+// the arrays' own.
 Status check_progressive_arrays(const ProgressiveArrays& arrays);
 
 // Run-time bytes of the arrays at full resolution: DB03's claim in numbers. Each counts positions,

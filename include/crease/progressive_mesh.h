@@ -1,10 +1,9 @@
 // The linear progressive mesh of DB03: arrays partitioned by shading kind, ordered by the
 // contraction sequence, so that a level is a prefix of every section.
 //
-//   ProgressiveMesh pm(arrays);                   // arrays from build_progressive_arrays() or a file
-//   pm.set_triangle_count(50'000);                // O(change), forwards and backwards
-//   for (Range r : pm.changes().positions) upload(r);
-//   draw(pm.draw_list());
+//   ProgressiveMesh pm(arrays);                   // arrays from build_progressive_arrays() or a
+//   file pm.set_triangle_count(50'000);                // O(change), forwards and backwards for
+//   (Range r : pm.changes().positions) upload(r); draw(pm.draw_list());
 #pragma once
 
 #include "crease/contraction.h"
@@ -22,11 +21,11 @@ struct Range {  // [first, first + count), in elements
   std::uint32_t first = 0, count = 0;
 };
 
-// What a renderer that keeps copies of the DrawList arrays has to fetch again after a switch of level:
-// sorted, disjoint, in elements of the arrays as they are now. Copies are taken whole at full
-// resolution, before the first switch; then the ranges of every switch keep the active part of them
-// right. Triangles that come back are in a range only if they changed meanwhile; the new counts need
-// no upload.
+// What a renderer that keeps copies of the DrawList arrays has to fetch again after a switch of
+// level: sorted, disjoint, in elements of the arrays as they are now. Copies are taken whole at
+// full resolution, before the first switch; then the ranges of every switch keep the active part of
+// them right. Triangles that come back are in a range only if they changed meanwhile; the new
+// counts need no upload.
 struct DrawChanges {
   std::vector<Range> positions, vertex_normals;
   std::vector<Range> sn_indices, fn_indices, nsn_indices;  // in triangles
@@ -51,13 +50,13 @@ class ProgressiveMesh {
   void set_error(float surface_error);
 
   std::size_t triangle_count() const;
-  std::size_t vertex_count() const;       // active
+  std::size_t vertex_count() const;  // active
   std::size_t full_triangle_count() const;
   std::size_t base_triangle_count() const;
-  LevelError error() const;               // the largest of each along the prefix in force
+  LevelError error() const;  // the largest of each along the prefix in force
 
   DrawList draw_list() const;
-  const DrawChanges& changes() const;     // of the last set_ call
+  const DrawChanges& changes() const;  // of the last set_ call
 
   // The level as a mesh of its own, all attribute layers, materials and parts; vertices and
   // attribute values that are used only. Time O(mesh).

@@ -25,12 +25,12 @@ enum class Error : std::uint16_t {
   Truncated = 22,
   BadChecksum = 23,
   OverLimit = 24,
-  BadFormat = 25,      // the bytes are not what the format says
-  BadValue = 26,       // a number that cannot be meant: NaN, infinite, index out of range
-  NoTriangles = 27,    // readable, but nothing to work on
+  BadFormat = 25,    // the bytes are not what the format says
+  BadValue = 26,     // a number that cannot be meant: NaN, infinite, index out of range
+  NoTriangles = 27,  // readable, but nothing to work on
   NotSupported = 30,
   TargetNotMet = 40,
-  Invalid = 50,        // an invariant does not hold
+  Invalid = 50,  // an invariant does not hold
   Interrupted = 60,
 };
 
@@ -62,6 +62,8 @@ class [[nodiscard]] Result {
 struct Done {};
 using Status = Result<Done>;
 
-inline Failure fail(Error error, std::string message) { return {error, std::move(message)}; }
+inline Failure fail(Error error, std::string message) {
+  return {error, std::move(message)};
+}
 
 }  // namespace crease

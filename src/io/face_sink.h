@@ -64,7 +64,8 @@ class FaceSink {
     PolygonTriangles triangles = triangulate_polygon(points_);
     cut_ = std::move(triangles.triangles);
     fanned_ += triangles.fanned;
-    raw_.report.degenerate_triangles += corners.size() - 2 - std::min(cut_.size(), corners.size() - 2);
+    raw_.report.degenerate_triangles +=
+        corners.size() - 2 - std::min(cut_.size(), corners.size() - 2);
   }
 
   RawMesh& raw_;

@@ -42,7 +42,7 @@ std::size_t clear_bad_values(RawLayer& layer) {
 
 // From values per stored vertex, face or corner to values per corner.
 AttributeLayer by_corner(RawLayer layer, const RawMesh& raw) {
-  AttributeLayer out{std::move(layer.name), layer.role, layer.interpolation, layer.dimension,
+  AttributeLayer out{std::move(layer.name),   layer.role, layer.interpolation, layer.dimension,
                      std::move(layer.values), {}};
   out.of_corner.reserve(3 * raw.triangles.size());
   switch (layer.per) {
@@ -151,9 +151,8 @@ void settle_normals(Mesh& mesh, const RawMesh& raw, const ImportOptions& options
     mesh.layers.erase(given);
     report.zero_normals = normalize_given(normals);
   }
-  const bool any_given =
-      std::any_of(normals.of_corner.begin(), normals.of_corner.end(),
-                  [](AttributeId a) { return a != kNoAttribute; });
+  const bool any_given = std::any_of(normals.of_corner.begin(), normals.of_corner.end(),
+                                     [](AttributeId a) { return a != kNoAttribute; });
   const NormalRule rule = rule_of(options.normals, raw);
   const bool asked_for_new = options.normals.kind != NormalPolicy::Kind::Keep;
   if (any_given && !asked_for_new) {
@@ -247,7 +246,8 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
   if (mesh.triangles.empty()) {
     std::string reason = "no triangles in it";
     if (report.degenerate_triangles > 0) {
-      reason += "; " + std::to_string(report.degenerate_triangles) + " with two equal corners dropped";
+      reason +=
+          "; " + std::to_string(report.degenerate_triangles) + " with two equal corners dropped";
     }
     for (const std::string& note : report.notes) reason += "; " + note;
     return fail(Error::NoTriangles, name + ": " + reason);

@@ -30,7 +30,8 @@ struct Source {
 };
 
 // "NAME:17: reason" and "NAME: byte 4096: reason".
-Failure fail_at_line(Error error, const Source& source, std::size_t line, const std::string& reason);
+Failure fail_at_line(Error error, const Source& source, std::size_t line,
+                     const std::string& reason);
 Failure fail_at_byte(Error error, const Source& source, std::size_t offset,
                      const std::string& reason);
 

@@ -24,9 +24,10 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {".obj", read_obj},   {".ply", read_ply},  {".stl", read_stl},       {".off", read_off},
-    {".gltf", read_gltf}, {".glb", read_gltf}, {".b3dm", read_gltf},     {".json", read_cityjson},
-    {".jsonl", read_cityjson}, {".cityjson", read_cityjson},
+    {".obj", read_obj},           {".ply", read_ply},       {".stl", read_stl},
+    {".off", read_off},           {".gltf", read_gltf},     {".glb", read_gltf},
+    {".b3dm", read_gltf},         {".json", read_cityjson}, {".jsonl", read_cityjson},
+    {".cityjson", read_cityjson},
 };
 
 constexpr std::string_view kKnown = ".obj .ply .stl .off .gltf .glb .b3dm .json";
@@ -45,7 +46,8 @@ Reader reader_by_name(std::string_view name) {
   return nullptr;
 }
 
-// For names that say nothing. OBJ has no mark of its own; a file that opens like one is taken as one.
+// For names that say nothing. OBJ has no mark of its own; a file that opens like one is taken as
+// one.
 Reader reader_by_first_bytes(std::string_view text) {
   const auto starts = [&](std::string_view with) { return text.starts_with(with); };
   if (starts("ply\n") || starts("ply\r")) return read_ply;
@@ -113,7 +115,8 @@ Result<RawMesh> read_raw(std::span<const std::byte> bytes, const std::string& na
   return read(source);
 }
 
-Result<Imported> finish(Result<RawMesh> raw, const std::string& name, const ImportOptions& options) {
+Result<Imported> finish(Result<RawMesh> raw, const std::string& name,
+                        const ImportOptions& options) {
   if (!raw.ok()) return raw.failure();
   return finish_import(std::move(*raw), options, name);
 }
@@ -132,8 +135,10 @@ Result<NormalPolicy> parse_normal_policy(std::string_view text) {
     const double angle = policy.crease_angle_deg;
     if (got.ec == std::errc() && got.ptr == end && angle >= 0 && angle <= 180) return policy;
   }
-  return fail(Error::CommandLine, std::string("normals '").append(text).append(
-                                      "': not keep, flat, smooth or crease:ANGLE (0 to 180 degrees)"));
+  return fail(Error::CommandLine,
+              std::string("normals '")
+                  .append(text)
+                  .append("': not keep, flat, smooth or crease:ANGLE (0 to 180 degrees)"));
 }
 
 Result<Imported> import_bytes(std::span<const std::byte> bytes, std::string_view name,

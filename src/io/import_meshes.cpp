@@ -18,7 +18,8 @@ bool is_same_layer(const AttributeLayer& a, const AttributeLayer& b) {
 
 // Adds `from`'s layers to `to`, which has `before` triangles, `from` having `added`. Where one side
 // lacks a layer, its corners get zero there.
-void append_layers(Mesh& to, std::vector<AttributeLayer> from, std::size_t before, std::size_t added) {
+void append_layers(Mesh& to, std::vector<AttributeLayer> from, std::size_t before,
+                   std::size_t added) {
   for (AttributeLayer& layer : from) {
     const auto same = std::find_if(to.layers.begin(), to.layers.end(), [&](const auto& candidate) {
       return is_same_layer(candidate, layer);
@@ -131,7 +132,8 @@ Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
   // Again over all: files may repeat each other.
   all.report.duplicate_triangles = count_duplicate_triangles(mesh);
   all.report.zero_area_triangles = count_zero_area_triangles(mesh);
-  if (had_parts) all.report.notes.push_back("each file is one part; parts inside files are not kept");
+  if (had_parts)
+    all.report.notes.push_back("each file is one part; parts inside files are not kept");
   return all;
 }
 

@@ -50,14 +50,30 @@ class PlyBody {
     const std::byte* at = source_.bytes.data() + offset_;
     offset_ += size;
     switch (type) {
-      case PlyType::Int8: x = static_cast<std::int8_t>(*at); break;
-      case PlyType::Uint8: x = static_cast<std::uint8_t>(*at); break;
-      case PlyType::Int16: x = static_cast<std::int16_t>(load<std::uint16_t>(at)); break;
-      case PlyType::Uint16: x = load<std::uint16_t>(at); break;
-      case PlyType::Int32: x = static_cast<std::int32_t>(load<std::uint32_t>(at)); break;
-      case PlyType::Uint32: x = load<std::uint32_t>(at); break;
-      case PlyType::Float32: x = static_cast<double>(std::bit_cast<float>(load<std::uint32_t>(at))); break;
-      case PlyType::Float64: x = std::bit_cast<double>(load<std::uint64_t>(at)); break;
+      case PlyType::Int8:
+        x = static_cast<std::int8_t>(*at);
+        break;
+      case PlyType::Uint8:
+        x = static_cast<std::uint8_t>(*at);
+        break;
+      case PlyType::Int16:
+        x = static_cast<std::int16_t>(load<std::uint16_t>(at));
+        break;
+      case PlyType::Uint16:
+        x = load<std::uint16_t>(at);
+        break;
+      case PlyType::Int32:
+        x = static_cast<std::int32_t>(load<std::uint32_t>(at));
+        break;
+      case PlyType::Uint32:
+        x = load<std::uint32_t>(at);
+        break;
+      case PlyType::Float32:
+        x = static_cast<double>(std::bit_cast<float>(load<std::uint32_t>(at)));
+        break;
+      case PlyType::Float64:
+        x = std::bit_cast<double>(load<std::uint64_t>(at));
+        break;
     }
     return true;
   }
@@ -81,7 +97,8 @@ class PlyBody {
   Bits load(const std::byte* at) const {
     Bits bits = 0;
     for (std::size_t i = 0; i < sizeof(Bits); ++i) {
-      const std::size_t shift = 8 * (encoding_ == PlyEncoding::LittleEndian ? i : sizeof(Bits) - 1 - i);
+      const std::size_t shift =
+          8 * (encoding_ == PlyEncoding::LittleEndian ? i : sizeof(Bits) - 1 - i);
       bits = static_cast<Bits>(bits | static_cast<Bits>(std::to_integer<Bits>(at[i]) << shift));
     }
     return bits;

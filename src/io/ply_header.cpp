@@ -14,11 +14,11 @@ constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
 
 std::optional<PlyType> type_named(std::string_view name) {
   constexpr std::pair<std::string_view, PlyType> kNames[] = {
-      {"char", PlyType::Int8},      {"int8", PlyType::Int8},      {"uchar", PlyType::Uint8},
-      {"uint8", PlyType::Uint8},    {"short", PlyType::Int16},    {"int16", PlyType::Int16},
-      {"ushort", PlyType::Uint16},  {"uint16", PlyType::Uint16},  {"int", PlyType::Int32},
-      {"int32", PlyType::Int32},    {"uint", PlyType::Uint32},    {"uint32", PlyType::Uint32},
-      {"float", PlyType::Float32},  {"float32", PlyType::Float32}, {"double", PlyType::Float64},
+      {"char", PlyType::Int8},       {"int8", PlyType::Int8},       {"uchar", PlyType::Uint8},
+      {"uint8", PlyType::Uint8},     {"short", PlyType::Int16},     {"int16", PlyType::Int16},
+      {"ushort", PlyType::Uint16},   {"uint16", PlyType::Uint16},   {"int", PlyType::Int32},
+      {"int32", PlyType::Int32},     {"uint", PlyType::Uint32},     {"uint32", PlyType::Uint32},
+      {"float", PlyType::Float32},   {"float32", PlyType::Float32}, {"double", PlyType::Float64},
       {"float64", PlyType::Float64},
   };
   for (const auto& [known, type] : kNames) {
@@ -117,7 +117,9 @@ struct HeaderReader {
 
 }  // namespace
 
-std::size_t size_of(PlyType type) { return kSizes[static_cast<std::size_t>(type)]; }
+std::size_t size_of(PlyType type) {
+  return kSizes[static_cast<std::size_t>(type)];
+}
 
 std::size_t PlyElement::least_bytes(bool is_text) const {
   std::size_t bytes = 0;

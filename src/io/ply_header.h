@@ -13,11 +13,13 @@ namespace crease {
 
 enum class PlyType : std::uint8_t { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
 std::size_t size_of(PlyType type);
-inline bool is_integer(PlyType type) { return type < PlyType::Float32; }
+inline bool is_integer(PlyType type) {
+  return type < PlyType::Float32;
+}
 
 struct PlyProperty {
   std::string name;
-  PlyType type{};        // of the value, or of a list's items
+  PlyType type{};  // of the value, or of a list's items
   bool is_list = false;
   PlyType count_type{};  // of a list's length
 };
@@ -27,7 +29,8 @@ struct PlyElement {
   std::size_t count = 0;
   std::vector<PlyProperty> properties;
 
-  // Bytes that a row takes at least: lists may be empty; a number in text takes a digit and a blank.
+  // Bytes that a row takes at least: lists may be empty; a number in text takes a digit and a
+  // blank.
   std::size_t least_bytes(bool is_text) const;
 };
 

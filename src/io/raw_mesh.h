@@ -6,9 +6,9 @@
 //   raw.layers.push_back(texcoord_layer("uv", RawLayer::Per::Vertex));
 //   return finish_import(std::move(raw), options);    // weld, drop, normals: import.cpp does this
 //
-// A reader promises: indices in range, positions finite (else it fails with file, place and reason).
-// It need not care for: equal corners, unused vertices, bad attribute values, zero or long normals,
-// missing normals, repeated positions. finish_import() settles and counts those.
+// A reader promises: indices in range, positions finite (else it fails with file, place and
+// reason). It need not care for: equal corners, unused vertices, bad attribute values, zero or long
+// normals, missing normals, repeated positions. finish_import() settles and counts those.
 #pragma once
 
 #include "crease/ids.h"
@@ -54,15 +54,16 @@ inline RawLayer color_layer(RawLayer::Per per, std::uint32_t dimension) {
 }
 
 struct RawMesh {
-  std::vector<Vec3d> positions;                         // stored vertices, model units
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // stored vertices; polygons are triangulated
+  std::vector<Vec3d> positions;  // stored vertices, model units
+  std::vector<std::array<std::uint32_t, 3>>
+      triangles;  // stored vertices; polygons are triangulated
   // The source polygon of each triangle; empty: every triangle is a face of its own. The triangles
   // of one polygon share one normal where normals are flat, and no edge between them is hard.
   std::vector<std::uint32_t> face_of_triangle;
-  std::vector<RawLayer> layers;                    // any number; one normal layer at most, anywhere
-  std::vector<std::uint32_t> smoothing_group;      // per triangle, 0 = none; empty: no such thing here
-  std::vector<MaterialId> material_of_triangle;    // per triangle, or empty
-  std::vector<PartId> part_of_triangle;            // per triangle, or empty
+  std::vector<RawLayer> layers;                // any number; one normal layer at most, anywhere
+  std::vector<std::uint32_t> smoothing_group;  // per triangle, 0 = none; empty: no such thing here
+  std::vector<MaterialId> material_of_triangle;  // per triangle, or empty
+  std::vector<PartId> part_of_triangle;          // per triangle, or empty
   std::vector<Material> materials;
   std::vector<std::string> parts;
 
@@ -70,16 +71,19 @@ struct RawMesh {
   // Smoothing groups, where there are any, go before this.
   NormalPolicy default_normals{NormalPolicy::Kind::Crease, 30};
 
-  // format, polygons, notes, and bad values that never reached a layer; finish_import() adds the rest.
+  // format, polygons, notes, and bad values that never reached a layer; finish_import() adds the
+  // rest.
   ImportReport report;
 };
 
 // Welds, drops, joins, fills in normals, counts: RawMesh to a mesh that holds check_mesh().
 //
-//  - bit-equal positions become one vertex (-0 == +0); bit-equal values of a layer become one value;
+//  - bit-equal positions become one vertex (-0 == +0); bit-equal values of a layer become one
+//  value;
 //  - triangles with two equal corners and vertices without a triangle are dropped;
 //  - values that are not finite become zero; normals of length zero become the geometric one;
-//  - normals are made unit only if they are off by more than 1e-3, so that exact ones keep their bits;
+//  - normals are made unit only if they are off by more than 1e-3, so that exact ones keep their
+//  bits;
 //  - a corner without a value in a layer gets zero, a corner without a normal gets one by policy;
 //  - the policy of `options` overrides the file's normals unless it is Keep;
 //  - normals at one vertex within options.same_normal_deg are joined (mesh/normals.h).

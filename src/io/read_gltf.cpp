@@ -78,11 +78,7 @@ std::vector<Material> read_materials(const Json& json) {
 }
 
 // 3.7.2.1: primitive.mode.
-enum class Mode : std::size_t {
-  Triangles = 4,
-  Strip = 5,
-  Fan = 6
-};
+enum class Mode : std::size_t { Triangles = 4, Strip = 5, Fan = 6 };
 
 // Appends the triangles that a run of vertices makes. `vertex(i)` is the i-th.
 template <typename Vertex>

@@ -21,14 +21,17 @@ std::string texture_name(Line& line) {
     if (takes_word) {
       probe.word();
     } else {
-      for (double unused; probe.number(unused);) {}
+      for (double unused; probe.number(unused);) {
+      }
     }
     line = probe;
   }
   return std::string(line.rest());
 }
 
-float share(double x) { return std::isfinite(x) ? static_cast<float>(std::fmin(std::fmax(x, 0), 1)) : 1; }
+float share(double x) {
+  return std::isfinite(x) ? static_cast<float>(std::fmin(std::fmax(x, 0), 1)) : 1;
+}
 
 }  // namespace
 

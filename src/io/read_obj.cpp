@@ -35,7 +35,8 @@ class ObjReader {
       return *failure_;
     }
     if (known_lines_ == 0) {
-      return fail_at_line(Error::BadFormat, source_, 1, "not an OBJ file: no v and no f line anywhere");
+      return fail_at_line(Error::BadFormat, source_, 1,
+                          "not an OBJ file: no v and no f line anywhere");
     }
     if (raw_.positions.size() >= kNone) {
       return fail(Error::OverLimit, source_.name + ": more than 4 294 967 294 vertices");
@@ -79,7 +80,8 @@ class ObjReader {
 
   bool not_a_number(Line& line, const char* what) {
     if (line.done()) return refuse(Error::BadFormat, std::string(what) + " has too few numbers");
-    return refuse(Error::BadFormat, std::string(what) + ": not a number: " + in_quotes(line.word()));
+    return refuse(Error::BadFormat,
+                  std::string(what) + ": not a number: " + in_quotes(line.word()));
   }
 
   // First pass.
@@ -221,9 +223,9 @@ class ObjReader {
     std::int64_t i = 0;
     const auto got = std::from_chars(at, end, i);
     if (got.ec != std::errc() || (got.ptr != end && *got.ptr != '/')) {
-      return refuse(Error::BadFormat,
-                    "face corner " + in_quotes({at, static_cast<std::size_t>(end - at)}) +
-                        " is not v, v/vt, v//vn or v/vt/vn");
+      return refuse(Error::BadFormat, "face corner " +
+                                          in_quotes({at, static_cast<std::size_t>(end - at)}) +
+                                          " is not v, v/vt, v//vn or v/vt/vn");
     }
     at = got.ptr;
     const std::int64_t total = static_cast<std::int64_t>(total_of(kind));
@@ -262,8 +264,8 @@ class ObjReader {
         corner_[kind].push_back(index);
       }
       if (at != end || corner_[kPosition].back() == kNone) {
-        return refuse(Error::BadFormat, "face corner " + in_quotes(word) +
-                                            " is not v, v/vt, v//vn or v/vt/vn");
+        return refuse(Error::BadFormat,
+                      "face corner " + in_quotes(word) + " is not v, v/vt, v//vn or v/vt/vn");
       }
     }
     if (corner_[kPosition].size() < 3) {
@@ -321,7 +323,8 @@ class ObjReader {
   }
 
   void finish() {
-    add_layer(normal_layer(RawLayer::Per::Corner), std::move(normals_), std::move(normal_of_corner_));
+    add_layer(normal_layer(RawLayer::Per::Corner), std::move(normals_),
+              std::move(normal_of_corner_));
     add_layer(texcoord_layer("uv", RawLayer::Per::Corner), std::move(texcoords_),
               std::move(texcoord_of_corner_));
     // Before the first `o` or `usemtl` there were no faces, or they were given the name "".
@@ -330,11 +333,13 @@ class ObjReader {
     sink_.report();
     std::vector<std::string>& notes = raw_.report.notes;
     if (short_faces_ > 0) {
-      notes.push_back(std::to_string(short_faces_) + " faces with fewer than three corners ignored");
+      notes.push_back(std::to_string(short_faces_) +
+                      " faces with fewer than three corners ignored");
     }
     for (ValueKind kind : {kTexCoord, kNormal}) {
       if (!has_orphans_[kind]) continue;
-      notes.push_back(std::string("faces name ") + kValueNames[kind] + " that the file does not have");
+      notes.push_back(std::string("faces name ") + kValueNames[kind] +
+                      " that the file does not have");
     }
     if (texcoords_with_depth_ > 0) {
       notes.push_back("third texture coordinate ignored");
@@ -353,7 +358,8 @@ class ObjReader {
       const std::filesystem::path relative(name);
       if (!source_.folder || relative.is_absolute() || name.find('\0') != name.npos) continue;
       std::ifstream file(*source_.folder / relative, std::ios::binary);
-      const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+      const std::string text{std::istreambuf_iterator<char>(file),
+                             std::istreambuf_iterator<char>()};
       if (text.empty()) {
         raw_.report.notes.push_back("material library " + in_quotes(name) + " not found");
       } else {
@@ -373,8 +379,8 @@ class ObjReader {
 
   std::vector<float> colors_, normals_, texcoords_;
   std::vector<std::uint32_t> texcoord_of_corner_, normal_of_corner_;
-  std::array<bool, 3> has_orphans_{};  // by kind
-  std::array<std::size_t, 3> count_{};  // by kind: values before the line in hand
+  std::array<bool, 3> has_orphans_{};                 // by kind
+  std::array<std::size_t, 3> count_{};                // by kind: values before the line in hand
   std::array<std::vector<std::uint32_t>, 3> corner_;  // by kind: the face in hand
 
   bool has_smoothing_groups_ = false;
@@ -390,6 +396,8 @@ class ObjReader {
 
 }  // namespace
 
-Result<RawMesh> read_obj(const Source& source) { return ObjReader(source).read(); }
+Result<RawMesh> read_obj(const Source& source) {
+  return ObjReader(source).read();
+}
 
 }  // namespace crease

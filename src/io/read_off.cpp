@@ -50,8 +50,8 @@ class OffReader {
     std::int64_t x = 0;
     if (line_.done() && !next_line(what)) return false;
     if (!line_.integer(x) || x < 0) {
-      return refuse(Error::BadFormat, std::string("number of ") + what + ": not a count: " +
-                                          in_quotes(line_.word()));
+      return refuse(Error::BadFormat,
+                    std::string("number of ") + what + ": not a count: " + in_quotes(line_.word()));
     }
     count = static_cast<std::size_t>(x);
     return true;
@@ -82,8 +82,8 @@ class OffReader {
     if (!line_.done()) read_count(unused_edges, "edges");
     if (failure_) return false;
     // A vertex takes at least the six characters "0 0 0\n", a face "3 0 0 0\n" or "0\n".
-    const std::size_t left = source_.text().size() -
-                             static_cast<std::size_t>(lines_.position() - source_.text().data());
+    const std::size_t left =
+        source_.text().size() - static_cast<std::size_t>(lines_.position() - source_.text().data());
     if (vertex_count_ > left / 5 || face_count_ > left / 2 + 1) {
       return refuse(Error::Truncated, "the header promises " + std::to_string(vertex_count_) +
                                           " vertices and " + std::to_string(face_count_) +
@@ -97,7 +97,8 @@ class OffReader {
     for (std::size_t i = 0; i < count; ++i) {
       if (line_.number(out[i])) continue;
       if (line_.done()) return refuse(Error::BadFormat, std::string(what) + " has too few numbers");
-      return refuse(Error::BadFormat, std::string(what) + ": not a number: " + in_quotes(line_.word()));
+      return refuse(Error::BadFormat,
+                    std::string(what) + ": not a number: " + in_quotes(line_.word()));
     }
     return true;
   }
@@ -125,7 +126,8 @@ class OffReader {
         return refuse(Error::BadFormat, what() + ": not a number: " + in_quotes(line_.word()));
       }
       if (has_texcoords_) {
-        if (rest_.size() < 2) return refuse(Error::BadFormat, what() + " lacks texture coordinates");
+        if (rest_.size() < 2)
+          return refuse(Error::BadFormat, what() + " lacks texture coordinates");
         for (std::size_t i = rest_.size() - 2; i < rest_.size(); ++i) {
           texcoords_.push_back(static_cast<float>(rest_[i]));
         }
@@ -149,7 +151,8 @@ class OffReader {
       }
       std::int64_t count = 0;
       if (!line_.integer(count) || count < 0) {
-        return refuse(Error::BadFormat, "face: not a number of corners: " + in_quotes(line_.word()));
+        return refuse(Error::BadFormat,
+                      "face: not a number of corners: " + in_quotes(line_.word()));
       }
       corners_.clear();
       for (std::int64_t c = 0; c < count; ++c) {
@@ -229,8 +232,13 @@ class OffReader {
     if (!face_categories_.empty()) {
       sink_.keep_faces();
       face_categories_.resize(sink_.face_count(), 0.0f);
-      raw_.layers.push_back({"color_index", AttributeRole::Other, Interpolation::Categorical,
-                             RawLayer::Per::Face, 1, std::move(face_categories_), {}});
+      raw_.layers.push_back({"color_index",
+                             AttributeRole::Other,
+                             Interpolation::Categorical,
+                             RawLayer::Per::Face,
+                             1,
+                             std::move(face_categories_),
+                             {}});
     }
   }
 
@@ -253,6 +261,8 @@ class OffReader {
 
 }  // namespace
 
-Result<RawMesh> read_off(const Source& source) { return OffReader(source).read(); }
+Result<RawMesh> read_off(const Source& source) {
+  return OffReader(source).read();
+}
 
 }  // namespace crease

@@ -1,6 +1,6 @@
 // PLY: text and both binary orders; vertices with normals, colours, texture coordinates and
-// whatever else; faces with any number of corners, or triangle strips. Properties that have no place
-// in a mesh become attribute layers under their own names.
+// whatever else; faces with any number of corners, or triangle strips. Properties that have no
+// place in a mesh become attribute layers under their own names.
 #include "io/face_sink.h"
 #include "io/formats.h"
 #include "io/ply_body.h"
@@ -61,8 +61,8 @@ double color_scale(PlyType type) {
 // The layers of one element, vertex or face, and where each property goes.
 struct ElementLayers {
   std::vector<RawLayer> layers;
-  std::vector<Target> targets;    // one a property
-  std::vector<float> row;         // values of all layers, one layer after another
+  std::vector<Target> targets;     // one a property
+  std::vector<float> row;          // values of all layers, one layer after another
   std::vector<std::size_t> begin;  // of each layer in `row`
 
   void add(RawLayer layer) {
@@ -111,10 +111,10 @@ class PlyReader {
     if (element.count <= left / element.least_bytes(body_.is_text()) && element.count < kNone) {
       return true;
     }
-    return refuse(body_.refuse(Error::Truncated,
-                               "the header promises " + std::to_string(element.count) + " rows of '" +
-                                   element.name + "', more than the " + std::to_string(left) +
-                                   " bytes that are left can hold"));
+    return refuse(
+        body_.refuse(Error::Truncated, "the header promises " + std::to_string(element.count) +
+                                           " rows of '" + element.name + "', more than the " +
+                                           std::to_string(left) + " bytes that are left can hold"));
   }
 
   bool read_element(const PlyElement& element) {
@@ -126,7 +126,8 @@ class PlyReader {
   }
 
   template <typename TakeScalar, typename TakeList>
-  bool read_row(const PlyElement& element, std::size_t i, TakeScalar take_scalar, TakeList take_list) {
+  bool read_row(const PlyElement& element, std::size_t i, TakeScalar take_scalar,
+                TakeList take_list) {
     const auto what = [&] {
       return element.name + " " + std::to_string(i) + " of " + std::to_string(element.count);
     };
@@ -166,15 +167,17 @@ class PlyReader {
 
   bool skip_rows(const PlyElement& element) {
     for (std::size_t i = 0; i < element.count; ++i) {
-      if (!read_row(element, i, [](std::size_t, double) { return true; },
-                    [](std::size_t) { return true; })) {
+      if (!read_row(
+              element, i, [](std::size_t, double) { return true; },
+              [](std::size_t) { return true; })) {
         return false;
       }
     }
     return true;
   }
 
-  static std::optional<std::size_t> find_property(const PlyElement& element, std::string_view name) {
+  static std::optional<std::size_t> find_property(const PlyElement& element,
+                                                  std::string_view name) {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       if (!name.empty() && !element.properties[p].is_list && element.properties[p].name == name) {
         return p;
@@ -210,11 +213,13 @@ class PlyReader {
     const bool is_face = per == RawLayer::Per::Face;
     take_group(element, kNormal, plan, [&](std::uint32_t) { return normal_layer(per); });
     for (const NamedGroup& group : kColors) {
-      if (take_group(element, group, plan, [&](std::uint32_t n) { return color_layer(per, n); })) break;
+      if (take_group(element, group, plan, [&](std::uint32_t n) { return color_layer(per, n); }))
+        break;
     }
     if (!is_face) {
       for (const NamedGroup& group : kTexCoords) {
-        if (take_group(element, group, plan, [&](std::uint32_t) { return texcoord_layer("uv", per); })) {
+        if (take_group(element, group, plan,
+                       [&](std::uint32_t) { return texcoord_layer("uv", per); })) {
           break;
         }
       }
@@ -225,13 +230,19 @@ class PlyReader {
       if (target.kind == Target::Kind::Layer) continue;
       if (property.is_list) {
         target.kind = list_target(property, is_face);
-      } else if (!is_face && (property.name == "x" || property.name == "y" || property.name == "z")) {
+      } else if (!is_face &&
+                 (property.name == "x" || property.name == "y" || property.name == "z")) {
         target = {Target::Kind::Position, 0, static_cast<std::size_t>(property.name[0] - 'x'), 1};
       } else {
         const bool is_category = is_face && is_integer(property.type);
         target = {Target::Kind::Layer, plan.layers.size(), 0, 1};
-        plan.add({property.name, AttributeRole::Other,
-                  is_category ? Interpolation::Categorical : Interpolation::Linear, per, 1, {}, {}});
+        plan.add({property.name,
+                  AttributeRole::Other,
+                  is_category ? Interpolation::Categorical : Interpolation::Linear,
+                  per,
+                  1,
+                  {},
+                  {}});
       }
     }
     return plan;
@@ -264,7 +275,8 @@ class PlyReader {
       };
       if (!read_row(element, i, take, [](std::size_t) { return true; })) return false;
       if (!is_position(position)) {
-        return refuse(body_.refuse(Error::BadValue, "vertex " + std::to_string(i) + " is not finite"));
+        return refuse(
+            body_.refuse(Error::BadValue, "vertex " + std::to_string(i) + " is not finite"));
       }
       raw_.positions.push_back(position);
       vertices_.keep_row();
@@ -286,9 +298,9 @@ class PlyReader {
 
   bool read_faces(const PlyElement& element) {
     faces_ = plan(element, RawLayer::Per::Face);
-    const bool has_indices = std::any_of(
-        faces_.targets.begin(), faces_.targets.end(),
-        [](const Target& target) { return target.kind == Target::Kind::Indices; });
+    const bool has_indices =
+        std::any_of(faces_.targets.begin(), faces_.targets.end(),
+                    [](const Target& target) { return target.kind == Target::Kind::Indices; });
     if (!has_indices && element.count > 0) {
       return refuse(body_.refuse(Error::BadFormat, "faces have no vertex_indices"));
     }
@@ -321,8 +333,9 @@ class PlyReader {
   bool take_corners() {
     for (double item : list_) {
       if (!(item >= 0) || item >= static_cast<double>(raw_.positions.size())) {
-        return refuse(body_.refuse(Error::BadValue,
-                                   "vertex index " + shown(item) + " of " + std::to_string(raw_.positions.size()) + " vertices"));
+        return refuse(body_.refuse(Error::BadValue, "vertex index " + shown(item) + " of " +
+                                                        std::to_string(raw_.positions.size()) +
+                                                        " vertices"));
       }
       corners_.push_back(static_cast<std::uint32_t>(item));
     }
@@ -354,23 +367,28 @@ class PlyReader {
             continue;
           }
           if (!(list_[k] >= 0) || list_[k] >= static_cast<double>(raw_.positions.size())) {
-            return refuse(body_.refuse(Error::BadValue,
-                                       "strip index " + shown(list_[k]) + " of " + std::to_string(raw_.positions.size()) +
-                                           " vertices"));
+            return refuse(body_.refuse(Error::BadValue, "strip index " + shown(list_[k]) + " of " +
+                                                            std::to_string(raw_.positions.size()) +
+                                                            " vertices"));
           }
           if (++in_strip < 3) continue;
           const std::size_t flip = in_strip % 2 == 0 ? 1 : 0;
-          const auto at = [&](std::size_t back) { return static_cast<std::uint32_t>(list_[k - back]); };
+          const auto at = [&](std::size_t back) {
+            return static_cast<std::uint32_t>(list_[k - back]);
+          };
           const std::array<std::uint32_t, 3> triangle{at(1 + (flip ^ 1)), at(1 + flip), at(0)};
           // Strips turn corners by repeating a vertex; that is no ugliness to be counted.
-          if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
+          if (triangle[0] == triangle[1] || triangle[1] == triangle[2] ||
+              triangle[2] == triangle[0]) {
             continue;
           }
           sink_.add_face(triangle);
         }
         return true;
       };
-      if (!read_row(element, i, [](std::size_t, double) { return true; }, take_list)) return false;
+      if (!read_row(
+              element, i, [](std::size_t, double) { return true; }, take_list))
+        return false;
     }
     return true;
   }
@@ -395,7 +413,8 @@ class PlyReader {
       return std::any_of(raw_.layers.begin(), raw_.layers.end(),
                          [&](const RawLayer& layer) { return layer.role == role; });
     };
-    const bool has_normals = is_there(AttributeRole::Normal), has_colors = is_there(AttributeRole::Color);
+    const bool has_normals = is_there(AttributeRole::Normal),
+               has_colors = is_there(AttributeRole::Color);
     for (RawLayer& layer : faces_.layers) {
       scale_float_colors(layer);
       layer.values.resize(std::size_t(layer.dimension) * sink_.face_count(), 0.0f);
@@ -432,8 +451,8 @@ class PlyReader {
       if (word == "TextureFile") {
         std::string name(line.rest());
         materials.push_back({name, {1, 1, 1, 1}, name});
-      } else if (std::int64_t index; line.integer(index) &&
-                                     index == static_cast<std::int64_t>(materials.size())) {
+      } else if (std::int64_t index;
+                 line.integer(index) && index == static_cast<std::int64_t>(materials.size())) {
         materials.push_back({std::string(line.rest()), {1, 1, 1, 1}, {}});
       }
     }
@@ -444,7 +463,8 @@ class PlyReader {
   bool take_material_index(const RawLayer& layer) {
     const bool is_index = layer.name == "material_index", is_texture = layer.name == "texnumber";
     if (!is_index && !is_texture) return false;
-    std::vector<Material> materials = materials_named_in_comments(is_index ? "material" : "TextureFile");
+    std::vector<Material> materials =
+        materials_named_in_comments(is_index ? "material" : "TextureFile");
     for (float x : layer.values) {
       if (!(x >= 0) || x >= static_cast<float>(materials.size())) return false;
     }

@@ -38,8 +38,13 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
   raw.report.format = "binary STL";
   raw.positions.reserve(3 * facet_count);
   raw.triangles.reserve(facet_count);
-  RawLayer attribute{"stl_attribute", AttributeRole::Other, Interpolation::Categorical,
-                     RawLayer::Per::Face, 1, {}, {}};
+  RawLayer attribute{"stl_attribute",
+                     AttributeRole::Other,
+                     Interpolation::Categorical,
+                     RawLayer::Per::Face,
+                     1,
+                     {},
+                     {}};
   bool has_attribute = false;
   for (std::size_t f = 0; f < facet_count; ++f) {
     const std::size_t facet = kHeaderBytes + kFacetBytes * f;
@@ -101,7 +106,8 @@ Result<RawMesh> read_text(const Source& source) {
           }
         }
         if (!is_position(p)) return refuse(Error::BadValue, "vertex is not finite");
-        if (!in_facet || ++corners > 3) return refuse(Error::BadFormat, "vertex beyond a facet's three");
+        if (!in_facet || ++corners > 3)
+          return refuse(Error::BadFormat, "vertex beyond a facet's three");
         raw.positions.push_back(p);
       } else if (word == "endfacet") {
         if (corners != 3) return refuse(Error::BadFormat, "a facet without three vertices");

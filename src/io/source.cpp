@@ -6,7 +6,8 @@
 
 namespace crease {
 
-Failure fail_at_line(Error error, const Source& source, std::size_t line, const std::string& reason) {
+Failure fail_at_line(Error error, const Source& source, std::size_t line,
+                     const std::string& reason) {
   return fail(error, source.name + ":" + std::to_string(line) + ": " + reason);
 }
 

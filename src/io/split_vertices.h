@@ -14,9 +14,9 @@
 namespace crease {
 
 struct SplitVertices {
-  std::vector<std::uint32_t> of_corner;                // 3 * triangle_count: its split vertex
-  std::vector<std::uint32_t> position;                 // per split vertex: the mesh's vertex
-  std::vector<std::vector<AttributeId>> values;        // per layer given, per split vertex
+  std::vector<std::uint32_t> of_corner;          // 3 * triangle_count: its split vertex
+  std::vector<std::uint32_t> position;           // per split vertex: the mesh's vertex
+  std::vector<std::vector<AttributeId>> values;  // per layer given, per split vertex
 
   std::size_t count() const { return position.size(); }
 };

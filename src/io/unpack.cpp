@@ -26,8 +26,8 @@ Failure cut_off(const std::string& name) {
 }
 
 Failure damaged(const std::string& name, std::size_t offset, const std::string& why) {
-  return fail(Error::BadFormat,
-              name + ": packed byte " + std::to_string(offset) + ": " + why + "; fetch the file again");
+  return fail(Error::BadFormat, name + ": packed byte " + std::to_string(offset) + ": " + why +
+                                    "; fetch the file again");
 }
 
 Failure bomb(const std::string& name) {
@@ -86,7 +86,8 @@ Result<std::vector<std::byte>> unpack_zstd(std::span<const std::byte> bytes,
   return out;
 }
 
-Result<std::vector<std::byte>> unpack_xz(std::span<const std::byte> bytes, const std::string& name) {
+Result<std::vector<std::byte>> unpack_xz(std::span<const std::byte> bytes,
+                                         const std::string& name) {
   lzma_stream stream = LZMA_STREAM_INIT;
   if (lzma_stream_decoder(&stream, kMaxXzMemory, LZMA_CONCATENATED) != LZMA_OK) {
     return fail(Error::NotSupported, name + ": the xz decoder does not start");
@@ -109,7 +110,8 @@ Result<std::vector<std::byte>> unpack_xz(std::span<const std::byte> bytes, const
   }
   const std::size_t offset = bytes.size() - stream.avail_in;
   if (state == LZMA_BUF_ERROR) return cut_off(name);
-  if (state == LZMA_MEMLIMIT_ERROR) return damaged(name, offset, "wants more than 128 MiB to unpack");
+  if (state == LZMA_MEMLIMIT_ERROR)
+    return damaged(name, offset, "wants more than 128 MiB to unpack");
   if (state != LZMA_STREAM_END) return damaged(name, offset, "not xz data");
   return out;
 }
@@ -120,7 +122,8 @@ Packing packing_of(std::span<const std::byte> bytes) {
   constexpr std::array<unsigned char, 4> kZstd{0x28, 0xb5, 0x2f, 0xfd};
   constexpr std::array<unsigned char, 6> kXz{0xfd, '7', 'z', 'X', 'Z', 0};
   const auto begins_with = [&](const auto& magic) {
-    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+    return bytes.size() >= magic.size() &&
+           std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
   };
   return begins_with(kZstd) ? Packing::Zstd : begins_with(kXz) ? Packing::Xz : Packing::None;
 }

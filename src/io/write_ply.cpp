@@ -1,5 +1,6 @@
 // Binary little-endian PLY: doubles for positions, split vertices for hard edges, a face property
-// for each layer with one value a triangle, and the materials as an index that comments give names to.
+// for each layer with one value a triangle, and the materials as an index that comments give names
+// to.
 #include "io/byte_sink.h"
 #include "io/formats.h"
 #include "io/split_vertices.h"
@@ -44,8 +45,12 @@ std::string numbered(std::string name, std::size_t k) {
 PlyLayer plan_layer(const AttributeLayer& layer) {
   PlyLayer plan{&layer, false, false, {}};
   switch (layer.role) {
-    case AttributeRole::Normal: plan.properties = {"nx", "ny", "nz"}; break;
-    case AttributeRole::TexCoord: plan.properties = {"s", "t"}; break;
+    case AttributeRole::Normal:
+      plan.properties = {"nx", "ny", "nz"};
+      break;
+    case AttributeRole::TexCoord:
+      plan.properties = {"s", "t"};
+      break;
     case AttributeRole::Color:
       plan.properties = {"red", "green", "blue", "alpha"};
       plan.as_bytes = all_values(layer, 255, 0, 255);
@@ -65,7 +70,9 @@ PlyLayer plan_layer(const AttributeLayer& layer) {
 
 void write_properties(ByteSink& out, const PlyLayer& plan) {
   for (const std::string& property : plan.properties) {
-    out.text(plan.as_bytes ? "property uchar " : plan.as_integers ? "property int " : "property float ");
+    out.text(plan.as_bytes      ? "property uchar "
+             : plan.as_integers ? "property int "
+                                : "property float ");
     out.text(property);
     out.text("\n");
   }
@@ -115,7 +122,8 @@ std::vector<std::byte> write_ply(const Mesh& mesh) {
   out.text("ply\nformat binary_little_endian 1.0\ncomment written by crease\n");
   for (std::size_t m = 0; has_materials && m < mesh.materials.size(); ++m) {
     std::string name = mesh.materials[m].name;
-    std::replace_if(name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     out.text("comment material " + std::to_string(m) + " " + name + "\n");
   }
   out.text("element vertex " + std::to_string(split.count()) + "\n");
@@ -130,7 +138,8 @@ std::vector<std::byte> write_ply(const Mesh& mesh) {
   for (std::size_t s = 0; s < split.count(); ++s) {
     const Vec3d& p = mesh.positions[split.position[s]];
     for (int i = 0; i < 3; ++i) out.f64(p[i]);
-    for (std::size_t l = 0; l < of_vertex.size(); ++l) write_value(out, of_vertex[l], split.values[l][s]);
+    for (std::size_t l = 0; l < of_vertex.size(); ++l)
+      write_value(out, of_vertex[l], split.values[l][s]);
   }
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     out.u8(3);

@@ -122,8 +122,7 @@ void run_on(int threads, const Work& work) {
   // More than TBB allows would make it print a warning.
   const std::size_t allowed =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  tbb::task_arena arena(threads > 0 ? std::min(threads, int(allowed))
-                                    : tbb::task_arena::automatic);
+  tbb::task_arena arena(threads > 0 ? std::min(threads, int(allowed)) : tbb::task_arena::automatic);
   arena.execute(work);
 }
 

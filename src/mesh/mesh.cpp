@@ -18,7 +18,9 @@ AttributeLayer* Mesh::normals() {
 
 namespace {
 
-Failure broken(std::string what) { return fail(Error::Invalid, std::move(what)); }
+Failure broken(std::string what) {
+  return fail(Error::Invalid, std::move(what));
+}
 
 Status check_layer(const AttributeLayer& layer, std::size_t triangle_count) {
   const std::string who = "attribute layer '" + layer.name + "'";
@@ -42,7 +44,8 @@ template <typename Id>
 Status check_categories(const std::vector<Id>& of_triangle, std::size_t triangle_count,
                         std::size_t name_count, const char* what) {
   if (of_triangle.empty()) return Done{};
-  if (of_triangle.size() != triangle_count) return broken(std::string(what) + ": not one a triangle");
+  if (of_triangle.size() != triangle_count)
+    return broken(std::string(what) + ": not one a triangle");
   for (Id id : of_triangle) {
     if (index_of(id) >= name_count) return broken(std::string(what) + " out of range");
   }

@@ -23,9 +23,9 @@ inline constexpr double kCoplanarDeg = 0.01;
 
 // Which edges are soft. Edges inside a face of the source always are.
 struct SoftEdges {
-  double max_angle_deg = 30;                         // between the triangles' normals; 180: all edges
-  std::span<const std::uint32_t> smoothing_group{};  // per triangle. If given, soft iff both sides
-                                                     // are in one group other than 0
+  double max_angle_deg = 30;  // between the triangles' normals; 180: all edges
+  std::span<const std::uint32_t> smoothing_group{};   // per triangle. If given, soft iff both sides
+                                                      // are in one group other than 0
   std::span<const std::uint32_t> face_of_triangle{};  // the source's polygons; empty: triangles
 };
 
@@ -46,9 +46,9 @@ std::size_t complete_normals(AttributeLayer& given, const Mesh& mesh, const Soft
 //     than `angle_deg`) that spans no more than that as a whole is a flat side: it gets one normal;
 // (2) elsewhere, values that meet at a vertex and differ by no more than `angle_deg` become their
 //     mean, gathered around the most used ones; no joined set spans more than `angle_deg`.
-// Where every vertex has one normal, (2) changes nothing: curved surfaces keep their normals. Corners
-// that shared a normal share one afterwards. Returns the number of (vertex, normal) pairs that
-// changed. Welds the layer.
+// Where every vertex has one normal, (2) changes nothing: curved surfaces keep their normals.
+// Corners that shared a normal share one afterwards. Returns the number of (vertex, normal) pairs
+// that changed. Welds the layer.
 std::size_t join_normals(AttributeLayer& normals, const Mesh& mesh, double angle_deg);
 
 }  // namespace crease

@@ -81,7 +81,9 @@ Vec3d area_vector(const Mesh& mesh, std::size_t t) {
   return is_finite(normal) ? normal : Vec3d{};
 }
 
-bool is_zero(const Vec3d& v) { return v == Vec3d{}; }
+bool is_zero(const Vec3d& v) {
+  return v == Vec3d{};
+}
 
 // Gives triangles with a zero normal the normal of a neighbour, longest edges first, outwards from
 // the triangles that have one.
@@ -202,16 +204,14 @@ Sectors make_sectors(const Mesh& mesh, const SoftEdges& soft) {
     }
     const auto p = corners_of(mesh, corner / 3);
     const std::uint32_t c = corner % 3;
-    const double weight = has_no_area(p[0], p[1], p[2])
-                              ? 0
-                              : angle_at(p[c], p[(c + 1) % 3], p[(c + 2) % 3]);
+    const double weight =
+        has_no_area(p[0], p[1], p[2]) ? 0 : angle_at(p[c], p[(c + 1) % 3], p[(c + 2) % 3]);
     sums[sectors.of_corner[corner]] += normals[corner / 3] * weight;
   }
   sectors.normals.reserve(sums.size());
   for (std::size_t s = 0; s < sums.size(); ++s) {
     // A sum that cancels says nothing: the first triangle speaks for the sector.
-    const Vec3d n =
-        length(sums[s]) > 1e-9 ? normalized(sums[s]) : normals[first_corner[s] / 3];
+    const Vec3d n = length(sums[s]) > 1e-9 ? normalized(sums[s]) : normals[first_corner[s] / 3];
     sectors.normals.push_back(
         {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
   }
@@ -224,7 +224,8 @@ std::vector<Vec3d> face_normals(const Mesh& mesh, std::span<const std::uint32_t>
   std::vector<Vec3d> normals(mesh.triangle_count());
   for (std::size_t t = 0; t < normals.size(); ++t) normals[t] = area_vector(mesh, t);
   if (!face_of_triangle.empty()) {
-    std::vector<Vec3d> sums(1 + *std::max_element(face_of_triangle.begin(), face_of_triangle.end()));
+    std::vector<Vec3d> sums(1 +
+                            *std::max_element(face_of_triangle.begin(), face_of_triangle.end()));
     for (std::size_t t = 0; t < normals.size(); ++t) sums[face_of_triangle[t]] += normals[t];
     for (std::size_t t = 0; t < normals.size(); ++t) {
       if (!is_zero(normalized(sums[face_of_triangle[t]]))) normals[t] = sums[face_of_triangle[t]];

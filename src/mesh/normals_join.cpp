@@ -2,7 +2,8 @@
 //
 //      normals at a vertex         clusters              a patch: clusters connected by triangles
 //        \ | /                       \|                      *-----*
-//   ------ v ------   -->       ---- v ----    -->           | \   |   all corners within the angle:
+//   ------ v ------   -->       ---- v ----    -->           | \   |   all corners within the
+//   angle:
 //                                                            *-----*   one normal
 //
 // and in a patch that is not flat, values that meet at its vertices are gathered around the most
@@ -86,16 +87,38 @@ class Spread {
  private:
   static constexpr int kDirections = 16;
   // cos and sin of d * 180 / 16 degrees.
-  static constexpr std::array<double, kDirections> kCosines{
-      1.0,  0.98078528040323043,  0.92387953251128674,  0.83146961230254524,
-      0.70710678118654757,  0.55557023301960218,  0.38268343236508984,  0.19509032201612825,
-      0.0, -0.19509032201612825, -0.38268343236508984, -0.55557023301960218,
-      -0.70710678118654757, -0.83146961230254524, -0.92387953251128674, -0.98078528040323043};
-  static constexpr std::array<double, kDirections> kSines{
-      0.0, 0.19509032201612825, 0.38268343236508984, 0.55557023301960218,
-      0.70710678118654757, 0.83146961230254524, 0.92387953251128674, 0.98078528040323043,
-      1.0, 0.98078528040323043, 0.92387953251128674, 0.83146961230254524,
-      0.70710678118654757, 0.55557023301960218, 0.38268343236508984, 0.19509032201612825};
+  static constexpr std::array<double, kDirections> kCosines{1.0,
+                                                            0.98078528040323043,
+                                                            0.92387953251128674,
+                                                            0.83146961230254524,
+                                                            0.70710678118654757,
+                                                            0.55557023301960218,
+                                                            0.38268343236508984,
+                                                            0.19509032201612825,
+                                                            0.0,
+                                                            -0.19509032201612825,
+                                                            -0.38268343236508984,
+                                                            -0.55557023301960218,
+                                                            -0.70710678118654757,
+                                                            -0.83146961230254524,
+                                                            -0.92387953251128674,
+                                                            -0.98078528040323043};
+  static constexpr std::array<double, kDirections> kSines{0.0,
+                                                          0.19509032201612825,
+                                                          0.38268343236508984,
+                                                          0.55557023301960218,
+                                                          0.70710678118654757,
+                                                          0.83146961230254524,
+                                                          0.92387953251128674,
+                                                          0.98078528040323043,
+                                                          1.0,
+                                                          0.98078528040323043,
+                                                          0.92387953251128674,
+                                                          0.83146961230254524,
+                                                          0.70710678118654757,
+                                                          0.55557023301960218,
+                                                          0.38268343236508984,
+                                                          0.19509032201612825};
   Vec3d axis_, u_, v_;
   std::array<double, kDirections> low_, high_;
   bool is_beyond_ = false;
@@ -158,9 +181,9 @@ void cluster_vertex(const AttributeLayer& normals, std::span<const std::uint32_t
 
 Clusters cluster_at_vertices(const AttributeLayer& normals, const Mesh& mesh, double angle) {
   const std::uint32_t corner_count = static_cast<std::uint32_t>(normals.of_corner.size());
-  Buckets at_vertex = sort_into_buckets(corner_count, mesh.vertex_count(), [&](std::uint32_t corner) {
-    return vertex_at(mesh, corner);
-  });
+  Buckets at_vertex =
+      sort_into_buckets(corner_count, mesh.vertex_count(),
+                        [&](std::uint32_t corner) { return vertex_at(mesh, corner); });
   Clusters clusters;
   clusters.of_corner.resize(corner_count);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
@@ -176,8 +199,8 @@ Clusters cluster_at_vertices(const AttributeLayer& normals, const Mesh& mesh, do
 }
 
 // Step 2: one value for the whole patch if it spans no more than `angle`.
-bool is_flat(const AttributeLayer& normals, std::span<const std::uint32_t> corners, const Vec3d& sum,
-             double angle) {
+bool is_flat(const AttributeLayer& normals, std::span<const std::uint32_t> corners,
+             const Vec3d& sum, double angle) {
   if (normalized(sum) == Vec3d{}) return false;
   Spread spread(normalized(sum));
   AttributeId previous = kNoAttribute;
@@ -245,7 +268,8 @@ class ValueGathering {
       while (end < at_vertex.size() && at_vertex[end].first == at_vertex[begin].first) ++end;
       for (std::size_t i = begin; i < end; ++i) {
         for (std::size_t j = i + 1; j < std::min(end, i + kMaxComparedMembers); ++j) {
-          const std::uint32_t a = number_of(at_vertex[i].second), b = number_of(at_vertex[j].second);
+          const std::uint32_t a = number_of(at_vertex[i].second),
+                              b = number_of(at_vertex[j].second);
           if (angle_between(values_[a], values_[b]) > angle_) continue;
           links_.emplace_back(a, b);
           links_.emplace_back(b, a);
@@ -319,7 +343,8 @@ void settle_patch(AttributeLayer& normals, const Mesh& mesh, const std::vector<b
   for (std::uint32_t corner : corners) {
     const std::uint32_t c = gathering.cluster_of(normals.of_corner[corner]);
     if (c == kNone) continue;
-    if (joined[c] == kNoAttribute) joined[c] = add_normal(normals, sums[c], normals.of_corner[corner]);
+    if (joined[c] == kNoAttribute)
+      joined[c] = add_normal(normals, sums[c], normals.of_corner[corner]);
     new_of_corner[corner] = joined[c];
   }
 }

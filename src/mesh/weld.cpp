@@ -9,8 +9,12 @@ namespace crease {
 namespace {
 
 // -0 and +0 are one value; x + 0 is x for every other x.
-std::uint64_t bits_of(double x) { return std::bit_cast<std::uint64_t>(x + 0.0); }
-std::uint64_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x + 0.0f); }
+std::uint64_t bits_of(double x) {
+  return std::bit_cast<std::uint64_t>(x + 0.0);
+}
+std::uint64_t bits_of(float x) {
+  return std::bit_cast<std::uint32_t>(x + 0.0f);
+}
 
 // The finaliser of splitmix64: every input bit reaches every output bit, so that the regular bit
 // patterns of grids and millimetres do not pile up in the table.
@@ -52,9 +56,8 @@ Weld weld_rows(std::size_t count, std::size_t width, Row row) {
 }  // namespace
 
 Weld weld_positions(std::span<const Vec3d> positions) {
-  return weld_rows(positions.size(), 3, [&](std::size_t i, std::size_t k) {
-    return positions[i][static_cast<int>(k)];
-  });
+  return weld_rows(positions.size(), 3,
+                   [&](std::size_t i, std::size_t k) { return positions[i][static_cast<int>(k)]; });
 }
 
 Weld weld_values(std::span<const float> values, std::uint32_t dimension) {

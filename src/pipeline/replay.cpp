@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace crease {
 
@@ -9,20 +10,17 @@ Replay::Replay(const Mesh& snapped, const ContractionSequence& sequence)
     : mesh_(snapped), sequence_(sequence) {
   const std::size_t vertex_count = snapped.vertex_count();
   const std::size_t triangle_count = snapped.triangle_count();
-  slots_.resize(3 * triangle_count);
-  next_corner_.resize(3 * triangle_count);
+  corners_.resize(3 * triangle_count);
   first_corner_.assign(vertex_count, kNone);
   valence_.assign(vertex_count, 0);
-  for (std::size_t corner = slots_.size(); corner-- > 0;) {  // so that chains are ascending
+  for (std::size_t corner = corners_.size(); corner-- > 0;) {  // so that chains are ascending
     const auto slot =
         static_cast<std::uint32_t>(index_of(snapped.triangles[corner / 3][corner % 3]));
-    slots_[corner] = slot;
-    next_corner_[corner] = first_corner_[slot];
+    corners_[corner] = {slot, first_corner_[slot]};
     first_corner_[slot] = static_cast<std::uint32_t>(corner);
     ++valence_[slot];
   }
   for (const AttributeLayer& layer : snapped.layers) of_corner_.push_back(layer.of_corner);
-  alive_.assign(triangle_count, 1);
   derived_.assign(triangle_count, 0);
   positions_.reserve(vertex_count);
   for (const Vec3d& p : snapped.positions) positions_.push_back(sequence.grid.nearest(p));
@@ -39,11 +37,12 @@ Replay::Replay(const Mesh& snapped, const ContractionSequence& sequence)
 void Replay::gather(std::uint32_t slot, std::uint32_t other, std::vector<std::uint32_t>& corners,
                     std::vector<std::uint32_t>* lost) {
   corners.clear();
-  for (std::uint32_t corner = first_corner_[slot]; corner != kNone; corner = next_corner_[corner]) {
+  for (std::uint32_t corner = first_corner_[slot]; corner != kNone;
+       corner = corners_[corner].next) {
     const std::uint32_t t = corner / 3;
-    if (alive_[t] == 0) continue;
-    const std::uint32_t* of_t = &slots_[3 * std::size_t(t)];
-    if (of_t[0] != other && of_t[1] != other && of_t[2] != other) {
+    const Corner* of_t = &corners_[3 * std::size_t(t)];
+    if (of_t[0].slot == kDead) continue;
+    if (of_t[0].slot != other && of_t[1].slot != other && of_t[2].slot != other) {
       corners.push_back(corner);
     } else if (lost != nullptr) {
       lost->push_back(t);
@@ -65,9 +64,8 @@ const Step& Replay::look(std::uint32_t contraction) {
 void Replay::drop_lost(std::uint32_t contraction) {
   lost_slots_.clear();
   for (std::uint32_t t : step_.lost) {
-    alive_[t] = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t slot = slots_[3 * std::size_t(t) + c];
+      const std::uint32_t slot = std::exchange(corners_[3 * std::size_t(t) + c].slot, kDead);
       --valence_[slot];
       if (slot == step_.p_slot || slot == step_.q_slot || valence_[slot] != 0) continue;
       if (last_use_[vertex_of_slot_[slot]] <= contraction) lost_slots_.push_back(slot);
@@ -80,8 +78,7 @@ void Replay::move_corners(std::uint32_t kept, std::uint32_t removed) {
   std::uint32_t chain = kNone;
   for (const std::vector<std::uint32_t>* corners : {&step_.at_q, &step_.at_p}) {
     for (std::uint32_t corner : *corners) {
-      slots_[corner] = kept;
-      next_corner_[corner] = chain;
+      corners_[corner] = {kept, chain};
       chain = corner;
     }
   }

@@ -46,7 +46,6 @@ class Replay {
   // contraction names (DB03's additional lost vertices), ascending.
   std::span<const std::uint32_t> lost_slots() const { return lost_slots_; }
 
-  std::uint32_t slot_of_corner(std::size_t corner) const { return slots_[corner]; }
   std::uint32_t attribute(std::size_t layer, std::size_t corner) const {
     return static_cast<std::uint32_t>(index_of(of_corner_[layer][corner]));
   }
@@ -60,13 +59,20 @@ class Replay {
   void drop_lost(std::uint32_t contraction);
   void move_corners(std::uint32_t kept, std::uint32_t removed);
 
+  static constexpr std::uint32_t kDead = kNone;
+
   const Mesh& mesh_;
   const ContractionSequence& sequence_;
-  std::vector<std::uint32_t> slots_;  // per corner
+  // A triangle's three fill 24 bytes, most often of one cache line: looking is all about misses.
+  struct Corner {
+    std::uint32_t slot;
+    std::uint32_t next;  // corner at the slot, or kNone. Chains may hold dead triangles
+  };
+
+  std::vector<Corner> corners_;  // slot kDead in all three when the triangle has vanished
   std::vector<std::vector<AttributeId>> of_corner_;
-  std::vector<std::uint8_t> alive_, derived_;
-  std::vector<std::uint32_t> first_corner_;  // per slot: a chain, which may hold dead triangles
-  std::vector<std::uint32_t> next_corner_;   // per corner
+  std::vector<std::uint8_t> derived_;
+  std::vector<std::uint32_t> first_corner_;  // per slot
   std::vector<std::uint32_t> valence_;       // per slot: live triangles
   std::vector<Vec3i> positions_;             // per slot
   std::vector<std::uint32_t> slot_of_vertex_, vertex_of_slot_;

@@ -36,23 +36,11 @@ struct ProgramKey {
 
 // Texture units of the buffer textures.
 namespace unit {
-enum : int {
-  Positions,
-  Indices,
-  Normals,
-  Materials,
-  MaterialColors,
-  CornerColors,
-  Errors
-};
+enum : int { Positions, Indices, Normals, Materials, MaterialColors, CornerColors, Errors };
 }  // namespace unit
 // Attribute locations when not pulled.
 namespace attribute {
-enum : GLuint {
-  Position,
-  Normal,
-  Error
-};
+enum : GLuint { Position, Normal, Error };
 }  // namespace attribute
 
 struct Program {

@@ -19,7 +19,7 @@ namespace {
 
 // A subset of DejaVu Sans: printable ASCII, a few signs and umlauts (title_font.LICENSE).
 constexpr unsigned char kFontBytes[] = {
-#include "title_font.inc"
+#include "render/title_font.inc"
 };
 
 const stbtt_fontinfo& font() {

@@ -20,12 +20,7 @@ namespace crease {
 
 namespace {
 
-enum Section {
-  kSn,
-  kFn,
-  kNsn,
-  kSectionCount
-};
+enum Section { kSn, kFn, kNsn, kSectionCount };
 
 }  // namespace
 

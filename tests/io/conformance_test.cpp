@@ -63,7 +63,8 @@ std::string text_ply(const PolygonModel& model) {
       const auto [found, is_new] =
           split.emplace(std::pair(face.corners[i], face.normals[i]), split.size());
       if (is_new) {
-        vertices += shown(model.positions[face.corners[i]]) + shown(model.normals[face.normals[i]]) + "\n";
+        vertices +=
+            shown(model.positions[face.corners[i]]) + shown(model.normals[face.normals[i]]) + "\n";
       }
       faces += " " + std::to_string(found->second);
     }
@@ -72,15 +73,15 @@ std::string text_ply(const PolygonModel& model) {
   return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(split.size()) +
          "\nproperty double x\nproperty double y\nproperty double z\n"
          "property float nx\nproperty float ny\nproperty float nz\nelement face " +
-         std::to_string(model.faces.size()) + "\nproperty list uchar int vertex_index\nend_header\n" +
-         vertices + faces;
+         std::to_string(model.faces.size()) +
+         "\nproperty list uchar int vertex_index\nend_header\n" + vertices + faces;
 }
 
 std::string text_ply_without_normals(const PolygonModel& model) {
-  std::string out = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(model.positions.size()) +
-                    "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                    std::to_string(model.faces.size()) +
-                    "\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string out =
+      "ply\nformat ascii 1.0\nelement vertex " + std::to_string(model.positions.size()) +
+      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+      std::to_string(model.faces.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   for (const Vec3d& p : model.positions) out += shown(p) + "\n";
   for (const PolygonModel::Face& face : model.faces) {
     out += std::to_string(face.corners.size());
@@ -166,7 +167,8 @@ TEST_CASE("STL in text and in binary") {
 }
 
 TEST_CASE("OFF") {
-  for (const PolygonModel& model : polygon_models()) check_model(model, text_off(model), "model.off");
+  for (const PolygonModel& model : polygon_models())
+    check_model(model, text_off(model), "model.off");
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ inline Mesh everything_mesh() {
   const std::size_t triangles = mesh.triangle_count();
   AttributeLayer uv{"uv", AttributeRole::TexCoord, Interpolation::Linear, 2, {}, {}};
   AttributeLayer color{"color", AttributeRole::Color, Interpolation::Linear, 4, {}, {}};
-  AttributeLayer id{"semantic surface", AttributeRole::Other, Interpolation::Categorical, 1, {}, {}};
+  AttributeLayer id{
+      "semantic surface", AttributeRole::Other, Interpolation::Categorical, 1, {}, {}};
   AttributeLayer wind{"wind", AttributeRole::Other, Interpolation::Linear, 3, {}, {}};
   for (std::size_t t = 0; t < triangles; ++t) {
     const float share = float(t) / float(triangles);

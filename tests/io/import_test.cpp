@@ -18,7 +18,8 @@ TEST_CASE("normal policies are read from words") {
   REQUIRE(crease.ok());
   CHECK(crease->kind == NormalPolicy::Kind::Crease);
   CHECK(crease->crease_angle_deg == 42.5);
-  for (const char* bad : {"", "crease", "crease:", "crease:x", "crease:181", "crease:-1", "crease:nan", "Flat"}) {
+  for (const char* bad :
+       {"", "crease", "crease:", "crease:x", "crease:181", "crease:-1", "crease:nan", "Flat"}) {
     CAPTURE(bad);
     REQUIRE(!parse_normal_policy(bad).ok());
     CHECK(parse_normal_policy(bad).failure().error == Error::CommandLine);
@@ -65,9 +66,11 @@ TEST_CASE("what is ugly is counted") {
 }
 
 TEST_CASE("several files become one mesh with shared vertices and a part a file") {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "crease_import_test";
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "crease_import_test";
   std::filesystem::create_directories(folder);
-  const std::vector<std::filesystem::path> paths{folder / "a.obj", folder / "b.obj", folder / "c.off"};
+  const std::vector<std::filesystem::path> paths{folder / "a.obj", folder / "b.obj",
+                                                 folder / "c.off"};
   std::ofstream(paths[0]) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.5 0.5\nusemtl red\nf 1/1 2/1 3/1\n";
   std::ofstream(paths[1]) << "v 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl blue\nf 1 2 3\n";
   std::ofstream(paths[2]) << "OFF\n3 1 0\n1 1 0\n2 2 0\n0 1 0\n3 0 1 2\n";
@@ -100,7 +103,8 @@ TEST_CASE("noise on corner normals goes when it is asked to") {
       const Vec3d& p = cube.positions[face.corners[i]];
       const Vec3d& n = cube.normals[face.normals[i]];
       const double off = 0.005 * ((count % 3) - 1), other = 0.005 * ((count / 3 % 3) - 1);
-      obj += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
+      obj +=
+          "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
       obj += "vn " + std::to_string(n.x + off * n.y) + " " + std::to_string(n.y + off * n.z) + " " +
              std::to_string(n.z + other * n.x) + "\n";
       ++count;

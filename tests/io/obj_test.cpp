@@ -14,7 +14,8 @@ const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TEST_CASE("all four forms of face corners are read") {
   const std::string values = kSquare + "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nvn 0 1 0\n";
-  for (const char* face : {"f 1 2 3\n", "f 1/1 2/2 3/3\n", "f 1//1 2//1 3//2\n", "f 1/1/1 2/2/1 3/3/2\n"}) {
+  for (const char* face :
+       {"f 1 2 3\n", "f 1/1 2/2 3/3\n", "f 1//1 2//1 3//2\n", "f 1/1/1 2/2/1 3/3/2\n"}) {
     CAPTURE(face);
     const Mesh mesh = import_text(values + face, "a.obj").mesh;
     CHECK(mesh.triangle_count() == 1);
@@ -115,17 +116,19 @@ TEST_CASE("bit-equal positions and values are one") {
 }
 
 TEST_CASE("groups, objects and materials") {
-  const Mesh mesh = import_text(kSquare +
-                                    "o house\ng roof\nusemtl red tiles\nf 1 2 3\n"
-                                    "g wall\nusemtl brick\nf 1 3 4\ng roof\nusemtl red tiles\nf 1 2 4\n"
-                                    "g empty\n",
-                                "a.obj")
-                        .mesh;
+  const Mesh mesh =
+      import_text(kSquare +
+                      "o house\ng roof\nusemtl red tiles\nf 1 2 3\n"
+                      "g wall\nusemtl brick\nf 1 3 4\ng roof\nusemtl red tiles\nf 1 2 4\n"
+                      "g empty\n",
+                  "a.obj")
+          .mesh;
   CHECK(mesh.parts == std::vector<std::string>{"house/roof", "house/wall"});
   CHECK(mesh.part_of_triangle == std::vector<PartId>{PartId{0}, PartId{1}, PartId{0}});
   REQUIRE(mesh.materials.size() == 2);
   CHECK(mesh.materials[0].name == "red tiles");
-  CHECK(mesh.material_of_triangle == std::vector<MaterialId>{MaterialId{0}, MaterialId{1}, MaterialId{0}});
+  CHECK(mesh.material_of_triangle ==
+        std::vector<MaterialId>{MaterialId{0}, MaterialId{1}, MaterialId{0}});
 }
 
 TEST_CASE("triangles before the first group or material have a nameless one") {
@@ -168,7 +171,8 @@ TEST_CASE("every refusal names the line and the reason") {
   CHECK(refusal_of("v 1e999 0 0\n", "a.obj") == "a.obj:1: vertex is not finite");
   CHECK(refusal_of(kSquare + "f 1 2 0\n", "a.obj") == "a.obj:5: face index 0: OBJ counts from 1");
   CHECK(refusal_of(kSquare + "f 1 2 -5\n", "a.obj") == "a.obj:5: face index -5 of 4 vertices");
-  CHECK(refusal_of(kSquare + "f 1 2 99999999999999999999\n", "a.obj").starts_with("a.obj:5: face corner"));
+  CHECK(refusal_of(kSquare + "f 1 2 99999999999999999999\n", "a.obj")
+            .starts_with("a.obj:5: face corner"));
   CHECK(refusal_of(kSquare + "f 1 2 3/1/1/1\n", "a.obj").starts_with("a.obj:5: face corner"));
   CHECK(refusal_of(kSquare + "vn 0 0 1\nf 1//2 2//1 3//1\n", "a.obj") ==
         "a.obj:6: face index 2 of 1 normals");
@@ -177,9 +181,10 @@ TEST_CASE("every refusal names the line and the reason") {
 }
 
 TEST_CASE("a position of city size keeps its millimetres") {
-  const Mesh mesh = import_text("v 390123.001 5820456.002 34.5\nv 390123.002 5820456.002 34.5\n"
-                                "v 390123.002 5820456.003 34.5\nf 1 2 3\n",
-                                "a.obj")
+  const Mesh mesh = import_text(
+                        "v 390123.001 5820456.002 34.5\nv 390123.002 5820456.002 34.5\n"
+                        "v 390123.002 5820456.003 34.5\nf 1 2 3\n",
+                        "a.obj")
                         .mesh;
   CHECK(mesh.positions[0].x == 390123.001);
   CHECK(mesh.positions[2].y == 5820456.003);

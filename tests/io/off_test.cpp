@@ -6,17 +6,19 @@ namespace crease {
 namespace {
 
 TEST_CASE("comments, blank lines and counts on the first line") {
-  CHECK(import_text("# first\n\nOFF 3 1 0 # counts\n\n0 0 0\n1 0 0 # b\n#\n0 1 0\n3 0 1 2\n", "a.off")
-            .mesh.triangle_count() == 1);
+  CHECK(
+      import_text("# first\n\nOFF 3 1 0 # counts\n\n0 0 0\n1 0 0 # b\n#\n0 1 0\n3 0 1 2\n", "a.off")
+          .mesh.triangle_count() == 1);
   CHECK(import_text("3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.off").mesh.triangle_count() == 1);
 }
 
 TEST_CASE("normals, colours and texture coordinates of vertices") {
-  const Mesh mesh = import_text("STCNOFF\n3 1 0\n"
-                                "0 0 0 0 0.6 0.8 255 0 0 255 0 0\n"
-                                "1 0 0 0 0.6 0.8 255 0 0 255 1 0\n"
-                                "0 1 0 0 0.6 0.8 0 51 0 255 0 1\n3 0 1 2\n",
-                                "a.off")
+  const Mesh mesh = import_text(
+                        "STCNOFF\n3 1 0\n"
+                        "0 0 0 0 0.6 0.8 255 0 0 255 0 0\n"
+                        "1 0 0 0 0.6 0.8 255 0 0 255 1 0\n"
+                        "0 1 0 0 0.6 0.8 0 51 0 255 0 1\n3 0 1 2\n",
+                        "a.off")
                         .mesh;
   REQUIRE(mesh.layers.size() == 3);
   CHECK(mesh.layers[0].values == std::vector<float>{0, 0.6f, 0.8f});
@@ -46,8 +48,10 @@ TEST_CASE("every refusal names the line and the reason") {
   CHECK(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n", "a.off") ==
         "a.off:5: vertex 2 of 3 is not finite");
   CHECK(refusal_of("OFF BINARY\n", "a.off") == "a.off:1: binary OFF; convert it to text");
-  CHECK(refusal_of("4OFF\n1 1 0\n", "a.off").starts_with("a.off:1: OFF of more than three dimensions"));
-  CHECK(refusal_of("OFF\n353535235358 6 0\n0 0 0\n", "a.off").starts_with("a.off:2: the header promises"));
+  CHECK(refusal_of("4OFF\n1 1 0\n", "a.off")
+            .starts_with("a.off:1: OFF of more than three dimensions"));
+  CHECK(refusal_of("OFF\n353535235358 6 0\n0 0 0\n", "a.off")
+            .starts_with("a.off:2: the header promises"));
 }
 
 }  // namespace

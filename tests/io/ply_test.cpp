@@ -24,17 +24,20 @@ std::vector<float> value_at(const AttributeLayer& layer, std::size_t corner) {
 
 const std::string kThreePoints = "0 0 0\n1 0 0\n0 1 0\n";
 std::string header(const std::string& vertex, const std::string& face) {
-  return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
-         vertex + "element face 1\nproperty list uchar int vertex_indices\n" + face + "end_header\n";
+  return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+         "float z\n" +
+         vertex + "element face 1\nproperty list uchar int vertex_indices\n" + face +
+         "end_header\n";
 }
 
 // The same file in text and in both binary orders.
 std::string binary_ply(bool big_endian) {
-  std::string out = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
-                    "_endian 1.0\nelement vertex 4\nproperty double x\nproperty float y\nproperty short z\n"
-                    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                    "element face 2\nproperty int region\nproperty list uchar ushort vertex_indices\n"
-                    "end_header\n";
+  std::string out =
+      std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+      "_endian 1.0\nelement vertex 4\nproperty double x\nproperty float y\nproperty short z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "element face 2\nproperty int region\nproperty list uchar ushort vertex_indices\n"
+      "end_header\n";
   const auto add = [&](auto x) {
     auto bytes = std::bit_cast<std::array<char, sizeof x>>(x);
     if (big_endian) std::reverse(bytes.begin(), bytes.end());
@@ -79,10 +82,11 @@ TEST_CASE("a binary file cut anywhere is refused with the byte") {
 }
 
 TEST_CASE("unknown properties are kept: linear per vertex, categorical per face if integer") {
-  const Mesh mesh = import_text(header("property float heat\n", "property uchar label\nproperty float wear\n") +
-                                    "0 0 0 1.5\n1 0 0 2.5\n0 1 0 3.5\n3 0 1 2 9 0.25\n",
-                                "a.ply")
-                        .mesh;
+  const Mesh mesh =
+      import_text(header("property float heat\n", "property uchar label\nproperty float wear\n") +
+                      "0 0 0 1.5\n1 0 0 2.5\n0 1 0 3.5\n3 0 1 2 9 0.25\n",
+                  "a.ply")
+          .mesh;
   REQUIRE(layer_named(mesh, "heat"));
   CHECK(layer_named(mesh, "heat")->interpolation == Interpolation::Linear);
   CHECK(value_at(*layer_named(mesh, "heat"), 2) == std::vector<float>{3.5f});
@@ -101,7 +105,8 @@ TEST_CASE("texture coordinates under every usual name") {
     const std::string properties = "property float " + both.substr(0, blank) + "\nproperty float " +
                                    both.substr(blank + 1) + "\n";
     const Mesh mesh =
-        import_text(header(properties, "") + "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n", "a.ply").mesh;
+        import_text(header(properties, "") + "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n", "a.ply")
+            .mesh;
     REQUIRE(layer_named(mesh, "uv"));
     CHECK(layer_named(mesh, "uv")->role == AttributeRole::TexCoord);
     CHECK(value_at(*layer_named(mesh, "uv"), 2) == std::vector<float>{0, 1});
@@ -109,12 +114,16 @@ TEST_CASE("texture coordinates under every usual name") {
 }
 
 TEST_CASE("texture coordinates per corner make seams, and the texture becomes the material") {
-  const Mesh mesh = import_text(
-      "ply\nformat ascii 1.0\ncomment TextureFile my skin.png\nelement vertex 4\nproperty float x\n"
-      "property float y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\n"
-      "property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
-      "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0.5 0.5 1 1 0 1\n",
-      "a.ply").mesh;
+  const Mesh mesh =
+      import_text(
+          "ply\nformat ascii 1.0\ncomment TextureFile my skin.png\nelement vertex 4\nproperty "
+          "float x\n"
+          "property float y\nproperty float z\nelement face 2\nproperty list uchar int "
+          "vertex_indices\n"
+          "property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+          "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0.5 0.5 1 1 0 1\n",
+          "a.ply")
+          .mesh;
   const AttributeLayer* uv = layer_named(mesh, "uv");
   REQUIRE(uv);
   CHECK(uv->of_corner[0] != uv->of_corner[3]);
@@ -124,19 +133,22 @@ TEST_CASE("texture coordinates per corner make seams, and the texture becomes th
 }
 
 TEST_CASE("normals of faces are used where vertices have none") {
-  const Mesh mesh = import_text(header("", "property float nx\nproperty float ny\nproperty float nz\n") +
-                                    kThreePoints + "3 0 1 2 0 0.6 0.8\n",
-                                "a.ply")
-                        .mesh;
+  const Mesh mesh =
+      import_text(header("", "property float nx\nproperty float ny\nproperty float nz\n") +
+                      kThreePoints + "3 0 1 2 0 0.6 0.8\n",
+                  "a.ply")
+          .mesh;
   CHECK(value_at(*mesh.normals(), 1) == std::vector<float>{0, 0.6f, 0.8f});
 }
 
 TEST_CASE("triangle strips turn every other triangle and break at -1") {
   const Mesh mesh = import_text(
-      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
-      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 0\n8 0 1 2 3 -1 3 1 4\n",
-      "a.ply").mesh;
+                        "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float "
+                        "y\nproperty float z\n"
+                        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+                        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 0\n8 0 1 2 3 -1 3 1 4\n",
+                        "a.ply")
+                        .mesh;
   REQUIRE(mesh.triangle_count() == 3);
   for (std::size_t t = 0; t < 2; ++t) {
     const auto [a, b, c] = mesh.triangles[t];
@@ -148,7 +160,8 @@ TEST_CASE("triangle strips turn every other triangle and break at -1") {
 TEST_CASE("unknown elements and lists are passed over") {
   const Imported in = import_text(
       "ply\nformat ascii 1.0\nelement camera 1\nproperty float focus\nproperty list uchar float k\n"
-      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty list uchar int ring\n"
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty list uchar "
+      "int ring\n"
       "element face 1\nproperty list uchar int vertex_index\nend_header\n"
       "35 2 1 1\n0 0 0 0\n1 0 0 1 5\n0 1 0 0\n\n3 0 1 2\n",
       "a.ply");
@@ -157,9 +170,10 @@ TEST_CASE("unknown elements and lists are passed over") {
 }
 
 TEST_CASE("rows that hold more than the header says keep what is certain") {
-  const Imported in = import_text(header("", "property uchar red\nproperty uchar green\nproperty uchar blue\n") +
-                                      kThreePoints + "3 0 1 2 9 1 1 1 1 1\n",
-                                  "a.ply");
+  const Imported in =
+      import_text(header("", "property uchar red\nproperty uchar green\nproperty uchar blue\n") +
+                      kThreePoints + "3 0 1 2 9 1 1 1 1 1\n",
+                  "a.ply");
   CHECK(in.mesh.triangle_count() == 1);
   CHECK(layer_named(in.mesh, "color") == nullptr);
   CHECK(in.report.notes.size() == 1);
@@ -167,20 +181,23 @@ TEST_CASE("rows that hold more than the header says keep what is certain") {
 
 TEST_CASE("colours in floats, in shorts and per face") {
   const std::string three = "property float red\nproperty float green\nproperty float blue\n";
-  const Mesh floats = import_text(header(three, "") + "0 0 0 0 0 1\n1 0 0 0.5 0 1\n0 1 0 0 0 1\n3 0 1 2\n",
-                                  "a.ply").mesh;
+  const Mesh floats =
+      import_text(header(three, "") + "0 0 0 0 0 1\n1 0 0 0.5 0 1\n0 1 0 0 0 1\n3 0 1 2\n", "a.ply")
+          .mesh;
   CHECK(value_at(*layer_named(floats, "color"), 1) == std::vector<float>{0.5f, 0, 1});
   const std::string shorts = "property ushort red\nproperty ushort green\nproperty ushort blue\n";
-  const Mesh faces = import_text(header("", shorts) + kThreePoints + "3 0 1 2 65535 0 65535\n", "a.ply").mesh;
+  const Mesh faces =
+      import_text(header("", shorts) + kThreePoints + "3 0 1 2 65535 0 65535\n", "a.ply").mesh;
   CHECK(value_at(*layer_named(faces, "color"), 1) == std::vector<float>{1, 0, 1});
 }
 
 TEST_CASE("every refusal names the place and the reason") {
   CHECK(refusal_of("plx\n", "a.ply") == "a.ply:1: does not begin with 'ply'");
   CHECK(refusal_of("ply\nformat ascii 1.0\n", "a.ply") == "a.ply:2: the header has no end_header");
-  CHECK(refusal_of("ply\nformat ascii 1.0\nelement vertex 3\nproperty quad x\nend_header\n", "a.ply") ==
-        "a.ply:4: unknown property type 'quad'");
-  CHECK(refusal_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n", "a.ply")
+  CHECK(refusal_of("ply\nformat ascii 1.0\nelement vertex 3\nproperty quad x\nend_header\n",
+                   "a.ply") == "a.ply:4: unknown property type 'quad'");
+  CHECK(refusal_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n",
+                   "a.ply")
             .find("vertices have no y") != std::string::npos);
   CHECK(refusal_of(header("", "") + kThreePoints + "3 0 1 3\n", "a.ply") ==
         "a.ply:13: vertex index 3 of 3 vertices");
@@ -196,13 +213,15 @@ TEST_CASE("every refusal names the place and the reason") {
 
 TEST_CASE("counts beyond the file's size take no memory") {
   for (const char* count : {"4294967295", "9223372036854775807", "1000000000000"}) {
-    const std::string huge = std::string("ply\nformat binary_little_endian 1.0\nelement vertex ") + count +
-                             "\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc";
+    const std::string huge =
+        std::string("ply\nformat binary_little_endian 1.0\nelement vertex ") + count +
+        "\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc";
     CHECK(refusal_of(huge, "a.ply").find("promises") != std::string::npos);
   }
-  const std::string list = "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\n"
-                           "property float y\nproperty float z\nelement face 1\n"
-                           "property list uint int vertex_indices\nend_header\n\xff\xff\xff\x7f";
+  const std::string list =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 1\n"
+      "property list uint int vertex_indices\nend_header\n\xff\xff\xff\x7f";
   CHECK(refusal_of(list, "a.ply").find("a list longer than the file") != std::string::npos);
 }
 

@@ -10,15 +10,20 @@ namespace crease {
 
 namespace {
 
-// GCC 12.2 at -O2 leaves the rounding out of double(float(x)) here (sincos inlined); volatile keeps it.
+// GCC 12.2 at -O2 leaves the rounding out of double(float(x)) here (sincos inlined); volatile keeps
+// it.
 double as_float(double x) {
   const volatile float rounded = static_cast<float>(x);
   return static_cast<double>(rounded);
 }
-Vec3d as_floats(Vec3d v) { return {as_float(v.x), as_float(v.y), as_float(v.z)}; }
+Vec3d as_floats(Vec3d v) {
+  return {as_float(v.x), as_float(v.y), as_float(v.z)};
+}
 
 using Edge = std::pair<Point, Point>;
-Point point(const Vec3d& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
+Point point(const Vec3d& p) {
+  return {p.x + 0.0, p.y + 0.0, p.z + 0.0};
+}
 Edge edge(const Vec3d& a, const Vec3d& b) {
   return point(a) < point(b) ? Edge{point(a), point(b)} : Edge{point(b), point(a)};
 }
@@ -57,8 +62,10 @@ std::vector<std::array<std::uint32_t, 3>> PolygonModel::triangles() const {
 }
 
 PolygonModel polygon_cube() {
-  PolygonModel cube{.name = "cube", .positions = {}, .faces = {}, .normals = {}, .hard_edge_count = 12};
-  for (int i = 0; i < 8; ++i) cube.positions.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
+  PolygonModel cube{
+      .name = "cube", .positions = {}, .faces = {}, .normals = {}, .hard_edge_count = 12};
+  for (int i = 0; i < 8; ++i)
+    cube.positions.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
   const std::vector<std::vector<std::uint32_t>> sides{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                                       {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   cube.normals = {{0, 0, -1}, {0, 0, 1}, {0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}};
@@ -68,8 +75,11 @@ PolygonModel polygon_cube() {
 
 PolygonModel polygon_cylinder() {
   constexpr std::uint32_t kSegments = 24;
-  PolygonModel cylinder{
-      .name = "cylinder", .positions = {}, .faces = {}, .normals = {}, .hard_edge_count = 2 * kSegments};
+  PolygonModel cylinder{.name = "cylinder",
+                        .positions = {},
+                        .faces = {},
+                        .normals = {},
+                        .hard_edge_count = 2 * kSegments};
   for (std::uint32_t i = 0; i < kSegments; ++i) {
     const double angle = 2 * kPi * i / kSegments;
     const Vec3d around = as_floats({std::cos(angle), std::sin(angle), 0});
@@ -92,7 +102,9 @@ PolygonModel polygon_cylinder() {
   return cylinder;
 }
 
-std::vector<PolygonModel> polygon_models() { return {polygon_cube(), polygon_cylinder()}; }
+std::vector<PolygonModel> polygon_models() {
+  return {polygon_cube(), polygon_cylinder()};
+}
 
 HardEdges hard_edges(const Mesh& mesh) {
   HardEdgeFinder finder;
@@ -116,8 +128,8 @@ HardEdges hard_edges(const PolygonModel& model) {
   for (const PolygonModel::Face& face : model.faces) {
     for (std::size_t i = 0; i < face.corners.size(); ++i) {
       const std::size_t j = (i + 1) % face.corners.size();
-      finder.add(model.positions[face.corners[i]], model.positions[face.corners[j]], face.normals[i],
-                 face.normals[j]);
+      finder.add(model.positions[face.corners[i]], model.positions[face.corners[j]],
+                 face.normals[i], face.normals[j]);
     }
   }
   return finder.hard();

@@ -44,7 +44,8 @@ HardEdges hard_edges(const Mesh& mesh);
 HardEdges hard_edges(const PolygonModel& model);
 
 // import_bytes() of a text; fails the test with the message if it is refused.
-Imported import_text(std::string_view text, std::string_view name, const ImportOptions& options = {});
+Imported import_text(std::string_view text, std::string_view name,
+                     const ImportOptions& options = {});
 // The message of a refusal; fails the test if there is none.
 std::string refusal_of(std::string_view text, std::string_view name);
 

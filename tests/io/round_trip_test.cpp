@@ -28,10 +28,12 @@ std::vector<Corners> content(const Mesh& mesh, bool in_floats) {
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3d& p = mesh.positions[index_of(mesh.triangles[t][c])];
       for (int i = 0; i < 3; ++i) {
-        corners[c].push_back(in_floats ? static_cast<double>(static_cast<float>(p[i])) + 0.0 : p[i] + 0.0);
+        corners[c].push_back(in_floats ? static_cast<double>(static_cast<float>(p[i])) + 0.0
+                                       : p[i] + 0.0);
       }
       for (const AttributeLayer& layer : mesh.layers) {
-        for (float x : layer.value(layer.of_corner[3 * t + c])) corners[c].push_back(static_cast<double>(x));
+        for (float x : layer.value(layer.of_corner[3 * t + c]))
+          corners[c].push_back(static_cast<double>(x));
       }
     }
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
@@ -50,16 +52,20 @@ Imported back(const Mesh& mesh, const std::string& extension) {
   return std::move(*in);
 }
 
-// Vertices at one position are one after import, and normals of one value: the zoo has some that are
-// not, so it goes through once before it is compared.
-Mesh settled(const Mesh& mesh) { return back(mesh, ".ply").mesh; }
+// Vertices at one position are one after import, and normals of one value: the zoo has some that
+// are not, so it goes through once before it is compared.
+Mesh settled(const Mesh& mesh) {
+  return back(mesh, ".ply").mesh;
+}
 
 // A square with a seam in its texture coordinates and two colours at one vertex.
 Mesh coloured_square() {
-  return import_text("v 0 0 0 1 0 0\nv 1 0 0 0 0.2 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nv 0 0 0 0 1 0\n"
-                     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.25 0.125\nvn 0 0 1\nvn 0.6 0 0.8\n"
-                     "o first\nusemtl red\nf 1/1/1 2/2/1 3/3/1\no second\nusemtl blue\nf 5/5/2 3/3/1 4/4/1\n",
-                     "a.obj")
+  return import_text(
+             "v 0 0 0 1 0 0\nv 1 0 0 0 0.2 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nv 0 0 0 0 1 0\n"
+             "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.25 0.125\nvn 0 0 1\nvn 0.6 0 0.8\n"
+             "o first\nusemtl red\nf 1/1/1 2/2/1 3/3/1\no second\nusemtl blue\nf 5/5/2 3/3/1 "
+             "4/4/1\n",
+             "a.obj")
       .mesh;
 }
 
@@ -100,7 +106,8 @@ TEST_CASE("colours, texture coordinates and materials come back") {
                                      [&](const auto& other) { return other.role == layer.role; });
       REQUIRE(same != got.layers.end());
       for (std::size_t corner = 0; corner < 6; ++corner) {
-        const auto a = layer.value(layer.of_corner[corner]), b = same->value(same->of_corner[corner]);
+        const auto a = layer.value(layer.of_corner[corner]),
+                   b = same->value(same->of_corner[corner]);
         CHECK(std::equal(a.begin(), a.end(), b.begin(), b.end()));
       }
     }
@@ -113,7 +120,8 @@ TEST_CASE("colours, texture coordinates and materials come back") {
 
 TEST_CASE("categories of faces and other layers go through PLY") {
   Mesh mesh = coloured_square();
-  AttributeLayer surface{"surface", AttributeRole::Other, Interpolation::Categorical, 1, {3, -4}, {}};
+  AttributeLayer surface{"surface", AttributeRole::Other, Interpolation::Categorical, 1, {3, -4},
+                         {}};
   AttributeLayer heat{"heat", AttributeRole::Other, Interpolation::Linear, 1, {0.5f, 0.25f}, {}};
   for (std::uint32_t corner = 0; corner < 6; ++corner) {
     surface.of_corner.push_back(AttributeId{corner / 3});
@@ -153,7 +161,8 @@ TEST_CASE("positions of city size keep every bit in OBJ and PLY") {
 }
 
 TEST_CASE("a file appears with its material library, or not at all") {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "crease_export_test";
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "crease_export_test";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   Mesh mesh = coloured_square();

@@ -1,8 +1,8 @@
 // Every real model builds or is refused with a place and a reason. Counts come from the table that
 // an independent checker made (the README beside the models).
+#include "support/shared_data.h"
 #include "crease/import.h"
 #include "crease/shading.h"
-#include "support/shared_data.h"
 
 #include <doctest/doctest.h>
 
@@ -18,7 +18,8 @@ namespace {
 bool names_a_place(const std::string& message) {
   for (std::size_t i = 0; i + 1 < message.size(); ++i) {
     if (std::isdigit(static_cast<unsigned char>(message[i + 1])) == 0) continue;
-    if (message[i] == ':' || message[i] == '[' || message.substr(0, i + 1).ends_with("byte ")) return true;
+    if (message[i] == ':' || message[i] == '[' || message.substr(0, i + 1).ends_with("byte "))
+      return true;
   }
   return false;
 }
@@ -55,16 +56,23 @@ TEST_CASE("every model builds, or is refused with place and reason") {
 }
 
 TEST_CASE("the broken ones are refused, the merely ugly ones are not") {
-  const std::set<std::string> refused{
-      "nasty/degenerate_only.obj",      "nasty/empty.obj",
-      "nasty/empty.ply",                "nasty/empty_header_only.ply",
-      "nasty/empty_header_only.stl",    "nasty/parse_bad_faces.off",
-      "nasty/parse_huge_count.off",     "nasty/parse_malformed.obj",
-      "nasty/parse_relative_index_too_far.obj", "nasty/parse_two_corner_faces.obj",
-      "nasty/parse_utf16.obj",          "nasty/parse_zero_index.obj",
-      "nasty/truncated_ascii.ply",      "nasty/values_ind.obj",
-      "nasty/values_inf_nan.obj",       "nasty/values_inf_points.ply",
-      "nasty/values_number_formats.obj"};
+  const std::set<std::string> refused{"nasty/degenerate_only.obj",
+                                      "nasty/empty.obj",
+                                      "nasty/empty.ply",
+                                      "nasty/empty_header_only.ply",
+                                      "nasty/empty_header_only.stl",
+                                      "nasty/parse_bad_faces.off",
+                                      "nasty/parse_huge_count.off",
+                                      "nasty/parse_malformed.obj",
+                                      "nasty/parse_relative_index_too_far.obj",
+                                      "nasty/parse_two_corner_faces.obj",
+                                      "nasty/parse_utf16.obj",
+                                      "nasty/parse_zero_index.obj",
+                                      "nasty/truncated_ascii.ply",
+                                      "nasty/values_ind.obj",
+                                      "nasty/values_inf_nan.obj",
+                                      "nasty/values_inf_points.ply",
+                                      "nasty/values_number_formats.obj"};
   for (const std::filesystem::path& path : shared_models("nasty")) {
     const std::string name = "nasty/" + path.filename().string();
     const std::string ending = path.extension().string();
@@ -126,7 +134,8 @@ TEST_CASE("counts agree with the independent table") {
       return 100.0 * static_cast<double>(part) / static_cast<double>(whole);
     };
     CHECK(std::abs(percent(fn, mesh.triangle_count()) - expected.fn_percent) < 0.6);
-    CHECK(std::abs(percent(static_cast<std::size_t>(sn), mesh.vertex_count()) - expected.sn_percent) < 0.6);
+    CHECK(std::abs(percent(static_cast<std::size_t>(sn), mesh.vertex_count()) -
+                   expected.sn_percent) < 0.6);
   }
 }
 

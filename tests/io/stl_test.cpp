@@ -27,7 +27,8 @@ TEST_CASE("binary is told by its size") {
 TEST_CASE("a binary file that is cut off is refused, one that is too long is read") {
   CHECK(refusal_of(binary_stl(3, 2), "a.stl") ==
         "a.stl: byte 184: the header promises 3 facets, 234 bytes");
-  CHECK(refusal_of(binary_stl(0xffffffff, 2), "a.stl").starts_with("a.stl: byte 184: the header promises"));
+  CHECK(refusal_of(binary_stl(0xffffffff, 2), "a.stl")
+            .starts_with("a.stl: byte 184: the header promises"));
   CHECK(import_text(binary_stl(1, 2), "a.stl").mesh.triangle_count() == 1);
 }
 
@@ -42,8 +43,8 @@ TEST_CASE("attribute bytes are carried as a category") {
 TEST_CASE("several solids in a text are parts; case and layout do not matter") {
   const std::string facet =
       "FACET NORMAL 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop ENDFACET\n";
-  const Mesh mesh = import_text("solid first one\n" + facet + "endsolid first one\nsolid second\n" + facet +
-                                    "endsolid\n",
+  const Mesh mesh = import_text("solid first one\n" + facet + "endsolid first one\nsolid second\n" +
+                                    facet + "endsolid\n",
                                 "a.stl")
                         .mesh;
   CHECK(mesh.parts == std::vector<std::string>{"first one", "second"});
@@ -57,7 +58,8 @@ TEST_CASE("every refusal names the line and the reason") {
         "a.stl:4: vertex is not finite");
   CHECK(refusal_of("solid a\nfacet normal 0 0 1\nendfacet\n", "a.stl") ==
         "a.stl:3: a facet without three vertices");
-  CHECK(refusal_of("solid a\nfacet normal 0 0 1\n", "a.stl") == "a.stl:2: the file ends inside a solid");
+  CHECK(refusal_of("solid a\nfacet normal 0 0 1\n", "a.stl") ==
+        "a.stl:2: the file ends inside a solid");
   CHECK(refusal_of("hello\n", "a.stl") == "a.stl:1: not a word of STL: 'hello'");
 }
 

@@ -84,8 +84,7 @@ TEST_CASE("smoothing groups decide alone") {
   std::size_t shared = 0;
   for (std::size_t a = 0; a < 6; ++a) {
     for (std::size_t b = 6; b < 12; ++b) {
-      const bool same_vertex =
-          grouped.triangles[a / 3][a % 3] == grouped.triangles[b / 3][b % 3];
+      const bool same_vertex = grouped.triangles[a / 3][a % 3] == grouped.triangles[b / 3][b % 3];
       if (same_vertex) CHECK(normals.of_corner[a] == normals.of_corner[b]);
       shared += same_vertex;
     }
@@ -103,7 +102,8 @@ TEST_CASE("faces of the source have no hard edge inside, and one normal where al
   //  0---1
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, 0.5, 0.7}};
-  mesh.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}}, {VertexId{0}, VertexId{2}, VertexId{3}}};
+  mesh.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}},
+                    {VertexId{0}, VertexId{2}, VertexId{3}}};
   const std::vector<std::uint32_t> one_face{0, 0};
   CHECK(generate_normals(mesh, {.max_angle_deg = kCoplanarDeg}).value_count() == 2);
   CHECK(generate_normals(mesh, {.max_angle_deg = kCoplanarDeg, .face_of_triangle = one_face})
@@ -113,7 +113,8 @@ TEST_CASE("faces of the source have no hard edge inside, and one normal where al
 TEST_CASE("an edge that two triangles run through the same way is hard") {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  mesh.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}}, {VertexId{3}, VertexId{2}, VertexId{0}}};
+  mesh.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}},
+                    {VertexId{3}, VertexId{2}, VertexId{0}}};
   const AttributeLayer normals = generate_normals(mesh, {.max_angle_deg = 180});
   CHECK(normals.value_count() == 2);
   CHECK(normal_of(normals, 0) == -normal_of(normals, 3));
@@ -136,7 +137,8 @@ TEST_CASE("a triangle without area takes its neighbour's normal") {
   //  0---1-2-3   The needle 0 1 3 lies on the upper triangle's edge 0 3.
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {1, 0, 5}};
-  mesh.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}}, {VertexId{0}, VertexId{2}, VertexId{3}}};
+  mesh.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}},
+                    {VertexId{0}, VertexId{2}, VertexId{3}}};
   const std::vector<Vec3d> normals = face_normals(mesh, {});
   CHECK(normals[0] == normals[1]);
   CHECK(angle_deg(normals[1], {0, -1, 0}) < 1e-9);
@@ -156,9 +158,10 @@ TEST_CASE("noise on a box goes: six normals, one a side") {
 }
 
 TEST_CASE("joining leaves smooth surfaces and true hard edges as they are") {
-  for (const ZooMesh& z : {ZooMesh{"sphere", smooth_sphere(64, 128)}, ZooMesh{"torus", torus(64, 96)},
-                           ZooMesh{"cylinder", hard_cylinder(256, 8)}, ZooMesh{"box", hard_box(3)},
-                           ZooMesh{"walls", crossing_walls(3, 2)}}) {
+  for (const ZooMesh& z :
+       {ZooMesh{"sphere", smooth_sphere(64, 128)}, ZooMesh{"torus", torus(64, 96)},
+        ZooMesh{"cylinder", hard_cylinder(256, 8)}, ZooMesh{"box", hard_box(3)},
+        ZooMesh{"walls", crossing_walls(3, 2)}}) {
     CAPTURE(z.name);
     Mesh joined = z.mesh;
     CHECK(join_normals(*joined.normals(), joined, 1.0) == 0);
@@ -179,11 +182,12 @@ TEST_CASE("no normal moves farther than the angle, and none is parted from its e
       CHECK(check_mesh(joined).ok());
       std::map<std::pair<VertexId, AttributeId>, AttributeId> after;
       for (std::size_t corner = 0; corner < 3 * joined.triangle_count(); ++corner) {
-        CHECK(angle_deg(normal_of(*joined.normals(), corner), normal_of(*z.mesh.normals(), corner)) <=
-              angle * 1.01);
+        CHECK(angle_deg(normal_of(*joined.normals(), corner),
+                        normal_of(*z.mesh.normals(), corner)) <= angle * 1.01);
         const VertexId v = joined.triangles[corner / 3][corner % 3];
         const AttributeId a = joined.normals()->of_corner[corner];
-        CHECK(after.emplace(std::pair(v, z.mesh.normals()->of_corner[corner]), a).first->second == a);
+        CHECK(after.emplace(std::pair(v, z.mesh.normals()->of_corner[corner]), a).first->second ==
+              a);
       }
     }
   }

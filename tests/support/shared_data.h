@@ -9,7 +9,8 @@
 
 namespace crease {
 
-// Every model file of one folder (scan, cad, city, attributes, nasty), sorted; empty without the data.
+// Every model file of one folder (scan, cad, city, attributes, nasty), sorted; empty without the
+// data.
 std::vector<std::filesystem::path> shared_models(const std::string& folder);
 
 // One model by its path below the data folder ("city/berlin_52k.obj.zst"); empty without the data.

@@ -34,7 +34,8 @@ bool write(const Mesh& mesh, const std::filesystem::path& path) {
 
 bool write_samples(const std::filesystem::path& folder) {
   for (const ZooMesh& z : mesh_zoo()) {
-    if (!z.mesh.triangles.empty() && !write(z.mesh, folder / ("zoo_" + z.name + ".glb"))) return false;
+    if (!z.mesh.triangles.empty() && !write(z.mesh, folder / ("zoo_" + z.name + ".glb")))
+      return false;
   }
   if (!write(everything_mesh(), folder / "everything.glb")) return false;
   // More than 65,535 vertices: wide indices.
@@ -43,7 +44,8 @@ bool write_samples(const std::filesystem::path& folder) {
   bare.layers.clear();
   if (!write(bare, folder / "no_normals.glb")) return false;
 
-  const std::vector<Mesh> levels = {smooth_sphere(40, 60), smooth_sphere(20, 30), everything_mesh()};
+  const std::vector<Mesh> levels = {smooth_sphere(40, 60), smooth_sphere(20, 30),
+                                    everything_mesh()};
   const std::vector<double> coverage = {0.5, 0.25, 0.01};
   const auto lod = export_lod_glb(levels, coverage);
   if (!lod.ok()) return report(lod.failure());
