@@ -77,7 +77,7 @@ def main():
 
     say("demo: drawing")
     picture("demo.png", "--control", "--size", "2400x1350", *view(own, info, "close.json", close_up))
-    picture("demo_whole.png", "--size", "2400x675")
+    picture("demo_whole.png", "--size", "2400x460")
     picture("demo_kinds.png", "--size", "2400x675", "--color", "kind", "--wireframe",
             *view(own, info, "close.json", close_up))
 
