@@ -107,7 +107,9 @@ bool bridge_where_touching(Rings& rings, const std::vector<Index>& outer_nodes, 
   std::vector<Index> hole_nodes = nodes_of_ring(rings, hole);
   std::ranges::sort(hole_nodes, {}, key);
   for (Index to : outer_nodes) {
-    for (Index from : std::ranges::equal_range(hole_nodes, key(to), {}, key)) {
+    auto found = std::ranges::lower_bound(hole_nodes, key(to), {}, key);
+    for (; found != hole_nodes.end() && key(*found) == key(to); ++found) {
+      const Index from = *found;
       if (!goes_inside(rings, to, rings.at[rings.next[from]])) continue;
       add_bridge(rings, from, to);
       return true;
