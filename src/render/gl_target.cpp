@@ -52,8 +52,8 @@ void GlTarget::begin(int width, int height) {
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glClearColor(0, 0, 0, 0);
-  // Float depth is finest near 0. With 0 far away two planes 5 cm apart stay apart at 1 km; with 1
-  // there, a lawn flickers into the pavement below it at 150 m.
+  // Float depth is finest near 0. With 1 far away a lawn 5 cm above the pavement flickered into it
+  // at 150 m (generated city, viewer inside); with 0 far away it does not.
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glClearDepth(reversed_depth_ ? 0 : 1);
   glDepthFunc(reversed_depth_ ? GL_GREATER : GL_LESS);
