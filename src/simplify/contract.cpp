@@ -16,13 +16,17 @@ constexpr double kSameCopy = 2e-2;  // for a wedge that only moved along
 // (squared chord of about two degrees).
 constexpr double kDeriveMargin = 1.2e-3;
 
-double squared(const Vec3d& v) { return dot(v, v); }
+double squared(const Vec3d& v) {
+  return dot(v, v);
+}
 
-float raised(float base, double own) { return static_cast<float>(double(base) + own); }
+float raised(float base, double own) {
+  return static_cast<float>(double(base) + own);
+}
 
 LevelError worst(const LevelError& a, const LevelError& b) {
-  return {std::max(a.surface, b.surface), std::max(a.line, b.line),
-          std::max(a.degrees, b.degrees), std::max(a.texture, b.texture)};
+  return {std::max(a.surface, b.surface), std::max(a.line, b.line), std::max(a.degrees, b.degrees),
+          std::max(a.texture, b.texture)};
 }
 
 }  // namespace
@@ -38,8 +42,8 @@ void PatchSimplifier::push(Index a, Index b) {
   if (vertices_[a].locked || vertices_[b].locked) return;
   const double cost = place(a, b).cost;
   if (!(cost <= steering_.cost_limit)) return;
-  heap_.push_back({static_cast<float>(cost), a, b, vertices_[a].version + vertices_[b].version,
-                   kNone});
+  heap_.push_back(
+      {static_cast<float>(cost), a, b, vertices_[a].version + vertices_[b].version, kNone});
   std::push_heap(heap_.begin(), heap_.end());
 }
 
@@ -136,7 +140,8 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   LevelError error = q.base;
   surface_[kept].add(surface_[removed]);
   if (surface_[kept].weight > 0) {
-    error.surface = raised(error.surface, std::sqrt(surface_[kept].at(target) / surface_[kept].weight));
+    error.surface =
+        raised(error.surface, std::sqrt(surface_[kept].at(target) / surface_[kept].weight));
   }
   const Index line_p = line_of_vertex_[removed], line_q = line_of_vertex_[kept];
   if (line_p != kNone && line_q != kNone) line_[line_q].add(line_[line_p]);
@@ -188,7 +193,8 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
 
   contraction.error = q.error;
   contraction.change_count = static_cast<Index>(result_.changes.size()) - contraction.first_change;
-  contraction.derived_count = static_cast<Index>(result_.derived.size()) - contraction.first_derived;
+  contraction.derived_count =
+      static_cast<Index>(result_.derived.size()) - contraction.first_derived;
   last_key_ = std::max(last_key_, cost);
   result_.contractions.push_back({last_key_, contraction});
   push_ring(kept);
@@ -274,14 +280,16 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
     Wedge result{};
     result.quadric = joined.quadric;
     result.pinned = pinned;
-    const Index inherited = chosen_value(layer, joined, of_kept.first, of_kept.first + of_kept.count,
-                                         target, result.value);
+    const Index inherited = chosen_value(layer, joined, of_kept.first,
+                                         of_kept.first + of_kept.count, target, result.value);
     if (inherited != kNone) {
       result.id = inherited;
     } else {
       std::vector<float>& values = result_.new_values[layer];
-      result.id = kLocalValue + static_cast<Index>(values.size()) / static_cast<Index>(work.dimension);
-      for (int j = 0; j < work.dimension; ++j) values.push_back(static_cast<float>(result.value[j]));
+      result.id =
+          kLocalValue + static_cast<Index>(values.size()) / static_cast<Index>(work.dimension);
+      for (int j = 0; j < work.dimension; ++j)
+        values.push_back(static_cast<float>(result.value[j]));
     }
     for (Index k = 0; k < joined.member_count; ++k) {
       const Index member = members_[joined.first_member + k];
@@ -292,11 +300,13 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
         told = wedges[members_[joined.first_member + i]].id == from;
       }
       if (told) continue;
-      result_.changes.push_back({static_cast<Index>(layer), AttributeId{from}, AttributeId{result.id}});
+      result_.changes.push_back(
+          {static_cast<Index>(layer), AttributeId{from}, AttributeId{result.id}});
     }
     if (work.steers && joined.quadric.own.weight > 0) {
-      square_error = std::max(square_error, joined.quadric.at(target, work.dimension, result.value) /
-                                                joined.quadric.own.weight);
+      square_error =
+          std::max(square_error, joined.quadric.at(target, work.dimension, result.value) /
+                                     joined.quadric.own.weight);
       square_weight = 1;
     }
     wedges.push_back(result);

@@ -17,7 +17,9 @@ constexpr double kFoldCosine = 0.2;
 // input's.
 constexpr double kTurnShare = 0.25;
 
-double squared(const Vec3d& v) { return dot(v, v); }
+double squared(const Vec3d& v) {
+  return dot(v, v);
+}
 
 }  // namespace
 

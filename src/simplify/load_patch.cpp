@@ -127,8 +127,8 @@ void PatchSimplifier::load_wedges() {
           wedges.push_back(wedge);
         }
         wedge_of_corner_[l][3 * t + static_cast<Index>(c)] = w;
-        const bool one = id_of_corner(t, 0) == id_of_corner(t, 1) &&
-                         id_of_corner(t, 1) == id_of_corner(t, 2);
+        const bool one =
+            id_of_corner(t, 0) == id_of_corner(t, 1) && id_of_corner(t, 1) == id_of_corner(t, 2);
         if (one && !(layer.is_normal && derived_[t])) {
           wedges[w].pinned = true;
           if (layer.is_normal) flat_[t] = 1;
@@ -228,11 +228,12 @@ void PatchSimplifier::load_edges() {
         if (scale > 0 && bend < kFoldCosine * scale) is_line = true;
         for (std::size_t l = 0; l < layer_count() && !is_line; ++l) {
           const auto wedge_at = [&](Index triangle, Index vertex) {
-            return wedge_of_corner_[l][3 * triangle + static_cast<Index>(corner_of(triangle, vertex))];
+            return wedge_of_corner_[l]
+                                   [3 * triangle + static_cast<Index>(corner_of(triangle, vertex))];
           };
           if (wedge_at(t, v) == wedge_at(u, v) && wedge_at(t, w) == wedge_at(u, w)) continue;
-          const bool facets = work_.layers[l].is_normal && (flat_[t] || derived_[t]) &&
-                              (flat_[u] || derived_[u]);
+          const bool facets =
+              work_.layers[l].is_normal && (flat_[t] || derived_[t]) && (flat_[u] || derived_[u]);
           is_line = !facets || bend < kFlatLineCosine * scale;
         }
       }

@@ -18,7 +18,9 @@ constexpr double kGridNoise = 0.5;
 // The optimum stays within this many pair lengths of the pair's middle.
 constexpr double kReach = 1.0;
 
-Vec3d rounded(const Vec3d& x) { return {std::round(x.x), std::round(x.y), std::round(x.z)}; }
+Vec3d rounded(const Vec3d& x) {
+  return {std::round(x.x), std::round(x.y), std::round(x.z)};
+}
 
 }  // namespace
 
@@ -152,8 +154,7 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
       for (Index k = 0; k < joined.member_count; ++k) {
         all.add(wedges[members_[joined.first_member + k]].quadric, layer.dimension);
       }
-      const Index inherited =
-          joined.fixed != kNone ? joined.fixed : members_[joined.first_member];
+      const Index inherited = joined.fixed != kNone ? joined.fixed : members_[joined.first_member];
       all.add_fixed(sum, layer.dimension, wedges[inherited].value, layer_scale(l));
     }
   }

@@ -89,9 +89,9 @@ Patches partition_triangles(std::span<const Vec3i> positions,
       const Vec3i& b = positions[vertices_of_triangle[3 * t + 1]];
       const Vec3i& c = positions[vertices_of_triangle[3 * t + 2]];
       // Grid coordinates lie within 30 bits, their halves' sum of three within 31.
-      centroids[i] = {{a.x / 2 + b.x / 2 + c.x / 2, a.y / 2 + b.y / 2 + c.y / 2,
-                       a.z / 2 + b.z / 2 + c.z / 2},
-                      t};
+      centroids[i] = {
+          {a.x / 2 + b.x / 2 + c.x / 2, a.y / 2 + b.y / 2 + c.y / 2, a.z / 2 + b.z / 2 + c.z / 2},
+          t};
     }
   });
 

@@ -49,8 +49,9 @@ class PatchSimplifier {
   struct Wedge {
     AttributeQuadric quadric;
     double value[kMaxDimension];
-    Index id;     // attribute, or kLocalValue + local new value
-    bool pinned;  // some triangle has this attribute at all three corners: it never changes (DB03 b)
+    Index id;  // attribute, or kLocalValue + local new value
+    bool
+        pinned;  // some triangle has this attribute at all three corners: it never changes (DB03 b)
   };
   struct Slice {
     Index first = 0, count = 0;
@@ -73,7 +74,7 @@ class PatchSimplifier {
     float cost;
     Index a, b;
     Index stamp;
-    Index held;  // in held_, or kNone
+    Index held;                             // in held_, or kNone
     bool operator<(const Entry& o) const {  // std heaps put the largest first
       return cost != o.cost ? cost > o.cost : a != o.a ? a > o.a : b > o.b;
     }
@@ -129,8 +130,8 @@ class PatchSimplifier {
   Vec3d normal_if_moved(Index t, Index moved, const Vec3d& target) const;
   int corner_of(Index t, Index v) const;  // -1: none
   std::span<const Index> triangles_of(Index v) const {
-    return std::span(triangle_pool_).subspan(vertices_[v].triangles.first,
-                                             vertices_[v].triangles.count);
+    return std::span(triangle_pool_)
+        .subspan(vertices_[v].triangles.first, vertices_[v].triangles.count);
   }
   Slice& wedges_of(std::size_t layer, Index v) { return wedge_slices_[layer][v]; }
   std::size_t layer_count() const { return work_.layers.size(); }
@@ -149,7 +150,7 @@ class PatchSimplifier {
   std::vector<Index> global_triangle_;
   std::vector<Index> vertex_of_corner_;  // 3 a triangle
   std::vector<char> triangle_alive_;
-  std::vector<char> flat_;     // stored normal the same at all three corners, and not derived
+  std::vector<char> flat_;  // stored normal the same at all three corners, and not derived
   std::vector<char> derived_;
   std::vector<Vec3d> represented_;
   std::size_t live_triangles_ = 0;
@@ -164,8 +165,9 @@ class PatchSimplifier {
 
   PatchResult result_;
 
-  // Pairs that would fold something wait in the heap at that higher cost. When a neighbour has moved
-  // they may have become legal, so they are tried again at once, and the waiting entry is void.
+  // Pairs that would fold something wait in the heap at that higher cost. When a neighbour has
+  // moved they may have become legal, so they are tried again at once, and the waiting entry is
+  // void.
   struct Held {
     Index a, b;
     Index next_of_a, next_of_b;  // in the lists of their vertices

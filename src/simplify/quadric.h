@@ -75,8 +75,8 @@ struct Quadric {
             a02 * x.x + a12 * x.y + a22 * x.z + b2};
   }
 
-  // The minimum, pulled towards `near` where the quadric says little: on a plane it is singular, and
-  // an unbounded optimum flies away (DESIGN 10). `pull` is relative to the trace.
+  // The minimum, pulled towards `near` where the quadric says little: on a plane it is singular,
+  // and an unbounded optimum flies away (DESIGN 10). `pull` is relative to the trace.
   Vec3d minimum(const Vec3d& near, double pull) const {
     const double mu = pull * trace();
     if (!(mu > 0)) return near;
@@ -102,7 +102,7 @@ inline constexpr int kMaxDimension = 4;  // of an attribute layer
 // Over a wedge's triangles: sum of w * |g x + d - s|^2, g and d the attribute's gradient and offset
 // on each triangle, s the value that the wedge will carry. `own` is the part without s.
 struct AttributeQuadric {
-  Quadric own;                     // own.weight: the area
+  Quadric own;                      // own.weight: the area
   double g[kMaxDimension][3] = {};  // weighted sums of gradients
   double d[kMaxDimension] = {};     // and of offsets
 

@@ -107,7 +107,7 @@ WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
 
 // Area of the live triangles in space and, by layer, of their texture coordinates.
 struct Extent {
-  double area = 0;                // grid units squared
+  double area = 0;                    // grid units squared
   std::vector<double> area_of_layer;  // texture units squared; 0 for other layers
 };
 
@@ -199,8 +199,7 @@ class Simplifier {
       const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= 3);
       if (band == 0) limit = first_limit(steering, triangle_area);
       steering.cost_limit = last ? kNoLimit : limit;
-      steering.virtual_distance =
-          last ? kNoLimit : 2 * std::sqrt(limit / (triangle_area * 6));
+      steering.virtual_distance = last ? kNoLimit : 2 * std::sqrt(limit / (triangle_area * 6));
       if (!run_band(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");
       }
@@ -215,7 +214,8 @@ class Simplifier {
       limit *= factor;
     }
     scale_errors();
-    for (WorkLayer& layer : work_.layers) sequence_.new_values.push_back(std::move(layer.new_values));
+    for (WorkLayer& layer : work_.layers)
+      sequence_.new_values.push_back(std::move(layer.new_values));
     return std::move(sequence_);
   }
 
@@ -238,7 +238,8 @@ class Simplifier {
     for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
     tbb::parallel_for(std::size_t(0), chosen.size(), [&](std::size_t i) {
       const std::size_t p = chosen[i];
-      PatchSimplifier patch(work_, patches_.of(p), static_cast<std::uint32_t>(p), steering, scratch());
+      PatchSimplifier patch(work_, patches_.of(p), static_cast<std::uint32_t>(p), steering,
+                            scratch());
       const std::vector<double> own = patch.initial_costs();
       const std::lock_guard<std::mutex> lock(append);
       costs.insert(costs.end(), own.begin(), own.end());
@@ -270,7 +271,8 @@ class Simplifier {
     if (stop) return false;
     number_new_values();
     append_contractions();
-    std::erase_if(work_.live, [&](std::uint32_t t) { return work_.vertex_of_corner[3 * t] == kNone; });
+    std::erase_if(work_.live,
+                  [&](std::uint32_t t) { return work_.vertex_of_corner[3 * t] == kNone; });
     return true;
   }
 
@@ -322,17 +324,18 @@ class Simplifier {
       }
     }
     tbb::parallel_sort(order.begin(), order.end(), [](const At& a, const At& b) {
-      return a.key != b.key ? a.key < b.key : a.patch != b.patch ? a.patch < b.patch
-                                                                 : a.index < b.index;
+      return a.key != b.key       ? a.key < b.key
+             : a.patch != b.patch ? a.patch < b.patch
+                                  : a.index < b.index;
     });
     contractions_in_band_ = static_cast<std::uint32_t>(order.size());
     for (const At& at : order) {
       const PatchResult& from = results_[at.patch];
       Contraction contraction = from.contractions[at.index].contraction;
-      const auto changes = std::span(from.changes)
-                               .subspan(contraction.first_change, contraction.change_count);
-      const auto derived = std::span(from.derived)
-                               .subspan(contraction.first_derived, contraction.derived_count);
+      const auto changes =
+          std::span(from.changes).subspan(contraction.first_change, contraction.change_count);
+      const auto derived =
+          std::span(from.derived).subspan(contraction.first_derived, contraction.derived_count);
       contraction.first_change = static_cast<std::uint32_t>(sequence_.changes.size());
       contraction.first_derived = static_cast<std::uint32_t>(sequence_.derived.size());
       sequence_.changes.insert(sequence_.changes.end(), changes.begin(), changes.end());

@@ -17,13 +17,13 @@ inline constexpr std::uint32_t kShared = 0xfffffffeu;  // owner of a vertex that
 struct WorkLayer {
   const AttributeLayer* source = nullptr;
   int dimension = 1;
-  bool blends = true;                        // not categorical
-  bool steers = false;                       // counts in the cost: normals, texture coordinates, colours
+  bool blends = true;   // not categorical
+  bool steers = false;  // counts in the cost: normals, texture coordinates, colours
   bool is_direction = false;
   bool is_normal = false;
-  double length_per_unit = 0;                // what one unit of the attribute is worth as a distance,
-                                             // grid units; set anew in every band
-  std::vector<std::uint32_t> of_corner;      // 3 a triangle, input values then new ones
+  double length_per_unit = 0;            // what one unit of the attribute is worth as a distance,
+                                         // grid units; set anew in every band
+  std::vector<std::uint32_t> of_corner;  // 3 a triangle, input values then new ones
   std::vector<float> new_values;
 
   std::size_t value_count() const {
@@ -37,16 +37,16 @@ struct WorkLayer {
 };
 
 struct WorkMesh {
-  std::vector<Vec3i> positions;                // per input vertex, grid units
-  std::vector<LevelError> error_of_vertex;     // of the contractions under it, surface and line in
-                                               // grid units
-  std::vector<std::uint32_t> owner_of_vertex;  // patch, or kShared, or kNone; of the present band
-  std::vector<std::uint32_t> vertex_of_corner; // 3 a triangle
+  std::vector<Vec3i> positions;                 // per input vertex, grid units
+  std::vector<LevelError> error_of_vertex;      // of the contractions under it, surface and line in
+                                                // grid units
+  std::vector<std::uint32_t> owner_of_vertex;   // patch, or kShared, or kNone; of the present band
+  std::vector<std::uint32_t> vertex_of_corner;  // 3 a triangle
   std::vector<std::uint32_t> category_of_triangle;  // material and part as one; empty: all the same
-  std::vector<char> derived;                   // per triangle: shows its geometric normal
-  std::vector<Vec3f> represented;              // per triangle: sum of area * normal of the input
-                                               // triangles that it stands for; empty: nothing flat
-  std::vector<std::uint32_t> live;             // the triangles that are left, ascending
+  std::vector<char> derived;                        // per triangle: shows its geometric normal
+  std::vector<Vec3f> represented;   // per triangle: sum of area * normal of the input
+                                    // triangles that it stands for; empty: nothing flat
+  std::vector<std::uint32_t> live;  // the triangles that are left, ascending
   std::vector<WorkLayer> layers;
 };
 
@@ -58,7 +58,7 @@ struct PatchContraction {
 
 struct PatchResult {
   std::vector<PatchContraction> contractions;
-  std::vector<AttributeChange> changes;        // ids >= kLocalValue: local new value
+  std::vector<AttributeChange> changes;  // ids >= kLocalValue: local new value
   std::vector<TriangleId> derived;
   std::vector<std::vector<float>> new_values;  // per layer
   std::size_t triangles_left = 0;

@@ -48,7 +48,9 @@ Reached reduce(Mesh mesh, std::size_t target) {
   return reached;
 }
 
-double relative(double distance, const Reached& reached) { return distance / reached.apart.diagonal; }
+double relative(double distance, const Reached& reached) {
+  return distance / reached.apart.diagonal;
+}
 
 // Every triangle as four, each with its triangle's normals: flat meshes only.
 Mesh quartered(const Mesh& mesh) {
