@@ -25,11 +25,12 @@ Failure broken_at(std::size_t contraction, const char* what) {
 }
 
 bool all_below(std::span<const std::uint32_t> indices, std::size_t count) {
-  return std::ranges::all_of(indices, [count](std::uint32_t i) { return i < count; });
+  return std::all_of(indices.begin(), indices.end(),
+                     [count](std::uint32_t i) { return i < count; });
 }
 
 bool all_finite(std::span<const float> values) {
-  return std::ranges::all_of(values, [](float f) { return std::isfinite(f); });
+  return std::all_of(values.begin(), values.end(), [](float f) { return std::isfinite(f); });
 }
 
 std::optional<Failure> check_layer(const ProgressiveLayer& layer, const SectionCounts& full) {
@@ -326,7 +327,8 @@ class Follower {
       for (std::uint32_t t = section.first; t < section.first + section.count; ++t) {
         const std::span<const std::uint32_t> slots =
             std::span(state_.indices).subspan(3 * std::size_t(t), 3);
-        if (std::ranges::count(slots, kept) != 1 || std::ranges::count(slots, removed) != 1) {
+        if (std::count(slots.begin(), slots.end(), kept) != 1 ||
+            std::count(slots.begin(), slots.end(), removed) != 1) {
           return "a lost triangle does not have both vertices";
         }
         for (std::uint32_t slot : slots) --valence_[slot];

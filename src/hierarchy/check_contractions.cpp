@@ -22,7 +22,9 @@ std::array<float, 4> as_array(const LevelError& e) {
 }
 
 bool is_error(const LevelError& e) {
-  return std::ranges::all_of(as_array(e), [](float f) { return std::isfinite(f) && f >= 0; });
+  const std::array<float, 4> parts = as_array(e);
+  return std::all_of(parts.begin(), parts.end(),
+                     [](float f) { return std::isfinite(f) && f >= 0; });
 }
 
 bool at_least(const LevelError& a, const LevelError& b) {
@@ -58,7 +60,7 @@ class Checker {
       if (values.size() % mesh_.layers[l].dimension != 0) {
         return fail(Error::Invalid, "layer " + std::to_string(l) + ": odd number of new values");
       }
-      if (!std::ranges::all_of(values, [](float f) { return std::isfinite(f); })) {
+      if (!std::all_of(values.begin(), values.end(), [](float f) { return std::isfinite(f); })) {
         return fail(Error::Invalid, "layer " + std::to_string(l) + ": a new value is not finite");
       }
     }
@@ -113,11 +115,11 @@ class Checker {
     std::vector<std::uint32_t>& around_q = around_[index_of(c.kept)];
     for (std::uint32_t t : around_p) {
       if (!alive_[t]) continue;
-      if (std::ranges::count(vertices_[t], c.kept) > 0) {
+      if (std::count(vertices_[t].begin(), vertices_[t].end(), c.kept) > 0) {
         alive_[t] = false;
         continue;
       }
-      std::ranges::replace(vertices_[t], c.removed, c.kept);
+      std::replace(vertices_[t].begin(), vertices_[t].end(), c.removed, c.kept);
       around_q.push_back(t);
     }
     around_p = {};
@@ -155,13 +157,13 @@ class Checker {
       const auto same_from = [&](const AttributeChange& o) {
         return o.layer == change.layer && o.from == change.from;
       };
-      if (std::ranges::count_if(changes, same_from) != 1) {
+      if (std::count_if(changes.begin(), changes.end(), same_from) != 1) {
         return broken(i, "attribute changes twice");
       }
       const auto chained = [&](const AttributeChange& o) {
         return o.layer == change.layer && o.from == change.to;
       };
-      if (std::ranges::any_of(changes, chained)) {
+      if (std::any_of(changes.begin(), changes.end(), chained)) {
         return broken(i, "attribute changes depend on their order");
       }
       if (!change_attribute(c.kept, change, layer.role == AttributeRole::Normal)) {
