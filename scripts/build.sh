@@ -8,6 +8,7 @@ preset=$1
 shift
 launcher=
 command -v ccache > /dev/null && launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+export CCACHE_SLOPPINESS=pch_defines,time_macros  # else ccache passes over precompiled headers
 cmake --preset "$preset" $launcher > "/tmp/crease-configure.$$" 2>&1 || {
   cat "/tmp/crease-configure.$$" >&2
   exit 1
