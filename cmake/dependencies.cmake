@@ -2,7 +2,7 @@
 # includes this file too, so that crease::crease finds the same targets.
 #
 #   target                  used by
-#   TBB::tbb                simplify, pipeline, measure: threads
+#   TBB::tbb                parallel: threads
 #   embree                  measure: closest points
 #   zstd, lzma              io: compressed inputs (plain -l names)
 #   PNG::PNG                render: pictures

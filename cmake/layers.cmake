@@ -1,17 +1,19 @@
 # The layers: a folder may include itself and the folders in its row, and the public headers that
 # belong to those. The test `layers` reads every #include of the tree against these two tables.
-set(CREASE_FOLDERS base mesh hierarchy io generate measure simplify codec pipeline runtime render)
+set(CREASE_FOLDERS
+  base parallel mesh hierarchy io generate measure simplify codec pipeline runtime render)
 
 set(CREASE_LAYER_base      )
+set(CREASE_LAYER_parallel  )
 set(CREASE_LAYER_mesh      base)
 set(CREASE_LAYER_hierarchy base mesh)
 set(CREASE_LAYER_io        base mesh)
 set(CREASE_LAYER_generate  base mesh)
-set(CREASE_LAYER_measure   base mesh)
-set(CREASE_LAYER_simplify  base mesh hierarchy)
+set(CREASE_LAYER_measure   base parallel mesh)
+set(CREASE_LAYER_simplify  base parallel mesh hierarchy)
 set(CREASE_LAYER_codec     base mesh hierarchy)
 set(CREASE_LAYER_codec_encode base mesh hierarchy codec)  # the build's half of src/codec
-set(CREASE_LAYER_pipeline  base mesh hierarchy io simplify codec codec_encode)
+set(CREASE_LAYER_pipeline  base parallel mesh hierarchy io simplify codec codec_encode)
 set(CREASE_LAYER_runtime   base mesh hierarchy codec)
 set(CREASE_LAYER_render    base mesh runtime)
 
@@ -40,7 +42,7 @@ set(CREASE_THIRD_PARTY_GL       render)
 set(CREASE_THIRD_PARTY_png.h    render)
 set(CREASE_THIRD_PARTY_lzma.h   io)
 set(CREASE_THIRD_PARTY_zstd.h   io)
-set(CREASE_THIRD_PARTY_tbb      simplify pipeline measure io generate)
-set(CREASE_THIRD_PARTY_oneapi   simplify pipeline measure io generate)
+set(CREASE_THIRD_PARTY_tbb      parallel)
+set(CREASE_THIRD_PARTY_oneapi   parallel)
 set(CREASE_THIRD_PARTY_nlohmann io render cli)
 set(CREASE_THIRD_PARTY_CLI      cli)

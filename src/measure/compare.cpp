@@ -3,14 +3,10 @@
 #include "base/assert.h"
 #include "measure/sample.h"
 #include "measure/surface.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-#include <tbb/task_arena.h>
+#include "parallel/parallel.h"
 
 #include <algorithm>
+#include <mutex>
 #include <vector>
 
 namespace crease {
@@ -35,21 +31,20 @@ OneWay measure_samples(const Surface& from, const Surface& to, const CompareOpti
   result.distance.resize(options.samples);
   result.deviation.resize(options.samples);
   const Sampler sampler(from, options.samples, options.seed);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, options.samples, kGrain),
-                    [&](const auto& range) {
-                      Surface::Scratch scratch;
-                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        const SurfacePoint sample = sampler(i);
-                        Vec3d p;
-                        for (std::size_t c = 0; c < 3; ++c) {
-                          p += from.corner(sample.triangle, c) * sample.weights[c];
-                        }
-                        const Vec3d normal = from.normal(sample.triangle, sample.weights);
-                        const Nearest nearest = to.nearest(p, &normal, tie, scratch);
-                        result.distance[i] = nearest.distance;
-                        result.deviation[i] = nearest.deviation_rad;
-                      }
-                    });
+  parallel_ranges(options.samples, kGrain, [&](std::size_t begin, std::size_t end) {
+    Surface::Scratch scratch;
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfacePoint sample = sampler(i);
+      Vec3d p;
+      for (std::size_t c = 0; c < 3; ++c) {
+        p += from.corner(sample.triangle, c) * sample.weights[c];
+      }
+      const Vec3d normal = from.normal(sample.triangle, sample.weights);
+      const Nearest nearest = to.nearest(p, &normal, tie, scratch);
+      result.distance[i] = nearest.distance;
+      result.deviation[i] = nearest.deviation_rad;
+    }
+  });
   for (double d : result.distance) result.max = std::max(result.max, d);
   return result;
 }
@@ -60,18 +55,20 @@ double max_over_vertices(const Mesh& mesh, const Frame& frame, const Surface& to
   for (const Triangle& triangle : mesh.triangles) {
     for (VertexId v : triangle) used[index_of(v)] = true;
   }
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, mesh.vertex_count(), kGrain), 0.0,
-      [&](const auto& range, double largest) {
-        Surface::Scratch scratch;
-        for (std::size_t v = range.begin(); v < range.end(); ++v) {
-          if (!used[v]) continue;
-          const Vec3d p = frame.to_frame(mesh.positions[v]);
-          largest = std::max(largest, to.nearest(p, nullptr, 0, scratch).distance);
-        }
-        return largest;
-      },
-      [](double x, double y) { return std::max(x, y); });
+  double largest = 0;
+  std::mutex join;
+  parallel_ranges(mesh.vertex_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    Surface::Scratch scratch;
+    double own = 0;
+    for (std::size_t v = begin; v < end; ++v) {
+      if (!used[v]) continue;
+      const Vec3d p = frame.to_frame(mesh.positions[v]);
+      own = std::max(own, to.nearest(p, nullptr, 0, scratch).distance);
+    }
+    const std::lock_guard<std::mutex> lock(join);
+    largest = std::max(largest, own);
+  });
+  return largest;
 }
 
 Spread spread_of(const OneWay& way, double scale) {
@@ -116,43 +113,30 @@ Comparison compare(const Mesh& a, const Mesh& b, const CompareOptions& options) 
   return result;
 }
 
-// Runs `work` on at most `threads` threads.
-template <typename Work>
-void run_on(int threads, const Work& work) {
-  // More than TBB allows would make it print a warning.
-  const std::size_t allowed =
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  tbb::task_arena arena(threads > 0 ? std::min(threads, int(allowed)) : tbb::task_arena::automatic);
-  arena.execute(work);
-}
-
 }  // namespace
 
 Comparison compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options) {
   CREASE_ASSERT(a.triangle_count() > 0 && b.triangle_count() > 0);
   CREASE_ASSERT(a.normals() != nullptr && b.normals() != nullptr);
-  Comparison result;
-  run_on(options.threads, [&] { result = compare(a, b, options); });
-  return result;
+  return run_on(options.threads, [&] { return compare(a, b, options); });
 }
 
 std::vector<float> distances_to(const Mesh& surface, std::span<const Vec3d> points, int threads) {
   CREASE_ASSERT(surface.triangle_count() > 0 && surface.normals() != nullptr);
-  std::vector<float> distance_of_point(points.size());
-  run_on(threads, [&] {
+  return run_on(threads, [&] {
     const Frame frame = common_frame(surface, surface);
     const Surface to(surface, frame);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), kGrain),
-                      [&](const auto& range) {
-                        Surface::Scratch scratch;
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                          const Vec3d p = frame.to_frame(points[i]);
-                          const Nearest nearest = to.nearest(p, nullptr, 0, scratch);
-                          distance_of_point[i] = float(nearest.distance / frame.scale);
-                        }
-                      });
+    std::vector<float> distance_of_point(points.size());
+    parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      Surface::Scratch scratch;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Vec3d p = frame.to_frame(points[i]);
+        const Nearest nearest = to.nearest(p, nullptr, 0, scratch);
+        distance_of_point[i] = float(nearest.distance / frame.scale);
+      }
+    });
+    return distance_of_point;
   });
-  return distance_of_point;
 }
 
 }  // namespace crease

@@ -1,8 +1,6 @@
 #include "simplify/partition.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_group.h>
+#include "parallel/parallel.h"
 
 #include <algorithm>
 
@@ -39,9 +37,8 @@ class Divider {
     std::nth_element(begin, begin + left, end, [axis](const Centroid& a, const Centroid& b) {
       return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis] : a.triangle < b.triangle;
     });
-    tbb::task_group both;
-    both.run([&] { divide(begin, begin + left, is_first, offset); });
-    both.run_and_wait([&] { divide(begin + left, end, is_first, offset + left); });
+    parallel_both([&] { divide(begin, begin + left, is_first, offset); },
+                  [&] { divide(begin + left, end, is_first, offset + left); });
   }
 
  private:
@@ -82,8 +79,8 @@ Patches partition_triangles(std::span<const Vec3i> positions,
   }
 
   std::vector<Centroid> centroids(n);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+  parallel_ranges(n, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i) {
       const std::uint32_t t = patches.triangles[i];
       const Vec3i& a = positions[vertices_of_triangle[3 * t]];
       const Vec3i& b = positions[vertices_of_triangle[3 * t + 1]];

@@ -3,21 +3,16 @@
 #include "crease/simplify.h"
 
 #include "base/assert.h"
+#include "parallel/parallel.h"
 #include "simplify/partition.h"
 #include "simplify/patch_simplifier.h"
 #include "simplify/work_mesh.h"
-
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
 #include <numeric>
-#include <optional>
 
 namespace crease {
 
@@ -220,7 +215,7 @@ class Simplifier {
   }
 
  private:
-  using Scratch = tbb::enumerable_thread_specific<std::vector<std::uint32_t>>;
+  using Scratch = PerThread<std::vector<std::uint32_t>>;
 
   std::vector<std::uint32_t>& scratch() {
     std::vector<std::uint32_t>& local = scratch_.local();
@@ -236,7 +231,7 @@ class Simplifier {
     std::mutex append;
     std::vector<std::size_t> chosen;
     for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
-    tbb::parallel_for(std::size_t(0), chosen.size(), [&](std::size_t i) {
+    parallel_for(chosen.size(), [&](std::size_t i) {
       const std::size_t p = chosen[i];
       PatchSimplifier patch(work_, patches_.of(p), static_cast<std::uint32_t>(p), steering,
                             scratch());
@@ -256,7 +251,7 @@ class Simplifier {
     std::atomic<bool> stop{false};
     std::atomic<std::size_t> left{work_.live.size()};
     std::mutex report;
-    tbb::parallel_for(std::size_t(0), patches_.count(), [&](std::size_t p) {
+    parallel_for(patches_.count(), [&](std::size_t p) {
       if (stop) return;
       const std::span<const std::uint32_t> triangles = patches_.of(p);
       PatchSimplifier patch(work_, triangles, static_cast<std::uint32_t>(p), steering, scratch());
@@ -290,7 +285,7 @@ class Simplifier {
         values = {};
       }
     }
-    tbb::parallel_for(std::size_t(0), patches_.count(), [&](std::size_t p) {
+    parallel_for(patches_.count(), [&](std::size_t p) {
       for (std::uint32_t t : patches_.of(p)) {
         if (work_.vertex_of_corner[3 * t] == kNone) continue;
         for (std::size_t l = 0; l < layers; ++l) {
@@ -323,7 +318,7 @@ class Simplifier {
         order.push_back({results_[p].contractions[i].key, p, i});
       }
     }
-    tbb::parallel_sort(order.begin(), order.end(), [](const At& a, const At& b) {
+    parallel_sort(order, [](const At& a, const At& b) {
       return a.key != b.key       ? a.key < b.key
              : a.patch != b.patch ? a.patch < b.patch
                                   : a.index < b.index;
@@ -379,12 +374,8 @@ class Simplifier {
 Result<ContractionSequence> simplify(const Mesh& snapped, const Grid& grid,
                                      const SimplifyOptions& options,
                                      SimplifyStatistics* statistics) {
-  std::optional<tbb::global_control> limit;
-  if (options.threads > 0) {
-    limit.emplace(tbb::global_control::max_allowed_parallelism,
-                  static_cast<std::size_t>(options.threads));
-  }
-  return simplification::Simplifier(snapped, grid, options).run(statistics);
+  return run_on(options.threads,
+                [&] { return simplification::Simplifier(snapped, grid, options).run(statistics); });
 }
 
 }  // namespace crease

@@ -8,7 +8,6 @@
 
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <limits>
@@ -209,7 +208,6 @@ TEST_CASE("size does not matter") {
 }
 
 TEST_CASE("the number of threads changes nothing") {
-  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 7);
   const Mesh a = torus(48, 24), b = torus(20, 9);
   const Comparison one = compare_meshes(a, b, {.samples = 20'000, .threads = 1});
   for (int threads : {2, 7}) {
