@@ -38,37 +38,36 @@ std::vector<double> PatchSimplifier::initial_costs() {
   return costs;
 }
 
-void PatchSimplifier::push(Index a, Index b) {
-  if (vertices_[a].locked || vertices_[b].locked) return;
-  const double cost = place(a, b).cost;
-  if (!(cost <= steering_.cost_limit)) return;
-  heap_.push_back(
-      {static_cast<float>(cost), a, b, vertices_[a].version + vertices_[b].version, kNone});
+void PatchSimplifier::push(const Entry& entry) {
+  heap_.push_back(entry);
   std::push_heap(heap_.begin(), heap_.end());
 }
 
-void PatchSimplifier::push_ring(Index v) {
-  ++mark_now_;
-  ring_.clear();
+PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
+  while (!vertices_[v].alive) {
+    const Index into = vertices_[v].into;
+    if (!vertices_[into].alive) vertices_[v].into = vertices_[into].into;
+    v = into;
+  }
+  return v;
+}
+
+void PatchSimplifier::hold(const Entry& entry, double cost, double cost_with_ring) {
+  const Index id = static_cast<Index>(held_.size());
+  held_.push_back({entry.a, entry.b, held_of_vertex_[entry.a], held_of_vertex_[entry.b],
+                   static_cast<float>(cost), true});
+  held_of_vertex_[entry.a] = held_of_vertex_[entry.b] = id;
+  if (!(cost_with_ring <= steering_.cost_limit)) return;
+  push({static_cast<float>(cost_with_ring), entry.a, entry.b, entry.stamp, id});
+}
+
+void PatchSimplifier::release_ring(Index v) {
   for (Index t : triangles_of(v)) {
     for (Index c = 0; c < 3; ++c) {
       const Index w = vertex_of_corner_[3 * t + c];
-      if (w == v || mark_[w] == mark_now_) continue;
-      mark_[w] = mark_now_;
-      ring_.push_back(w);
+      if (held_of_vertex_[w] != kNone) release(w);
     }
   }
-  for (Index w : ring_) push(std::min(v, w), std::max(v, w));
-  for (Index w : ring_) release(w);
-}
-
-void PatchSimplifier::hold(const Entry& entry, double cost) {
-  const Index id = static_cast<Index>(held_.size());
-  held_.push_back({entry.a, entry.b, held_of_vertex_[entry.a], held_of_vertex_[entry.b], true});
-  held_of_vertex_[entry.a] = held_of_vertex_[entry.b] = id;
-  if (!(cost <= steering_.cost_limit)) return;
-  heap_.push_back({static_cast<float>(cost), entry.a, entry.b, entry.stamp, id});
-  std::push_heap(heap_.begin(), heap_.end());
 }
 
 void PatchSimplifier::release(Index v) {
@@ -79,7 +78,7 @@ void PatchSimplifier::release(Index v) {
     i = pair.a == v ? pair.next_of_a : pair.next_of_b;
     if (!pair.waiting) continue;
     pair.waiting = false;
-    if (vertices_[pair.a].alive && vertices_[pair.b].alive) push(pair.a, pair.b);
+    push({pair.cost, pair.a, pair.b, kNone, kNone});
   }
 }
 
@@ -95,23 +94,36 @@ PatchResult PatchSimplifier::run() {
 
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end());
-    const Entry entry = heap_.back();
+    Entry entry = heap_.back();
     heap_.pop_back();
-    const Vertex &a = vertices_[entry.a], &b = vertices_[entry.b];
-    if (!a.alive || !b.alive || a.version + b.version != entry.stamp) continue;
     if (entry.held != kNone) {
       if (!held_[entry.held].waiting) continue;
       held_[entry.held].waiting = false;
     }
-    const Placed placed = place_legally(entry.a, entry.b);
-    const double cost = placed.cost;
+    entry.a = survivor(entry.a);
+    entry.b = survivor(entry.b);
+    if (entry.a == entry.b) continue;
+    if (entry.a > entry.b) std::swap(entry.a, entry.b);
+    entry.stamp = vertices_[entry.a].version + vertices_[entry.b].version;
+    entry.held = kNone;
     const float next = heap_.empty() ? HUGE_VALF : heap_.front().cost;
-    if (!(cost <= steering_.cost_limit) ||
-        (static_cast<float>(cost) > entry.cost && static_cast<float>(cost) > next)) {
-      hold(entry, cost);
+
+    Quadric cost_if_kept[2];
+    Placed placed = place(entry.a, entry.b, cost_if_kept);
+    const double cost = placed.cost;
+    if (!(cost <= steering_.cost_limit)) continue;
+    if (static_cast<float>(cost) > entry.cost && static_cast<float>(cost) > next) {
+      entry.cost = static_cast<float>(cost);
+      push(entry);
       continue;
     }
-    contract(entry.a, entry.b, placed.position, cost);
+    placed = make_legal(entry.a, entry.b, placed, cost_if_kept);
+    if (!(placed.cost <= steering_.cost_limit) ||
+        (static_cast<float>(placed.cost) > entry.cost && static_cast<float>(placed.cost) > next)) {
+      hold(entry, cost, placed.cost);
+      continue;
+    }
+    contract(entry.a, entry.b, placed.position, placed.cost);
   }
   write_back();
   result_.triangles_left = live_triangles_;
@@ -151,32 +163,22 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   }
 
   // Wedges are joined while the vanishing triangles still stand.
+  find_ring(kept, removed);
   for (std::size_t l = 0; l < layer_count(); ++l) contract_layer(l, kept, removed, target, error);
   q.error = worst(worst(q.error, p.error), error);
 
   // Triangles: vanish, or change hands.
-  const Slice of_kept = q.triangles, of_removed = p.triangles;
+  for (std::size_t i = ring_kept_; i < ring_corners_.size(); ++i) {
+    vertex_of_corner_[ring_corners_[i]] = kept;
+  }
   const Index first = static_cast<Index>(triangle_pool_.size());
-  ring_.clear();
-  for (Index i = 0; i < of_kept.count; ++i) {
-    const Index t = triangle_pool_[of_kept.first + i];
-    if (corner_of(t, removed) >= 0) {
-      ring_.push_back(t);
-    } else {
-      triangle_pool_.push_back(t);
-    }
-  }
-  for (Index i = 0; i < of_removed.count; ++i) {
-    const Index t = triangle_pool_[of_removed.first + i];
-    if (corner_of(t, kept) >= 0) continue;
-    vertex_of_corner_[3 * t + static_cast<Index>(corner_of(t, removed))] = kept;
-    triangle_pool_.push_back(t);
-  }
+  for (Index corner : ring_corners_) triangle_pool_.push_back(corner / 3);
   q.triangles = {first, static_cast<Index>(triangle_pool_.size()) - first};
   q.position = target;
   ++q.version;
   p.alive = false;
-  for (Index t : ring_) {
+  p.into = kept;
+  for (Index t : vanishing_) {
     triangle_alive_[t] = 0;
     --live_triangles_;
     for (Index c = 0; c < 3; ++c) {
@@ -197,43 +199,60 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
       static_cast<Index>(result_.derived.size()) - contraction.first_derived;
   last_key_ = std::max(last_key_, cost);
   result_.contractions.push_back({last_key_, contraction});
-  push_ring(kept);
+  release_ring(kept);
+}
+
+void PatchSimplifier::find_ring(Index kept, Index removed) {
+  ring_corners_.clear();
+  vanishing_.clear();
+  for (Index t : triangles_of(kept)) {
+    if (corner_of(t, removed) >= 0) {
+      vanishing_.push_back(t);
+    } else {
+      ring_corners_.push_back(3 * t + static_cast<Index>(corner_of(t, kept)));
+    }
+  }
+  ring_kept_ = ring_corners_.size();
+  for (Index t : triangles_of(removed)) {
+    if (corner_of(t, kept) >= 0) continue;
+    ring_corners_.push_back(3 * t + static_cast<Index>(corner_of(t, removed)));
+  }
 }
 
 // The value of a joined wedge, written to `value`; returns its attribute id, or kNone if it is new.
-PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer, const Joined& joined,
-                                                     Index kept_first, Index kept_end,
-                                                     const Vec3d& target, double* value) {
+PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
+                                                     std::span<const Index> members, Index fixed,
+                                                     Slice of_kept, const Vec3d& target,
+                                                     const AttributeQuadric& quadric,
+                                                     double* value) const {
   const WorkLayer& work = work_.layers[layer];
   const std::vector<Wedge>& wedges = wedges_[layer];
-  const Index* members = &members_[joined.first_member];
-  Index inherited = joined.fixed;
+  Index inherited = fixed;
   if (inherited == kNone) {  // from the end that stays, if it has one
     inherited = members[0];
-    for (Index k = 0; k < joined.member_count; ++k) {
-      if (members[k] >= kept_first && members[k] < kept_end) inherited = members[k];
+    for (Index w : members) {
+      if (w - of_kept.first < of_kept.count) inherited = w;
     }
   }
+  const double area = quadric.own.weight;
   const auto inherit = [&] {
     std::copy_n(wedges[inherited].value, kMaxDimension, value);
     return wedges[inherited].id;
   };
-  const double area = joined.quadric.own.weight;
-  if (joined.fixed != kNone || !work.blends || steering_.placement == Placement::Endpoint ||
-      !(area > 0)) {
+  if (fixed != kNone || !work.blends || steering_.placement == Placement::Endpoint || !(area > 0)) {
     return inherit();
   }
 
   double norm2 = 0;
   for (int j = 0; j < work.dimension; ++j) {
-    value[j] = joined.quadric.weighted_value(j, target) / area;
+    value[j] = quadric.weighted_value(j, target) / area;
     norm2 += value[j] * value[j];
   }
   if (work.is_direction) {
     if (!(norm2 > 1e-4)) return inherit();  // opposite directions: there is no middle
     for (int j = 0; j < work.dimension; ++j) value[j] /= std::sqrt(norm2);
   }
-  const double same = joined.member_count == 1 ? kSameCopy : kSameValue;
+  const double same = members.size() == 1 ? kSameCopy : kSameValue;
   double away2 = 0;
   for (int j = 0; j < work.dimension; ++j) {
     value[j] = double(static_cast<float>(value[j]));
@@ -249,39 +268,32 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   join_wedges(layer, kept, removed, joined_);
   std::vector<Wedge>& wedges = wedges_[layer];
   std::vector<Index>& wedge_of_corner = wedge_of_corner_[layer];
-  const Slice of_kept = wedges_of(layer, kept);
-
-  // Which wedges a surviving triangle uses; the others are removed (G03 3.4, R).
-  std::vector<Index>& new_of_member = parent_;  // join_wedges is done with it
-  const auto used = [&](Index wedge) {
-    for (Index v : {kept, removed}) {
-      const Index other = v == kept ? removed : kept;
-      for (Index t : triangles_of(v)) {
-        if (corner_of(t, other) >= 0) continue;
-        if (wedge_of_corner[3 * t + static_cast<Index>(corner_of(t, v))] == wedge) return true;
-      }
-    }
-    return false;
+  const Slice of_kept = wedges_of(layer, kept), of_removed = wedges_of(layer, removed);
+  const auto slot_of = [&](Index wedge) {
+    const Index slot = wedge - of_kept.first;
+    return slot < of_kept.count ? slot : of_kept.count + (wedge - of_removed.first);
   };
 
-  const Index first = static_cast<Index>(wedges.size());
-  new_of_member.assign(members_.size(), kNone);
-  double square_error = 0, square_weight = 0;
-  for (Joined& joined : joined_) {
+  // Wedges that no surviving triangle uses are removed (G03 3.4, R).
+  used_.assign(of_kept.count + of_removed.count, 0);
+  for (Index corner : ring_corners_) used_[slot_of(wedge_of_corner[corner])] = 1;
+
+  std::vector<Index>& result_of_slot = parent_;  // join_wedges is done with it
+  result_of_slot.assign(used_.size(), kNone);
+  results_.clear();
+  double square_error = -1;
+  for (const Joined& joined : joined_) {
+    const std::span<const Index> members(&members_[joined.first_member], joined.member_count);
     bool any_used = false;
-    bool pinned = false;
-    for (Index k = 0; k < joined.member_count; ++k) {
-      const Wedge& member = wedges[members_[joined.first_member + k]];
-      joined.quadric.add(member.quadric, work.dimension);
-      pinned = pinned || member.pinned;
-      if (!any_used && used(members_[joined.first_member + k])) any_used = true;
-    }
+    for (Index w : members) any_used = any_used || used_[slot_of(w)];
     if (!any_used) continue;
-    Wedge result{};
-    result.quadric = joined.quadric;
-    result.pinned = pinned;
-    const Index inherited = chosen_value(layer, joined, of_kept.first,
-                                         of_kept.first + of_kept.count, target, result.value);
+    Wedge& result = results_.emplace_back(wedges[members[0]]);
+    for (Index w : members.subspan(1)) {
+      result.quadric.add(wedges[w].quadric, work.dimension);
+      result.pinned = result.pinned || wedges[w].pinned;
+    }
+    const Index inherited =
+        chosen_value(layer, members, joined.fixed, of_kept, target, result.quadric, result.value);
     if (inherited != kNone) {
       result.id = inherited;
     } else {
@@ -291,27 +303,22 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
       for (int j = 0; j < work.dimension; ++j)
         values.push_back(static_cast<float>(result.value[j]));
     }
-    for (Index k = 0; k < joined.member_count; ++k) {
-      const Index member = members_[joined.first_member + k];
-      new_of_member[joined.first_member + k] = static_cast<Index>(wedges.size());
-      const Index from = wedges[member].id;
-      bool told = from == result.id || !used(member);
-      for (Index i = 0; i < k && !told; ++i) {
-        told = wedges[members_[joined.first_member + i]].id == from;
-      }
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      result_of_slot[slot_of(members[k])] = static_cast<Index>(results_.size() - 1);
+      const Index from = wedges[members[k]].id;
+      bool told = from == result.id || !used_[slot_of(members[k])];
+      for (std::size_t i = 0; i < k && !told; ++i) told = wedges[members[i]].id == from;
       if (told) continue;
       result_.changes.push_back(
           {static_cast<Index>(layer), AttributeId{from}, AttributeId{result.id}});
     }
-    if (work.steers && joined.quadric.own.weight > 0) {
+    const double area = result.quadric.own.weight;
+    if (work.steers && area > 0) {
       square_error =
-          std::max(square_error, joined.quadric.at(target, work.dimension, result.value) /
-                                     joined.quadric.own.weight);
-      square_weight = 1;
+          std::max(square_error, result.quadric.at(target, work.dimension, result.value) / area);
     }
-    wedges.push_back(result);
   }
-  if (square_weight > 0) {
+  if (square_error >= 0) {
     const double own = std::sqrt(square_error);
     if (work.is_normal) {
       // A chord on the unit sphere; deviations of successive bands are independent of each other.
@@ -323,21 +330,20 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
     }
   }
 
-  const auto renamed = [&](Index wedge) {
-    for (std::size_t k = 0; k < members_.size(); ++k) {
-      if (members_[k] == wedge) return new_of_member[k];
-    }
-    return kNone;
-  };
-  for (Index v : {kept, removed}) {
-    const Index other = v == kept ? removed : kept;
-    for (Index t : triangles_of(v)) {
-      if (corner_of(t, other) >= 0) continue;
-      Index& wedge = wedge_of_corner[3 * t + static_cast<Index>(corner_of(t, v))];
-      wedge = renamed(wedge);
-    }
+  // The results take the place of what they come from, where that is large enough.
+  const Index count = static_cast<Index>(results_.size());
+  Index first = of_kept.first;
+  if (count > of_kept.count) first = of_removed.first;
+  if (count > of_kept.count && count > of_removed.count) {
+    first = static_cast<Index>(wedges.size());
+    wedges.resize(wedges.size() + count);
   }
-  wedges_of(layer, kept) = {first, static_cast<Index>(wedges.size()) - first};
+  std::copy(results_.begin(), results_.end(), wedges.begin() + first);
+  for (Index corner : ring_corners_) {
+    Index& wedge = wedge_of_corner[corner];
+    wedge = first + result_of_slot[slot_of(wedge)];
+  }
+  wedges_of(layer, kept) = {first, count};
 }
 
 // What a vanished triangle stood for is stood for by the neighbour that looks most like it.

@@ -28,7 +28,7 @@ PatchSimplifier::PatchSimplifier(WorkMesh& work, std::span<const std::uint32_t> 
   load_wedges();
   load_quadrics();
   load_edges();
-  if (steering_.virtual_distance > 0) find_virtual_pairs();
+  if (steering_.virtual_distance > 0 && work_.part_count > 1) find_virtual_pairs();
 }
 
 void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
@@ -97,44 +97,71 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
   }
 }
 
+// Wedges of a vertex lie together, in the order in which its triangles name them. Nearly all
+// vertices have one, so those that have several are sought out first.
 void PatchSimplifier::load_wedges() {
   wedges_.resize(layer_count());
   wedge_slices_.resize(layer_count());
   wedge_of_corner_.resize(layer_count());
+  std::vector<Index> first_id;
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_.layers[l];
-    std::vector<Wedge>& wedges = wedges_[l];
-    wedges.reserve(vertices_.size() + vertices_.size() / 2);
-    wedge_slices_[l].resize(vertices_.size());
-    wedge_of_corner_[l].resize(vertex_of_corner_.size());
+    std::vector<Index>& id_of_corner = wedge_of_corner_[l];  // until the wedges are known
+    id_of_corner.resize(vertex_of_corner_.size());
+    for (Index t = 0; t < global_triangle_.size(); ++t) {
+      std::copy_n(&layer.of_corner[3 * global_triangle_[t]], 3, &id_of_corner[3 * t]);
+    }
 
-    const auto id_of_corner = [&](Index t, int c) {
-      return layer.of_corner[3 * global_triangle_[t] + static_cast<Index>(c)];
+    std::vector<Slice>& slices = wedge_slices_[l];
+    slices.assign(vertices_.size(), Slice{kNone, 1});
+    first_id.resize(vertices_.size());
+    for (std::size_t corner = 0; corner < vertex_of_corner_.size(); ++corner) {
+      const Index v = vertex_of_corner_[corner];
+      if (slices[v].first == kNone) {
+        slices[v].first = 0;
+        first_id[v] = id_of_corner[corner];
+      } else if (first_id[v] != id_of_corner[corner]) {
+        slices[v].count = 2;  // or more
+      }
+    }
+
+    std::vector<Wedge>& wedges = wedges_[l];
+    wedges.reserve(vertices_.size() + vertices_.size() / 4);
+    const auto append = [&](Index id) {
+      Wedge& wedge = wedges.emplace_back();
+      wedge.id = id;
+      const float* value = layer.value(id);
+      for (int j = 0; j < layer.dimension; ++j) wedge.value[j] = double(value[j]);
     };
     for (Index v = 0; v < vertices_.size(); ++v) {
-      Slice& slice = wedge_slices_[l][v];
+      Slice& slice = slices[v];
       slice.first = static_cast<Index>(wedges.size());
+      if (slice.count == 1) {
+        append(first_id[v]);
+        continue;
+      }
       for (Index t : triangles_of(v)) {
-        const int c = corner_of(t, v);
-        const Index id = id_of_corner(t, c);
+        const Index id = id_of_corner[3 * t + static_cast<Index>(corner_of(t, v))];
         Index w = slice.first;
         while (w < wedges.size() && wedges[w].id != id) ++w;
-        if (w == wedges.size()) {
-          Wedge wedge{};
-          wedge.id = id;
-          const float* value = layer.value(id);
-          for (int j = 0; j < layer.dimension; ++j) wedge.value[j] = double(value[j]);
-          wedges.push_back(wedge);
-        }
-        wedge_of_corner_[l][3 * t + static_cast<Index>(c)] = w;
-        const bool one =
-            id_of_corner(t, 0) == id_of_corner(t, 1) && id_of_corner(t, 1) == id_of_corner(t, 2);
-        if (one && !(layer.is_normal && derived_[t])) {
-          wedges[w].pinned = true;
-          if (layer.is_normal) flat_[t] = 1;
-        }
+        if (w == wedges.size()) append(id);
       }
       slice.count = static_cast<Index>(wedges.size()) - slice.first;
+    }
+
+    for (Index t = 0; t < global_triangle_.size(); ++t) {
+      Index* w = &id_of_corner[3 * t];
+      const bool pinned = w[0] == w[1] && w[1] == w[2] && !(layer.is_normal && derived_[t]);
+      if (pinned && layer.is_normal) flat_[t] = 1;
+      for (Index c = 0; c < 3; ++c) {
+        const Slice& slice = slices[vertex_of_corner_[3 * t + c]];
+        const Index id = w[c];
+        w[c] = slice.first;
+        if (slice.count > 1) {
+          while (wedges[w[c]].id != id) ++w[c];
+        }
+        if (pinned) wedges[w[c]].pinned = true;
+      }
     }
   }
 }
@@ -259,26 +286,6 @@ void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
     }
     line_[line_of_vertex_[v]].add(plane);
   }
-}
-
-int PatchSimplifier::corner_of(Index t, Index v) const {
-  const Index* corners = &vertex_of_corner_[3 * t];
-  return corners[0] == v ? 0 : corners[1] == v ? 1 : corners[2] == v ? 2 : -1;
-}
-
-Vec3d PatchSimplifier::normal_of(Index t) const {
-  const Index* v = &vertex_of_corner_[3 * t];
-  const Vec3d& p0 = vertices_[v[0]].position;
-  return cross(vertices_[v[1]].position - p0, vertices_[v[2]].position - p0);
-}
-
-Vec3d PatchSimplifier::normal_if_moved(Index t, Index moved, const Vec3d& target) const {
-  Vec3d p[3];
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Index v = vertex_of_corner_[3 * t + c];
-    p[c] = v == moved ? target : vertices_[v].position;
-  }
-  return cross(p[1] - p[0], p[2] - p[0]);
 }
 
 }  // namespace crease::simplification

@@ -18,8 +18,13 @@ constexpr double kGridNoise = 0.5;
 // The optimum stays within this many pair lengths of the pair's middle.
 constexpr double kReach = 1.0;
 
+// To the nearest integer; |x| < 2^51. std::round is a call where there is no SSE 4.1.
+double rounded(double x) {
+  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
+  return (x + kShift) - kShift;
+}
 Vec3d rounded(const Vec3d& x) {
-  return {std::round(x.x), std::round(x.y), std::round(x.z)};
+  return {rounded(x.x), rounded(x.y), rounded(x.z)};
 }
 
 }  // namespace
@@ -27,6 +32,14 @@ Vec3d rounded(const Vec3d& x) {
 double PatchSimplifier::layer_scale(std::size_t layer) const {
   const double unit = work_.layers[layer].length_per_unit;
   return unit * unit;
+}
+
+// Whether a triangle has both.
+bool PatchSimplifier::meet(Index a, Index b) const {
+  for (Index t : triangles_of(a)) {
+    if (corner_of(t, b) >= 0) return true;
+  }
+  return false;
 }
 
 // Which wedges at a and b become one: those that a vanishing triangle has at its two corners, and
@@ -38,6 +51,18 @@ void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
   members_.clear();
   const Slice wa = wedges_of(layer, a), wb = wedges_of(layer, b);
   const std::vector<Wedge>& wedges = wedges_[layer];
+  if (wa.count == 1 && wb.count == 1) {
+    const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
+    if (x.id == y.id || (!(x.pinned && y.pinned) && meet(a, b))) {
+      members_ = {wa.first, wb.first};
+      joined.push_back({0, 2, x.pinned ? wa.first : y.pinned ? wb.first : kNone});
+    } else {
+      members_ = {wa.first, wb.first};
+      joined.push_back({0, 1, x.pinned ? wa.first : kNone});
+      joined.push_back({1, 1, y.pinned ? wb.first : kNone});
+    }
+    return;
+  }
   const Index n = wa.count + wb.count;
   const auto wedge_at = [&](Index i) {
     return i < wa.count ? wa.first + i : wb.first + (i - wa.count);
@@ -84,7 +109,7 @@ void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
     }
     const Index end = static_cast<Index>(members_.size());
     if (!several_fixed) {
-      joined.push_back({AttributeQuadric{}, first, end - first, fixed});
+      joined.push_back({first, end - first, fixed});
       continue;
     }
     // Two face normals would become one: neither may change (DB03 rule b), so each stays as it is.
@@ -95,7 +120,7 @@ void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
     for (Index k = first; k < end;) {
       Index next = k + 1;
       while (next < end && wedges[members_[next]].id == wedges[members_[k]].id) ++next;
-      joined.push_back({AttributeQuadric{}, k, next - k, members_[k]});
+      joined.push_back({k, next - k, members_[k]});
       k = next;
     }
   }
@@ -201,11 +226,10 @@ PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, Quadric* cost_i
   return best;
 }
 
-// The best place, the ring included: where the optimum would fold a triangle, an end of the pair or
+// The place with the ring included: where the optimum would fold a triangle, an end of the pair or
 // its middle may not.
-PatchSimplifier::Placed PatchSimplifier::place_legally(Index a, Index b) {
-  Quadric cost_if_kept[2];
-  Placed best = place(a, b, cost_if_kept);
+PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed best,
+                                                    const Quadric* cost_if_kept) {
   const double ring = ring_cost(a, b, best.position);
   const double free_cost = best.cost;
   best.cost += ring;

@@ -60,7 +60,8 @@ class PatchSimplifier {
     Vec3d position;  // grid units less center_
     Index global = 0;
     Index version = 0;
-    Slice triangles;  // in triangle_pool_
+    Index into = kNone;  // of a removed vertex: the one it was contracted into
+    Slice triangles;     // in triangle_pool_
     bool locked = false;
     bool alive = true;
     LevelError base;   // of the bands before
@@ -70,10 +71,12 @@ class PatchSimplifier {
     double cost = 0;
     Vec3d position;
   };
+  // Costs only grow as quadrics do, so an entry whose ends have changed since is a lower bound: it
+  // is looked at again when it comes to the top, and not before.
   struct Entry {
     float cost;
     Index a, b;
-    Index stamp;
+    Index stamp;                            // of a's and b's versions
     Index held;                             // in held_, or kNone
     bool operator<(const Entry& o) const {  // std heaps put the largest first
       return cost != o.cost ? cost > o.cost : a != o.a ? a > o.a : b > o.b;
@@ -81,7 +84,6 @@ class PatchSimplifier {
   };
   // One result wedge of a contraction: which wedges of a layer become one.
   struct Joined {
-    AttributeQuadric quadric;
     Index first_member = 0, member_count = 0;  // in members_
     Index fixed = kNone;                       // the member whose value is kept, or kNone: solve
   };
@@ -100,7 +102,8 @@ class PatchSimplifier {
   // pair_cost.cpp
   // `cost_if_kept`: when given, the cost as a function of the place, for keeping a's or b's values.
   Placed place(Index a, Index b, Quadric* cost_if_kept = nullptr);
-  Placed place_legally(Index a, Index b);
+  Placed make_legal(Index a, Index b, Placed best, const Quadric* cost_if_kept);
+  bool meet(Index a, Index b) const;
   void join_wedges(std::size_t layer, Index a, Index b, std::vector<Joined>& joined);
   void add_attribute_costs(Index a, Index b, Quadric& sum);
   void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum);
@@ -115,20 +118,36 @@ class PatchSimplifier {
 
   // contract.cpp
   void contract(Index a, Index b, const Vec3d& target, double cost);
+  void find_ring(Index kept, Index removed);
   void contract_layer(std::size_t layer, Index kept, Index removed, const Vec3d& target,
                       LevelError& error);
-  Index chosen_value(std::size_t layer, const Joined& joined, Index kept_first, Index kept_end,
-                     const Vec3d& target, double* value);
+  Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
+                     const Vec3d& target, const AttributeQuadric& quadric, double* value) const;
   void hand_over_represented(Index t, Index kept);
   void derive_where_better(Index kept);
-  void push(Index a, Index b);
-  void push_ring(Index v);
-  void hold(const Entry& entry, double cost);
+  void push(const Entry& entry);
+  Index survivor(Index v);
+  void hold(const Entry& entry, double cost, double cost_with_ring);
+  void release_ring(Index v);
   void release(Index v);
 
-  Vec3d normal_of(Index t) const;  // twice the area long
-  Vec3d normal_if_moved(Index t, Index moved, const Vec3d& target) const;
-  int corner_of(Index t, Index v) const;  // -1: none
+  // Twice the area long.
+  Vec3d normal_of(Index t) const {
+    const Index* v = &vertex_of_corner_[3 * t];
+    const Vec3d& p0 = vertices_[v[0]].position;
+    return cross(vertices_[v[1]].position - p0, vertices_[v[2]].position - p0);
+  }
+  Vec3d normal_if_moved(Index t, Index moved, const Vec3d& target) const {
+    const Index* v = &vertex_of_corner_[3 * t];
+    const auto at = [&](Index c) { return v[c] == moved ? target : vertices_[v[c]].position; };
+    const Vec3d p0 = at(0);
+    return cross(at(1) - p0, at(2) - p0);
+  }
+  // -1: none.
+  int corner_of(Index t, Index v) const {
+    const Index* corners = &vertex_of_corner_[3 * t];
+    return corners[0] == v ? 0 : corners[1] == v ? 1 : corners[2] == v ? 2 : -1;
+  }
   std::span<const Index> triangles_of(Index v) const {
     return std::span(triangle_pool_)
         .subspan(vertices_[v].triangles.first, vertices_[v].triangles.count);
@@ -171,6 +190,7 @@ class PatchSimplifier {
   struct Held {
     Index a, b;
     Index next_of_a, next_of_b;  // in the lists of their vertices
+    float cost;                  // without the fold
     bool waiting;
   };
   std::vector<Held> held_;
@@ -180,7 +200,11 @@ class PatchSimplifier {
   std::vector<Joined> joined_;
   std::vector<Index> members_;
   std::vector<Index> parent_;
-  std::vector<Index> ring_;
+  std::vector<Index> vanishing_;     // triangles
+  std::vector<Index> ring_corners_;  // of the surviving triangles: kept's corners, removed's
+  std::size_t ring_kept_ = 0;        // so many are kept's
+  std::vector<char> used_;
+  std::vector<Wedge> results_;
   std::vector<Index> mark_;
   Index mark_now_ = 0;
 };

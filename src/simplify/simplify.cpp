@@ -100,6 +100,32 @@ WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
   return work;
 }
 
+// Union-find over the vertices: `parent` leads to the part's smallest vertex.
+std::uint32_t part_of(std::vector<std::uint32_t>& parent, std::uint32_t v) {
+  while (parent[v] != v) v = parent[v] = parent[parent[v]];
+  return v;
+}
+
+void join_parts(WorkMesh& work, std::uint32_t u, std::uint32_t v) {
+  u = part_of(work.part_of_vertex, u);
+  v = part_of(work.part_of_vertex, v);
+  if (u == v) return;
+  work.part_of_vertex[std::max(u, v)] = std::min(u, v);
+  --work.part_count;
+}
+
+void find_parts(WorkMesh& work) {
+  work.part_of_vertex.resize(work.positions.size());
+  std::iota(work.part_of_vertex.begin(), work.part_of_vertex.end(), 0u);
+  std::vector<char> used(work.positions.size(), 0);
+  for (std::uint32_t v : work.vertex_of_corner) used[v] = 1;
+  work.part_count = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
+  for (std::size_t corner = 0; corner < work.vertex_of_corner.size(); corner += 3) {
+    join_parts(work, work.vertex_of_corner[corner], work.vertex_of_corner[corner + 1]);
+    join_parts(work, work.vertex_of_corner[corner], work.vertex_of_corner[corner + 2]);
+  }
+}
+
 // Area of the live triangles in space and, by layer, of their texture coordinates.
 struct Extent {
   double area = 0;                    // grid units squared
@@ -166,6 +192,7 @@ class Simplifier {
  public:
   Simplifier(const Mesh& mesh, const Grid& grid, const SimplifyOptions& options)
       : options_(options), work_(make_work(mesh, grid)) {
+    find_parts(work_);
     sequence_.grid = grid;
     sequence_.placement = options.placement;
     sequence_.contractions.reserve(mesh.vertex_count());
@@ -188,6 +215,11 @@ class Simplifier {
       patches_ = partition_triangles(work_.positions, work_.vertex_of_corner, work_.live,
                                      options_.patch_triangles, band);
       find_owners(work_, patches_);
+      if (work_.part_count > 1) {
+        for (std::uint32_t v = 0; v < work_.positions.size(); ++v) {
+          work_.part_of_vertex[v] = part_of(work_.part_of_vertex, v);
+        }
+      }
       Steering steering;
       steering.placement = options_.placement;
       steering.normal_scale = options_.normal_weight * edge;
@@ -223,11 +255,12 @@ class Simplifier {
     return local;
   }
 
-  // The limit under which about a third of the pairs lie, from a sample of the patches.
+  // The limit under which about a third of the pairs lie, from a sample of an eighth of the
+  // patches.
   double first_limit(const Steering& steering, double triangle_area) {
-    constexpr std::size_t kSample = 16;
+    constexpr std::size_t kSample = 16, kStride = 8;
     std::vector<double> costs;
-    const std::size_t stride = std::max<std::size_t>(1, patches_.count() / kSample);
+    const std::size_t stride = std::max(kStride, patches_.count() / kSample);
     std::mutex append;
     std::vector<std::size_t> chosen;
     for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
@@ -337,6 +370,10 @@ class Simplifier {
       sequence_.derived.insert(sequence_.derived.end(), derived.begin(), derived.end());
       worst_surface_ = std::max(worst_surface_, contraction.error.surface);
       sequence_.contractions.push_back(contraction);
+      if (work_.part_count > 1) {
+        join_parts(work_, static_cast<std::uint32_t>(contraction.removed),
+                   static_cast<std::uint32_t>(contraction.kept));
+      }
     }
     results_.clear();
   }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace crease::simplification {
 
@@ -33,26 +32,14 @@ class Cells {
 }  // namespace
 
 void PatchSimplifier::find_virtual_pairs() {
-  // Parts: vertices joined by triangles.
   const Index n = static_cast<Index>(vertices_.size());
   std::vector<Index> part(n);
-  std::iota(part.begin(), part.end(), 0u);
-  const auto root = [&](Index v) {
-    while (part[v] != v) v = part[v] = part[part[v]];
-    return v;
-  };
-  for (std::size_t corner = 0; corner < vertex_of_corner_.size(); corner += 3) {
-    for (std::size_t c = 1; c < 3; ++c) {
-      const Index a = root(vertex_of_corner_[corner]), b = root(vertex_of_corner_[corner + c]);
-      part[std::max(a, b)] = std::min(a, b);
-    }
-  }
-  std::size_t part_count = 0;
+  bool several = false;
   for (Index v = 0; v < n; ++v) {
-    part[v] = root(v);
-    part_count += part[v] == v;
+    part[v] = work_.part_of_vertex[vertices_[v].global];
+    several = several || part[v] != part[0];
   }
-  if (part_count < 2) return;
+  if (!several) return;
 
   Vec3d low = vertices_[0].position, high = low;
   for (const Vertex& v : vertices_) {

@@ -44,8 +44,11 @@ struct WorkMesh {
   std::vector<std::uint32_t> vertex_of_corner;  // 3 a triangle
   std::vector<std::uint32_t> category_of_triangle;  // material and part as one; empty: all the same
   std::vector<char> derived;                        // per triangle: shows its geometric normal
-  std::vector<Vec3f> represented;   // per triangle: sum of area * normal of the input
-                                    // triangles that it stands for; empty: nothing flat
+  std::vector<Vec3f> represented;             // per triangle: sum of area * normal of the input
+                                              // triangles that it stands for; empty: nothing flat
+  std::vector<std::uint32_t> part_of_vertex;  // a vertex of the part: equal for vertices that
+                                              // triangles or contractions connect
+  std::size_t part_count = 0;
   std::vector<std::uint32_t> live;  // the triangles that are left, ascending
   std::vector<WorkLayer> layers;
 };
