@@ -43,6 +43,25 @@ void PatchSimplifier::push(const Entry& entry) {
   std::push_heap(heap_.begin(), heap_.end());
 }
 
+bool PatchSimplifier::pop(Entry& entry) {
+  const bool from_heap =
+      !heap_.empty() && (next_in_order_ == order_.size() || order_[next_in_order_] < heap_.front());
+  if (from_heap) {
+    entry = heap_.front();
+    std::pop_heap(heap_.begin(), heap_.end());
+    heap_.pop_back();
+    return true;
+  }
+  if (next_in_order_ == order_.size()) return false;
+  entry = order_[next_in_order_++];
+  return true;
+}
+
+float PatchSimplifier::next_cost() const {
+  const float in_order = next_in_order_ == order_.size() ? HUGE_VALF : order_[next_in_order_].cost;
+  return heap_.empty() ? in_order : std::min(in_order, heap_.front().cost);
+}
+
 PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
   while (!vertices_[v].alive) {
     const Index into = vertices_[v].into;
@@ -85,17 +104,16 @@ void PatchSimplifier::release(Index v) {
 PatchResult PatchSimplifier::run() {
   result_.new_values.resize(layer_count());
   held_of_vertex_.assign(vertices_.size(), kNone);
+  order_.clear();
+  next_in_order_ = 0;
   for (const auto& [a, b] : pairs_) {
     const double cost = place(a, b).cost;
     if (!(cost <= steering_.cost_limit)) continue;
-    heap_.push_back({static_cast<float>(cost), a, b, 0, kNone});
+    order_.push_back({static_cast<float>(cost), a, b, 0, kNone});
   }
-  std::make_heap(heap_.begin(), heap_.end());
+  std::sort(order_.begin(), order_.end(), [](const Entry& x, const Entry& y) { return y < x; });
 
-  while (!heap_.empty()) {
-    std::pop_heap(heap_.begin(), heap_.end());
-    Entry entry = heap_.back();
-    heap_.pop_back();
+  for (Entry entry; pop(entry);) {
     if (entry.held != kNone) {
       if (!held_[entry.held].waiting) continue;
       held_[entry.held].waiting = false;
@@ -106,7 +124,7 @@ PatchResult PatchSimplifier::run() {
     if (entry.a > entry.b) std::swap(entry.a, entry.b);
     entry.stamp = vertices_[entry.a].version + vertices_[entry.b].version;
     entry.held = kNone;
-    const float next = heap_.empty() ? HUGE_VALF : heap_.front().cost;
+    const float next = next_cost();
 
     Quadric cost_if_kept[2];
     Placed placed = place(entry.a, entry.b, cost_if_kept);
@@ -220,12 +238,12 @@ void PatchSimplifier::find_ring(Index kept, Index removed) {
 }
 
 // The value of a joined wedge, written to `value`; returns its attribute id, or kNone if it is new.
+// Its area and quadric are the last in results_ and result_quadrics_.
 PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
                                                      std::span<const Index> members, Index fixed,
                                                      Slice of_kept, const Vec3d& target,
-                                                     const AttributeQuadric& quadric,
-                                                     double* value) const {
-  const WorkLayer& work = work_.layers[layer];
+                                                     double* value) {
+  const WorkLayer& work = work_->layers[layer];
   const std::vector<Wedge>& wedges = wedges_[layer];
   Index inherited = fixed;
   if (inherited == kNone) {  // from the end that stays, if it has one
@@ -234,7 +252,7 @@ PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
       if (w - of_kept.first < of_kept.count) inherited = w;
     }
   }
-  const double area = quadric.own.weight;
+  const double area = results_.back().area;
   const auto inherit = [&] {
     std::copy_n(wedges[inherited].value, kMaxDimension, value);
     return wedges[inherited].id;
@@ -245,7 +263,9 @@ PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
 
   double norm2 = 0;
   for (int j = 0; j < work.dimension; ++j) {
-    value[j] = quadric.weighted_value(j, target) / area;
+    value[j] = work.steers ? result_quadrics_.back().weighted_value(j, target) : 0;
+    for (Index w : members) value[j] += work.steers ? 0 : wedges[w].area * wedges[w].value[j];
+    value[j] /= area;
     norm2 += value[j] * value[j];
   }
   if (work.is_direction) {
@@ -264,9 +284,10 @@ PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
 
 void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index removed,
                                      const Vec3d& target, LevelError& error) {
-  const WorkLayer& work = work_.layers[layer];
+  const WorkLayer& work = work_->layers[layer];
   join_wedges(layer, kept, removed, joined_);
   std::vector<Wedge>& wedges = wedges_[layer];
+  std::vector<AttributeQuadric>& quadrics = attribute_quadrics_[layer];
   std::vector<Index>& wedge_of_corner = wedge_of_corner_[layer];
   const Slice of_kept = wedges_of(layer, kept), of_removed = wedges_of(layer, removed);
   const auto slot_of = [&](Index wedge) {
@@ -281,6 +302,7 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   std::vector<Index>& result_of_slot = parent_;  // join_wedges is done with it
   result_of_slot.assign(used_.size(), kNone);
   results_.clear();
+  result_quadrics_.clear();
   double square_error = -1;
   for (const Joined& joined : joined_) {
     const std::span<const Index> members(&members_[joined.first_member], joined.member_count);
@@ -289,11 +311,15 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
     if (!any_used) continue;
     Wedge& result = results_.emplace_back(wedges[members[0]]);
     for (Index w : members.subspan(1)) {
-      result.quadric.add(wedges[w].quadric, work.dimension);
+      result.area += wedges[w].area;
       result.pinned = result.pinned || wedges[w].pinned;
     }
+    if (work.steers) {
+      AttributeQuadric& all = result_quadrics_.emplace_back(quadrics[members[0]]);
+      for (Index w : members.subspan(1)) all.add(quadrics[w], work.dimension);
+    }
     const Index inherited =
-        chosen_value(layer, members, joined.fixed, of_kept, target, result.quadric, result.value);
+        chosen_value(layer, members, joined.fixed, of_kept, target, result.value);
     if (inherited != kNone) {
       result.id = inherited;
     } else {
@@ -312,10 +338,9 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
       result_.changes.push_back(
           {static_cast<Index>(layer), AttributeId{from}, AttributeId{result.id}});
     }
-    const double area = result.quadric.own.weight;
-    if (work.steers && area > 0) {
-      square_error =
-          std::max(square_error, result.quadric.at(target, work.dimension, result.value) / area);
+    if (work.steers && result.area > 0) {
+      const double square = result_quadrics_.back().at(target, work.dimension, result.value);
+      square_error = std::max(square_error, square / result.area);
     }
   }
   if (square_error >= 0) {
@@ -337,8 +362,10 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   if (count > of_kept.count && count > of_removed.count) {
     first = static_cast<Index>(wedges.size());
     wedges.resize(wedges.size() + count);
+    if (work.steers) quadrics.resize(wedges.size());
   }
   std::copy(results_.begin(), results_.end(), wedges.begin() + first);
+  std::copy(result_quadrics_.begin(), result_quadrics_.end(), quadrics.begin() + first);
   for (Index corner : ring_corners_) {
     Index& wedge = wedge_of_corner[corner];
     wedge = first + result_of_slot[slot_of(wedge)];
@@ -369,7 +396,7 @@ void PatchSimplifier::hand_over_represented(Index t, Index kept) {
 
 void PatchSimplifier::derive_where_better(Index kept) {
   std::size_t l = 0;
-  while (!work_.layers[l].is_normal) ++l;
+  while (!work_->layers[l].is_normal) ++l;
   for (Index t : triangles_of(kept)) {
     if (!flat_[t]) continue;
     const Vec3d geometric = normalized(normal_of(t));
@@ -388,29 +415,29 @@ void PatchSimplifier::write_back() {
   for (Index t = 0; t < global_triangle_.size(); ++t) {
     const Index global = global_triangle_[t];
     if (!triangle_alive_[t]) {
-      work_.vertex_of_corner[3 * global] = kNone;
+      work_->vertex_of_corner[3 * global] = kNone;
       continue;
     }
-    work_.derived[global] = derived_[t];
+    work_->derived[global] = derived_[t];
     if (!represented_.empty()) {
       const Vec3d& r = represented_[t];
-      work_.represented[global] = {static_cast<float>(r.x), static_cast<float>(r.y),
-                                   static_cast<float>(r.z)};
+      work_->represented[global] = {static_cast<float>(r.x), static_cast<float>(r.y),
+                                    static_cast<float>(r.z)};
     }
     for (Index c = 0; c < 3; ++c) {
-      work_.vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[3 * t + c]].global;
+      work_->vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[3 * t + c]].global;
       for (std::size_t l = 0; l < layer_count(); ++l) {
-        work_.layers[l].of_corner[3 * global + c] = wedges_[l][wedge_of_corner_[l][3 * t + c]].id;
+        work_->layers[l].of_corner[3 * global + c] = wedges_[l][wedge_of_corner_[l][3 * t + c]].id;
       }
     }
   }
   for (const Vertex& vertex : vertices_) {
     if (vertex.locked || !vertex.alive) continue;
-    work_.positions[vertex.global] =
+    work_->positions[vertex.global] =
         center_grid_ + Vec3i{static_cast<std::int32_t>(std::lround(vertex.position.x)),
                              static_cast<std::int32_t>(std::lround(vertex.position.y)),
                              static_cast<std::int32_t>(std::lround(vertex.position.z))};
-    work_.error_of_vertex[vertex.global] = vertex.error;
+    work_->error_of_vertex[vertex.global] = vertex.error;
   }
 }
 

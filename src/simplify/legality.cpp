@@ -30,7 +30,7 @@ double PatchSimplifier::flat_cost(Index t, const Vec3d& normal, double area) con
   const double derived_error = squared(normal - input);
   if (derived_[t]) return area * derived_error;
   std::size_t l = 0;
-  while (!work_.layers[l].is_normal) ++l;
+  while (!work_->layers[l].is_normal) ++l;
   const Wedge& wedge = wedges_[l][wedge_of_corner_[l][3 * t]];
   const Vec3d stored{wedge.value[0], wedge.value[1], wedge.value[2]};
   const double stored_error = squared(stored - input) + kTurnShare * squared(normal - stored);

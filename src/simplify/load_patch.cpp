@@ -20,19 +20,24 @@ constexpr double kFoldCosine = -0.5;
 
 }  // namespace
 
-PatchSimplifier::PatchSimplifier(WorkMesh& work, std::span<const std::uint32_t> triangles,
-                                 std::uint32_t patch_id, const Steering& steering,
-                                 std::vector<std::uint32_t>& local_of_vertex)
-    : work_(work), steering_(steering) {
-  load(triangles, patch_id, local_of_vertex);
+void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> triangles,
+                            std::uint32_t patch_id, const Steering& steering) {
+  work_ = &work;
+  steering_ = steering;
+  result_ = {};
+  heap_.clear();
+  held_.clear();
+  last_key_ = 0;
+  load(triangles, patch_id);
   load_wedges();
   load_quadrics();
   load_edges();
-  if (steering_.virtual_distance > 0 && work_.part_count > 1) find_virtual_pairs();
+  if (steering_.virtual_distance > 0 && work.part_count > 1) find_virtual_pairs();
 }
 
-void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
-                           std::vector<std::uint32_t>& local_of_vertex) {
+void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id) {
+  if (local_of_vertex_.empty()) local_of_vertex_.assign(work_->positions.size(), kNone);
+  vertices_.clear();
   const std::size_t n = triangles.size();
   global_triangle_.assign(triangles.begin(), triangles.end());
   vertex_of_corner_.resize(3 * n);
@@ -43,18 +48,18 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
 
   Vec3i low{INT32_MAX, INT32_MAX, INT32_MAX}, high{INT32_MIN, INT32_MIN, INT32_MIN};
   for (std::size_t t = 0; t < n; ++t) {
-    derived_[t] = work_.derived[triangles[t]];
+    derived_[t] = work_->derived[triangles[t]];
     for (std::size_t c = 0; c < 3; ++c) {
-      const Index global = work_.vertex_of_corner[3 * triangles[t] + c];
-      Index& local = local_of_vertex[global];
+      const Index global = work_->vertex_of_corner[3 * triangles[t] + c];
+      Index& local = local_of_vertex_[global];
       if (local == kNone) {
         local = static_cast<Index>(vertices_.size());
         Vertex vertex;
         vertex.global = global;
-        vertex.locked = work_.owner_of_vertex[global] != patch_id;
-        vertex.base = vertex.error = work_.error_of_vertex[global];
+        vertex.locked = work_->owner_of_vertex[global] != patch_id;
+        vertex.base = vertex.error = work_->error_of_vertex[global];
         vertices_.push_back(vertex);
-        const Vec3i& p = work_.positions[global];
+        const Vec3i& p = work_->positions[global];
         for (int i = 0; i < 3; ++i) {
           low[i] = std::min(low[i], p[i]);
           high[i] = std::max(high[i], p[i]);
@@ -67,8 +72,8 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
     center_grid_[i] = static_cast<std::int32_t>((std::int64_t(low[i]) + high[i]) / 2);
   }
   for (Vertex& vertex : vertices_) {
-    local_of_vertex[vertex.global] = kNone;  // leave the scratch as it was
-    const Vec3i p = work_.positions[vertex.global] - center_grid_;
+    local_of_vertex_[vertex.global] = kNone;  // leave the scratch as it was
+    const Vec3i p = work_->positions[vertex.global] - center_grid_;
     vertex.position = {double(p.x), double(p.y), double(p.z)};
   }
 
@@ -80,6 +85,7 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
     next += vertex.triangles.count;
     vertex.triangles.count = 0;
   }
+  triangle_pool_.clear();
   triangle_pool_.reserve(2 * std::size_t(next));
   triangle_pool_.resize(next);
   for (std::size_t corner = 0; corner < 3 * n; ++corner) {
@@ -87,11 +93,12 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
     triangle_pool_[around.first + around.count++] = static_cast<Index>(corner / 3);
   }
   mark_.assign(vertices_.size(), 0);
+  mark_now_ = 0;
 
-  if (!work_.represented.empty()) {
+  if (!work_->represented.empty()) {
     represented_.resize(n);
     for (std::size_t t = 0; t < n; ++t) {
-      const Vec3f& r = work_.represented[triangles[t]];
+      const Vec3f& r = work_->represented[triangles[t]];
       represented_[t] = {r.x, r.y, r.z};
     }
   }
@@ -105,7 +112,7 @@ void PatchSimplifier::load_wedges() {
   wedge_of_corner_.resize(layer_count());
   std::vector<Index> first_id;
   for (std::size_t l = 0; l < layer_count(); ++l) {
-    const WorkLayer& layer = work_.layers[l];
+    const WorkLayer& layer = work_->layers[l];
     std::vector<Index>& id_of_corner = wedge_of_corner_[l];  // until the wedges are known
     id_of_corner.resize(vertex_of_corner_.size());
     for (Index t = 0; t < global_triangle_.size(); ++t) {
@@ -126,6 +133,7 @@ void PatchSimplifier::load_wedges() {
     }
 
     std::vector<Wedge>& wedges = wedges_[l];
+    wedges.clear();
     wedges.reserve(vertices_.size() + vertices_.size() / 4);
     const auto append = [&](Index id) {
       Wedge& wedge = wedges.emplace_back();
@@ -166,8 +174,14 @@ void PatchSimplifier::load_wedges() {
   }
 }
 
-void PatchSimplifier::load_quadrics() {
+CREASE_WIDE void PatchSimplifier::load_quadrics() {
   surface_.assign(vertices_.size(), Quadric{});
+  unit_normal_.assign(global_triangle_.size(), Vec3d{});
+  attribute_quadrics_.resize(layer_count());
+  for (std::size_t l = 0; l < layer_count(); ++l) {
+    if (!work_->layers[l].steers) continue;
+    attribute_quadrics_[l].assign(wedges_[l].size(), AttributeQuadric{});
+  }
   for (Index t = 0; t < global_triangle_.size(); ++t) {
     const Index* v = &vertex_of_corner_[3 * t];
     const Vec3d& p0 = vertices_[v[0]].position;
@@ -177,6 +191,7 @@ void PatchSimplifier::load_quadrics() {
     if (!(twice_area > 0)) continue;
     const double area = 0.5 * twice_area;
     const Vec3d n = twice * (1 / twice_area);
+    unit_normal_[t] = n;
 
     Quadric plane;
     plane.add_plane(n, -dot(n, p0), area);
@@ -188,86 +203,83 @@ void PatchSimplifier::load_quadrics() {
     const double inverse = 1 / (twice_area * twice_area);
     const Vec3d toward1 = cross(e2, twice) * inverse, toward2 = cross(twice, e1) * inverse;
     for (std::size_t l = 0; l < layer_count(); ++l) {
-      if (!work_.layers[l].blends) continue;
-      Index w[3];
-      for (Index c = 0; c < 3; ++c) w[c] = wedge_of_corner_[l][3 * t + c];
-      if (!work_.layers[l].steers) {  // merged values are means, weighted by area
-        for (Index corner : w) {
-          AttributeQuadric& mean = wedges_[l][corner].quadric;
-          mean.own.weight += area;
-          for (int j = 0; j < work_.layers[l].dimension; ++j) {
-            mean.d[j] += area * wedges_[l][corner].value[j];
-          }
-        }
-        continue;
-      }
+      const WorkLayer& layer = work_->layers[l];
+      const Index* w = &wedge_of_corner_[l][3 * t];
+      for (int c = 0; c < 3; ++c) wedges_[l][w[c]].area += area;
+      if (!layer.steers) continue;
       AttributeQuadric quadric;
       quadric.own.weight = area;
-      for (int j = 0; j < work_.layers[l].dimension; ++j) {
+      for (int j = 0; j < layer.dimension; ++j) {
         const double s0 = wedges_[l][w[0]].value[j];
         const double d1 = wedges_[l][w[1]].value[j] - s0, d2 = wedges_[l][w[2]].value[j] - s0;
         const Vec3d gradient = thin ? Vec3d{} : toward1 * d1 + toward2 * d2;
         const double offset = thin ? s0 + (d1 + d2) / 3 : s0 - dot(gradient, p0);
         quadric.add_linear(j, gradient, offset, area);
       }
-      for (int c = 0; c < 3; ++c) wedges_[l][w[c]].quadric.add(quadric, work_.layers[l].dimension);
+      for (int c = 0; c < 3; ++c) attribute_quadrics_[l][w[c]].add(quadric, layer.dimension);
     }
   }
 }
 
 void PatchSimplifier::load_edges() {
   line_of_vertex_.assign(vertices_.size(), kNone);
-  struct Side {
-    Index other, triangle;
-  };
-  std::vector<Side> sides;
+  line_.clear();
+  pairs_.clear();
+  several_wedges_.assign(vertices_.size(), 0);
+  for (std::size_t l = 0; l < layer_count(); ++l) {
+    for (Index v = 0; v < vertices_.size(); ++v) several_wedges_[v] |= wedges_of(l, v).count > 1;
+  }
+  slot_.resize(vertices_.size());
   for (Index v = 0; v < vertices_.size(); ++v) {
-    sides.clear();
+    ++mark_now_;
+    edges_.clear();
     for (Index t : triangles_of(v)) {
       for (Index c = 0; c < 3; ++c) {
         const Index w = vertex_of_corner_[3 * t + c];
-        if (w > v) sides.push_back({w, t});
+        if (w <= v) continue;
+        if (mark_[w] != mark_now_) {
+          mark_[w] = mark_now_;
+          slot_[w] = static_cast<Index>(edges_.size());
+          edges_.push_back({w, {t, t}, 0});
+        }
+        Edge& edge = edges_[slot_[w]];
+        edge.triangle[edge.triangle_count++ > 0] = t;
       }
     }
-    // A dozen entries, nearly always: insertion beats a general sort. Triangles come in order.
-    for (std::size_t i = 1; i < sides.size(); ++i) {
-      const Side side = sides[i];
-      std::size_t at = i;
-      for (; at > 0 && sides[at - 1].other > side.other; --at) sides[at] = sides[at - 1];
-      sides[at] = side;
-    }
-    for (std::size_t i = 0, next = 0; i < sides.size(); i = next) {
-      next = i + 1;
-      while (next < sides.size() && sides[next].other == sides[i].other) ++next;
-      const Index w = sides[i].other;
+    for (const Edge& edge : edges_) {
+      const Index w = edge.other;
       if (vertices_[v].locked && vertices_[w].locked) continue;
       if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
-
-      bool is_line = next - i != 2;
-      if (next - i == 2) {
-        const Index t = sides[i].triangle, u = sides[i + 1].triangle;
-        if (!work_.category_of_triangle.empty()) {
-          is_line = work_.category_of_triangle[global_triangle_[t]] !=
-                    work_.category_of_triangle[global_triangle_[u]];
-        }
-        const Vec3d nt = normal_of(t), nu = normal_of(u);
-        const double bend = dot(nt, nu), scale = length(nt) * length(nu);
-        if (scale > 0 && bend < kFoldCosine * scale) is_line = true;
-        for (std::size_t l = 0; l < layer_count() && !is_line; ++l) {
-          const auto wedge_at = [&](Index triangle, Index vertex) {
-            return wedge_of_corner_[l]
-                                   [3 * triangle + static_cast<Index>(corner_of(triangle, vertex))];
-          };
-          if (wedge_at(t, v) == wedge_at(u, v) && wedge_at(t, w) == wedge_at(u, w)) continue;
-          const bool facets =
-              work_.layers[l].is_normal && (flat_[t] || derived_[t]) && (flat_[u] || derived_[u]);
-          is_line = !facets || bend < kFlatLineCosine * scale;
-        }
+      if (!is_line(v, edge)) continue;
+      for (Index t : triangles_of(v)) {
+        if (corner_of(t, w) >= 0) add_line(v, w, t);
       }
-      if (!is_line) continue;
-      for (std::size_t k = i; k < next; ++k) add_line(v, w, sides[k].triangle);
     }
   }
+}
+
+// Whether an edge is a border, a crease, or where more than two sheets meet.
+bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
+  if (edge.triangle_count != 2) return true;
+  const Index w = edge.other, t = edge.triangle[0], u = edge.triangle[1];
+  if (!work_->category_of_triangle.empty() &&
+      work_->category_of_triangle[global_triangle_[t]] !=
+          work_->category_of_triangle[global_triangle_[u]]) {
+    return true;
+  }
+  const double bend = dot(unit_normal_[t], unit_normal_[u]);
+  if (bend < kFoldCosine) return true;
+  if (!several_wedges_[v] && !several_wedges_[w]) return false;
+  for (std::size_t l = 0; l < layer_count(); ++l) {
+    const auto wedge_at = [&](Index triangle, Index vertex) {
+      return wedge_of_corner_[l][3 * triangle + static_cast<Index>(corner_of(triangle, vertex))];
+    };
+    if (wedge_at(t, v) == wedge_at(u, v) && wedge_at(t, w) == wedge_at(u, w)) continue;
+    const bool facets =
+        work_->layers[l].is_normal && (flat_[t] || derived_[t]) && (flat_[u] || derived_[u]);
+    if (!facets || bend < kFlatLineCosine) return true;
+  }
+  return false;
 }
 
 // The plane through edge a-b at a right angle to the triangle (Garland 1999, boundary constraints).

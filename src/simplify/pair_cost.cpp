@@ -30,7 +30,7 @@ Vec3d rounded(const Vec3d& x) {
 }  // namespace
 
 double PatchSimplifier::layer_scale(std::size_t layer) const {
-  const double unit = work_.layers[layer].length_per_unit;
+  const double unit = work_->layers[layer].length_per_unit;
   return unit * unit;
 }
 
@@ -126,41 +126,45 @@ void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
   }
 }
 
-void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
+CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
   for (std::size_t l = 0; l < layer_count(); ++l) {
-    const WorkLayer& layer = work_.layers[l];
+    const WorkLayer& layer = work_->layers[l];
     if (!layer.steers) continue;
     const double scale = layer_scale(l);
     const std::vector<Wedge>& wedges = wedges_[l];
+    const std::vector<AttributeQuadric>& quadrics = attribute_quadrics_[l];
     const Slice wa = wedges_of(l, a), wb = wedges_of(l, b);
     if (wa.count == 1 && wb.count == 1) {
+      // The ordinary case: inside a smooth surface, or on a flat one.
       const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
-      if ((!x.pinned && !y.pinned) || x.id == y.id) {
-        // The ordinary case: inside a smooth surface, or on a flat one.
-        if (x.pinned || y.pinned) {
-          x.quadric.add_fixed(sum, layer.dimension, x.value, scale);
-          y.quadric.add_fixed(sum, layer.dimension, x.value, scale);
-        } else if (layer.dimension == 3) {
-          AttributeQuadric::add_reduced_pair<3>(x.quadric, y.quadric, sum, scale);
-        } else if (layer.dimension == 2) {
-          AttributeQuadric::add_reduced_pair<2>(x.quadric, y.quadric, sum, scale);
-        } else {
-          AttributeQuadric both = x.quadric;
-          both.add(y.quadric, layer.dimension);
-          both.add_reduced(sum, layer.dimension, scale);
-        }
+      if (!x.pinned && !y.pinned) {
+        AttributeQuadric::add_reduced_pair(quadrics[wa.first], quadrics[wb.first], layer.dimension,
+                                           sum, scale);
+        continue;
+      }
+      if (x.id == y.id) {
+        quadrics[wa.first].add_fixed(sum, layer.dimension, x.value, scale);
+        quadrics[wb.first].add_fixed(sum, layer.dimension, x.value, scale);
         continue;
       }
     }
     join_wedges(l, a, b, joined_);
     for (const Joined& joined : joined_) {
-      AttributeQuadric all;
-      for (Index k = 0; k < joined.member_count; ++k) {
-        all.add(wedges[members_[joined.first_member + k]].quadric, layer.dimension);
-      }
+      const Index* members = &members_[joined.first_member];
       if (joined.fixed != kNone) {
-        all.add_fixed(sum, layer.dimension, wedges[joined.fixed].value, scale);
+        for (Index k = 0; k < joined.member_count; ++k) {
+          quadrics[members[k]].add_fixed(sum, layer.dimension, wedges[joined.fixed].value, scale);
+        }
+      } else if (joined.member_count == 1) {
+        quadrics[members[0]].add_reduced(sum, layer.dimension, scale);
+      } else if (joined.member_count == 2) {
+        AttributeQuadric::add_reduced_pair(quadrics[members[0]], quadrics[members[1]],
+                                           layer.dimension, sum, scale);
       } else {
+        AttributeQuadric all = quadrics[members[0]];
+        for (Index k = 1; k < joined.member_count; ++k) {
+          all.add(quadrics[members[k]], layer.dimension);
+        }
         all.add_reduced(sum, layer.dimension, scale);
       }
     }
@@ -170,22 +174,22 @@ void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
 // With Placement::Endpoint the attributes are inherited from the end that stays, where it has one.
 void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum) {
   for (std::size_t l = 0; l < layer_count(); ++l) {
-    const WorkLayer& layer = work_.layers[l];
+    const WorkLayer& layer = work_->layers[l];
     if (!layer.steers) continue;
-    const std::vector<Wedge>& wedges = wedges_[l];
     join_wedges(l, kept, removed, joined_);
     for (const Joined& joined : joined_) {
-      AttributeQuadric all;
+      const Index* members = &members_[joined.first_member];
+      const Index inherited = joined.fixed != kNone ? joined.fixed : members[0];
       for (Index k = 0; k < joined.member_count; ++k) {
-        all.add(wedges[members_[joined.first_member + k]].quadric, layer.dimension);
+        attribute_quadrics_[l][members[k]].add_fixed(sum, layer.dimension,
+                                                     wedges_[l][inherited].value, layer_scale(l));
       }
-      const Index inherited = joined.fixed != kNone ? joined.fixed : members_[joined.first_member];
-      all.add_fixed(sum, layer.dimension, wedges[inherited].value, layer_scale(l));
     }
   }
 }
 
-PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, Quadric* cost_if_kept) {
+CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
+                                                           Quadric* cost_if_kept) {
   const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
   const Vec3d along = pb - pa;
   const double length2 = dot(along, along);
@@ -193,9 +197,7 @@ PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, Quadric* cost_i
   sum.add(surface_[b]);
   for (Index v : {a, b}) {
     if (line_of_vertex_[v] != kNone) {
-      const double area = sum.weight;
-      sum.add(line_[line_of_vertex_[v]], steering_.line_weight);
-      sum.weight = area;
+      sum.add_scaled(line_[line_of_vertex_[v]], steering_.line_weight);
     }
   }
   const double tie = kLengthShare * length2 * sum.weight;

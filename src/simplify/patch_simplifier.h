@@ -1,7 +1,8 @@
 // One patch of one band: pair contractions in the order of their cost until none costs less than
 // the band's limit.
 //
-//   PatchSimplifier patch(work, triangles, patch_id, steering);
+//   PatchSimplifier patch;  // one a thread: it keeps its memory from patch to patch
+//   patch.start(work, triangles, patch_id, steering);
 //   PatchResult result = patch.run();
 //
 // Inside, everything is local and small enough for the second-level cache: 16,000 triangles take
@@ -31,13 +32,13 @@ class PatchSimplifier {
  public:
   using Index = std::uint32_t;
 
-  PatchSimplifier(WorkMesh& work, std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
-                  const Steering& steering, std::vector<std::uint32_t>& local_of_vertex);
+  void start(WorkMesh& work, std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
+             const Steering& steering);
 
   // The costs of all pairs, without contracting any: for choosing the first band's limit.
   std::vector<double> initial_costs();
 
-  // Once.
+  // Once after each start().
   PatchResult run();
 
   // Writes triangles, positions and errors back. New attribute values keep their local numbers (at
@@ -47,11 +48,10 @@ class PatchSimplifier {
  private:
   // A wedge of one layer at one vertex.
   struct Wedge {
-    AttributeQuadric quadric;
-    double value[kMaxDimension];
-    Index id;  // attribute, or kLocalValue + local new value
-    bool
-        pinned;  // some triangle has this attribute at all three corners: it never changes (DB03 b)
+    double value[kMaxDimension] = {};
+    double area = 0;      // of its triangles
+    Index id = kNone;     // attribute, or kLocalValue + local new value
+    bool pinned = false;  // a triangle has it at all three corners: it never changes (DB03 b)
   };
   struct Slice {
     Index first = 0, count = 0;
@@ -88,12 +88,18 @@ class PatchSimplifier {
     Index fixed = kNone;                       // the member whose value is kept, or kNone: solve
   };
 
-  // load.cpp
-  void load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
-            std::vector<std::uint32_t>& local_of_vertex);
+  struct Edge {
+    Index other;
+    Index triangle[2];
+    Index triangle_count;
+  };
+
+  // load_patch.cpp
+  void load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id);
   void load_wedges();
   void load_quadrics();
   void load_edges();
+  bool is_line(Index v, const Edge& edge) const;
   void add_line(Index a, Index b, Index triangle);
 
   // virtual_pairs.cpp
@@ -122,10 +128,12 @@ class PatchSimplifier {
   void contract_layer(std::size_t layer, Index kept, Index removed, const Vec3d& target,
                       LevelError& error);
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
-                     const Vec3d& target, const AttributeQuadric& quadric, double* value) const;
+                     const Vec3d& target, double* value);
   void hand_over_represented(Index t, Index kept);
   void derive_where_better(Index kept);
   void push(const Entry& entry);
+  bool pop(Entry& entry);
+  float next_cost() const;
   Index survivor(Index v);
   void hold(const Entry& entry, double cost, double cost_with_ring);
   void release_ring(Index v);
@@ -153,10 +161,11 @@ class PatchSimplifier {
         .subspan(vertices_[v].triangles.first, vertices_[v].triangles.count);
   }
   Slice& wedges_of(std::size_t layer, Index v) { return wedge_slices_[layer][v]; }
-  std::size_t layer_count() const { return work_.layers.size(); }
+  std::size_t layer_count() const { return work_->layers.size(); }
 
-  WorkMesh& work_;
-  const Steering steering_;
+  WorkMesh* work_ = nullptr;
+  Steering steering_;
+  std::vector<Index> local_of_vertex_;  // all kNone between patches
   Vec3d center_;
   Vec3i center_grid_;
 
@@ -174,12 +183,15 @@ class PatchSimplifier {
   std::vector<Vec3d> represented_;
   std::size_t live_triangles_ = 0;
 
-  std::vector<std::vector<Wedge>> wedges_;        // per layer, slices by vertex
-  std::vector<std::vector<Slice>> wedge_slices_;  // per layer and vertex
+  std::vector<std::vector<Wedge>> wedges_;                         // per layer, slices by vertex
+  std::vector<std::vector<AttributeQuadric>> attribute_quadrics_;  // by wedge; of layers that steer
+  std::vector<std::vector<Slice>> wedge_slices_;                   // per layer and vertex
   std::vector<std::vector<Index>> wedge_of_corner_;
 
   std::vector<std::pair<Index, Index>> pairs_;  // edges, then virtual pairs
-  std::vector<Entry> heap_;
+  std::vector<Entry> order_;                    // the pairs of the start, cheapest first
+  std::size_t next_in_order_ = 0;
+  std::vector<Entry> heap_;  // those that were looked at again
   double last_key_ = 0;
 
   PatchResult result_;
@@ -196,6 +208,12 @@ class PatchSimplifier {
   std::vector<Held> held_;
   std::vector<Index> held_of_vertex_;  // head of a list in held_, or kNone
 
+  // Scratch of load_edges().
+  std::vector<Vec3d> unit_normal_;
+  std::vector<char> several_wedges_;
+  std::vector<Edge> edges_;
+  std::vector<Index> slot_;
+
   // Scratch of one contraction.
   std::vector<Joined> joined_;
   std::vector<Index> members_;
@@ -204,7 +222,8 @@ class PatchSimplifier {
   std::vector<Index> ring_corners_;  // of the surviving triangles: kept's corners, removed's
   std::size_t ring_kept_ = 0;        // so many are kept's
   std::vector<char> used_;
-  std::vector<Wedge> results_;
+  std::vector<Wedge> results_;  // of one layer
+  std::vector<AttributeQuadric> result_quadrics_;
   std::vector<Index> mark_;
   Index mark_now_ = 0;
 };

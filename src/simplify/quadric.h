@@ -3,85 +3,80 @@
 //
 // Positions are in grid units relative to the patch's centre, so that doubles keep a plane exact to
 // a fraction of a grid unit. `weight` is an area (surface, attributes) or a squared length (lines).
+//
+// Everything is in rows of four, which the compiler makes SIMD instructions of: no products are
+// fused, so the result is the same to the bit on every processor.
 #pragma once
 
 #include "crease/vec.h"
 
 #include <algorithm>
 
+// Compiled twice, the wider one taken where the processor has it. Sanitizers cannot start with the
+// indirect functions that this needs.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define CREASE_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define CREASE_WIDE
+#endif
+
 namespace crease::simplification {
 
+// (x, y, z, 1): a point; (gradient, offset): a linear function. Aligned as operator new aligns.
+using Row = double __attribute__((vector_size(32), aligned(16)));
+
+inline double sum_of(const Row& r) {
+  return (r[0] + r[2]) + (r[1] + r[3]);
+}
+
 struct Quadric {
-  // x^T A x + 2 b x + c, A symmetric.
-  double a00 = 0, a01 = 0, a02 = 0, a11 = 0, a12 = 0, a22 = 0;
-  double b0 = 0, b1 = 0, b2 = 0;
+  // The symmetric matrix of x^T A x + 2 b x + c by rows: (A | b) and below it c.
+  Row row[3] = {};
   double c = 0;
   double weight = 0;
 
-  // w * (n.x + d)^2; n need not be a unit vector.
-  void add_plane(const Vec3d& n, double d, double w) {
-    a00 += w * n.x * n.x;
-    a01 += w * n.x * n.y;
-    a02 += w * n.x * n.z;
-    a11 += w * n.y * n.y;
-    a12 += w * n.y * n.z;
-    a22 += w * n.z * n.z;
-    b0 += w * n.x * d;
-    b1 += w * n.y * d;
-    b2 += w * n.z * d;
-    c += w * d * d;
+  // w * |f(x)|^2 for a linear function f.
+  void add_square(const Row& f, double w) {
+    const Row wf = f * w;
+    row[0] += wf[0] * f;
+    row[1] += wf[1] * f;
+    row[2] += wf[2] * f;
+    c += wf[3] * f[3];
   }
 
+  // w * (n.x + d)^2; n need not be a unit vector.
+  void add_plane(const Vec3d& n, double d, double w) { add_square(Row{n.x, n.y, n.z, d}, w); }
+
   void add(const Quadric& o) {
-    a00 += o.a00;
-    a01 += o.a01;
-    a02 += o.a02;
-    a11 += o.a11;
-    a12 += o.a12;
-    a22 += o.a22;
-    b0 += o.b0;
-    b1 += o.b1;
-    b2 += o.b2;
+    for (int i = 0; i < 3; ++i) row[i] += o.row[i];
     c += o.c;
     weight += o.weight;
   }
 
-  void add(const Quadric& o, double scale) {
-    a00 += scale * o.a00;
-    a01 += scale * o.a01;
-    a02 += scale * o.a02;
-    a11 += scale * o.a11;
-    a12 += scale * o.a12;
-    a22 += scale * o.a22;
-    b0 += scale * o.b0;
-    b1 += scale * o.b1;
-    b2 += scale * o.b2;
+  // All but the weight.
+  void add_scaled(const Quadric& o, double scale) {
+    for (int i = 0; i < 3; ++i) row[i] += scale * o.row[i];
     c += scale * o.c;
-    weight += scale * o.weight;
   }
 
   double at(const Vec3d& x) const {
-    const double ax = a00 * x.x + a01 * x.y + a02 * x.z + 2 * b0;
-    const double ay = a01 * x.x + a11 * x.y + a12 * x.z + 2 * b1;
-    const double az = a02 * x.x + a12 * x.y + a22 * x.z + 2 * b2;
-    return std::max(0.0, x.x * ax + x.y * ay + x.z * az + c);
+    const Row t = x.x * row[0] + x.y * row[1] + x.z * row[2];
+    return std::max(0.0, sum_of(t * Row{x.x, x.y, x.z, 2}) + c);
   }
 
-  double trace() const { return a00 + a11 + a22; }
-
-  // Half of the gradient at x.
-  Vec3d slope(const Vec3d& x) const {
-    return {a00 * x.x + a01 * x.y + a02 * x.z + b0, a01 * x.x + a11 * x.y + a12 * x.z + b1,
-            a02 * x.x + a12 * x.y + a22 * x.z + b2};
-  }
+  double trace() const { return row[0][0] + row[1][1] + row[2][2]; }
 
   // The minimum, pulled towards `near` where the quadric says little: on a plane it is singular,
   // and an unbounded optimum flies away (DESIGN 10). `pull` is relative to the trace.
   Vec3d minimum(const Vec3d& near, double pull) const {
     const double mu = pull * trace();
     if (!(mu > 0)) return near;
-    const double m00 = a00 + mu, m11 = a11 + mu, m22 = a22 + mu;
-    const Vec3d r = slope(near);
+    // Half of the gradient at `near`.
+    const Row t = near.x * row[0] + near.y * row[1] + near.z * row[2];
+    const Vec3d r{t[0] + row[0][3], t[1] + row[1][3], t[2] + row[2][3]};
+    const double a01 = row[0][1], a02 = row[0][2], a12 = row[1][2];
+    const double m00 = row[0][0] + mu, m11 = row[1][1] + mu, m22 = row[2][2] + mu;
     const double c00 = m11 * m22 - a12 * a12;
     const double c01 = a02 * a12 - a01 * m22;
     const double c02 = a01 * a12 - a02 * m11;
@@ -99,93 +94,63 @@ struct Quadric {
 
 inline constexpr int kMaxDimension = 4;  // of an attribute layer
 
-// Over a wedge's triangles: sum of w * |g x + d - s|^2, g and d the attribute's gradient and offset
-// on each triangle, s the value that the wedge will carry. `own` is the part without s.
+// Over a wedge's triangles: sum of w * |f(x) - s|^2, f the attribute on each triangle as a linear
+// function and s the value that the wedge will carry. `own` is the part without s.
 struct AttributeQuadric {
-  Quadric own;                      // own.weight: the area
-  double g[kMaxDimension][3] = {};  // weighted sums of gradients
-  double d[kMaxDimension] = {};     // and of offsets
+  Quadric own;                     // own.weight: the area
+  Row linear[kMaxDimension] = {};  // weighted sums of the functions, by component
 
   void add(const AttributeQuadric& o, int dimension) {
     own.add(o.own);
-    for (int j = 0; j < dimension; ++j) {
-      g[j][0] += o.g[j][0];
-      g[j][1] += o.g[j][1];
-      g[j][2] += o.g[j][2];
-      d[j] += o.d[j];
-    }
+    for (int j = 0; j < dimension; ++j) linear[j] += o.linear[j];
   }
 
   void add_linear(int j, const Vec3d& gradient, double offset, double w) {
-    own.add_plane(gradient, offset, w);
-    g[j][0] += w * gradient.x;
-    g[j][1] += w * gradient.y;
-    g[j][2] += w * gradient.z;
-    d[j] += w * offset;
+    const Row f{gradient.x, gradient.y, gradient.z, offset};
+    own.add_square(f, w);
+    linear[j] += w * f;
   }
 
   // weight * (the value that is best at x).
   double weighted_value(int j, const Vec3d& x) const {
-    return g[j][0] * x.x + g[j][1] * x.y + g[j][2] * x.z + d[j];
+    return sum_of(linear[j] * Row{x.x, x.y, x.z, 1});
   }
 
   // Adds scale * (error with the best value) to `sum`, as a quadric in x alone.
   void add_reduced(Quadric& sum, int dimension, double scale) const {
     if (!(own.weight > 0)) return;
-    const double area = sum.weight;
-    sum.add(own, scale);
-    sum.weight = area;
-    const double s = -scale / own.weight;
-    for (int j = 0; j < dimension; ++j) sum.add_plane({g[j][0], g[j][1], g[j][2]}, d[j], s);
+    sum.add_scaled(own, scale);
+    for (int j = 0; j < dimension; ++j) sum.add_square(linear[j], -scale / own.weight);
   }
 
   // Adds scale * (error with the value `value`) to `sum`, as a quadric in x alone.
   void add_fixed(Quadric& sum, int dimension, const double* value, double scale) const {
-    const double area = sum.weight;
-    sum.add(own, scale);
-    sum.weight = area;
+    sum.add_scaled(own, scale);
     for (int j = 0; j < dimension; ++j) {
-      const double v = value[j];
-      sum.b0 -= scale * v * g[j][0];
-      sum.b1 -= scale * v * g[j][1];
-      sum.b2 -= scale * v * g[j][2];
-      sum.c += scale * v * (own.weight * v - 2 * d[j]);
+      const double v = scale * value[j];
+      for (int i = 0; i < 3; ++i) sum.row[i][3] -= v * linear[j][i];
+      sum.c += v * (own.weight * value[j] - 2 * linear[j][3]);
     }
   }
 
   // add_reduced() of x and y joined, without making the joined quadric: the inner loop of the
   // simplifier inside a smooth surface.
-  template <int kDimension>
-  static void add_reduced_pair(const AttributeQuadric& x, const AttributeQuadric& y, Quadric& sum,
-                               double scale) {
+  static void add_reduced_pair(const AttributeQuadric& x, const AttributeQuadric& y, int dimension,
+                               Quadric& sum, double scale) {
     const double area = x.own.weight + y.own.weight;
     if (!(area > 0)) return;
-    const double s = scale / area;
-    double a00 = 0, a01 = 0, a02 = 0, a11 = 0, a12 = 0, a22 = 0, b0 = 0, b1 = 0, b2 = 0, c = 0;
-    for (int j = 0; j < kDimension; ++j) {
-      const double g0 = x.g[j][0] + y.g[j][0], g1 = x.g[j][1] + y.g[j][1],
-                   g2 = x.g[j][2] + y.g[j][2], d0 = x.d[j] + y.d[j];
-      a00 += g0 * g0;
-      a01 += g0 * g1;
-      a02 += g0 * g2;
-      a11 += g1 * g1;
-      a12 += g1 * g2;
-      a22 += g2 * g2;
-      b0 += g0 * d0;
-      b1 += g1 * d0;
-      b2 += g2 * d0;
-      c += d0 * d0;
+    Row row[3];
+    for (int i = 0; i < 3; ++i) row[i] = x.own.row[i] + y.own.row[i];
+    double c = x.own.c + y.own.c;
+    const double inverse = 1 / area;
+    for (int j = 0; j < dimension; ++j) {
+      const Row f = x.linear[j] + y.linear[j];
+      const Row g = f * inverse;
+      for (int i = 0; i < 3; ++i) row[i] -= g[i] * f;
+      c -= g[3] * f[3];
     }
-    sum.a00 += scale * (x.own.a00 + y.own.a00) - s * a00;
-    sum.a01 += scale * (x.own.a01 + y.own.a01) - s * a01;
-    sum.a02 += scale * (x.own.a02 + y.own.a02) - s * a02;
-    sum.a11 += scale * (x.own.a11 + y.own.a11) - s * a11;
-    sum.a12 += scale * (x.own.a12 + y.own.a12) - s * a12;
-    sum.a22 += scale * (x.own.a22 + y.own.a22) - s * a22;
-    sum.b0 += scale * (x.own.b0 + y.own.b0) - s * b0;
-    sum.b1 += scale * (x.own.b1 + y.own.b1) - s * b1;
-    sum.b2 += scale * (x.own.b2 + y.own.b2) - s * b2;
-    sum.c += scale * (x.own.c + y.own.c) - s * c;
+    for (int i = 0; i < 3; ++i) sum.row[i] += scale * row[i];
+    sum.c += scale * c;
   }
 
   // The error at x with the value `value`.

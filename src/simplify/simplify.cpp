@@ -247,14 +247,6 @@ class Simplifier {
   }
 
  private:
-  using Scratch = PerThread<std::vector<std::uint32_t>>;
-
-  std::vector<std::uint32_t>& scratch() {
-    std::vector<std::uint32_t>& local = scratch_.local();
-    if (local.empty()) local.assign(work_.positions.size(), kNone);
-    return local;
-  }
-
   // The limit under which about a third of the pairs lie, from a sample of an eighth of the
   // patches.
   double first_limit(const Steering& steering, double triangle_area) {
@@ -266,8 +258,8 @@ class Simplifier {
     for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
     parallel_for(chosen.size(), [&](std::size_t i) {
       const std::size_t p = chosen[i];
-      PatchSimplifier patch(work_, patches_.of(p), static_cast<std::uint32_t>(p), steering,
-                            scratch());
+      PatchSimplifier& patch = patch_simplifiers_.local();
+      patch.start(work_, patches_.of(p), static_cast<std::uint32_t>(p), steering);
       const std::vector<double> own = patch.initial_costs();
       const std::lock_guard<std::mutex> lock(append);
       costs.insert(costs.end(), own.begin(), own.end());
@@ -287,7 +279,8 @@ class Simplifier {
     parallel_for(patches_.count(), [&](std::size_t p) {
       if (stop) return;
       const std::span<const std::uint32_t> triangles = patches_.of(p);
-      PatchSimplifier patch(work_, triangles, static_cast<std::uint32_t>(p), steering, scratch());
+      PatchSimplifier& patch = patch_simplifiers_.local();
+      patch.start(work_, triangles, static_cast<std::uint32_t>(p), steering);
       results_[p] = patch.run();
       const std::size_t gone = triangles.size() - results_[p].triangles_left;
       const std::size_t now = left.fetch_sub(gone) - gone;
@@ -398,7 +391,7 @@ class Simplifier {
   Patches patches_;
   std::vector<PatchResult> results_;
   std::vector<std::uint32_t> first_new_;  // patch by patch, layer by layer
-  Scratch scratch_;
+  PerThread<PatchSimplifier> patch_simplifiers_;
   int stalled_ = 0;
   std::uint32_t contractions_in_band_ = 0;
   float worst_surface_ = 0;

@@ -36,7 +36,7 @@ void PatchSimplifier::find_virtual_pairs() {
   std::vector<Index> part(n);
   bool several = false;
   for (Index v = 0; v < n; ++v) {
-    part[v] = work_.part_of_vertex[vertices_[v].global];
+    part[v] = work_->part_of_vertex[vertices_[v].global];
     several = several || part[v] != part[0];
   }
   if (!several) return;

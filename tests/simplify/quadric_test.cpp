@@ -48,6 +48,6 @@ TEST_CASE("the best value of a joined wedge is the least squares one") {
   Quadric reduced, pair;
   both.add_reduced(reduced, 1, 1);
   CHECK(reduced.at(x) == doctest::Approx(error));
-  AttributeQuadric::add_reduced_pair<1>(a, b, pair, 1);
+  AttributeQuadric::add_reduced_pair(a, b, 1, pair, 1);
   CHECK(pair.at(x) == doctest::Approx(error));
 }
