@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "measure/closest_point.h"
+#include "parallel/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,8 +85,19 @@ Surface::Surface(const Mesh& mesh, const Frame& frame) : mesh_(mesh), normals_(*
   // would be stored once more.
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh.triangle_count()));
-  rtcSetGeometryUserData(geometry, this);
-  rtcSetGeometryBoundsFunction(geometry, bounds_of_triangle, nullptr);
+  const auto write_bounds = [this](std::size_t triangle, RTCBounds* bounds) {
+    *bounds = bounds_of_triangle(triangle);
+  };
+  const parallel::Fork bounds(write_bounds);  // Embree asks from tasks of its own, in commits only
+  using Bounds = decltype(bounds);
+  rtcSetGeometryUserData(geometry, const_cast<std::remove_const_t<Bounds>*>(&bounds));
+  rtcSetGeometryBoundsFunction(
+      geometry,
+      [](const RTCBoundsFunctionArguments* arguments) {
+        static_cast<Bounds*>(arguments->geometryUserPtr)
+            ->run(arguments->primID, arguments->bounds_o);
+      },
+      nullptr);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_.get(), geometry);
   rtcReleaseGeometry(geometry);
@@ -93,19 +105,19 @@ Surface::Surface(const Mesh& mesh, const Frame& frame) : mesh_(mesh), normals_(*
   CREASE_ASSERT(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE);
 }
 
-void Surface::bounds_of_triangle(const RTCBoundsFunctionArguments* arguments) {
-  const auto& surface = *static_cast<const Surface*>(arguments->geometryUserPtr);
+RTCBounds Surface::bounds_of_triangle(std::size_t triangle) const {
   Box box;
-  for (std::size_t c = 0; c < 3; ++c) box.include(surface.corner(arguments->primID, c));
+  for (std::size_t c = 0; c < 3; ++c) box.include(corner(triangle, c));
   const auto below = [](double x) { return std::nextafter(float(x), -kInfinityf); };
   const auto above = [](double x) { return std::nextafter(float(x), kInfinityf); };
-  RTCBounds& bounds = *arguments->bounds_o;
+  RTCBounds bounds{};
   bounds.lower_x = below(box.low.x);
   bounds.lower_y = below(box.low.y);
   bounds.lower_z = below(box.low.z);
   bounds.upper_x = above(box.high.x);
   bounds.upper_y = above(box.high.y);
   bounds.upper_z = above(box.high.z);
+  return bounds;
 }
 
 Vec3d Surface::normal(std::size_t triangle, const std::array<double, 3>& weights) const {

@@ -62,7 +62,7 @@ class Surface {
  private:
   struct Query;
   void visit(Query& query, std::uint32_t triangle) const;
-  static void bounds_of_triangle(const RTCBoundsFunctionArguments* arguments);
+  RTCBounds bounds_of_triangle(std::size_t triangle) const;
   static bool visit_triangle(RTCPointQueryFunctionArguments* arguments);
 
   struct Release {
