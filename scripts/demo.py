@@ -34,15 +34,9 @@ def say(text):
     print(text, file=sys.stderr, flush=True)
 
 
-def close_up(bounds, size):
-    """Over the roofs near the middle, from low enough to see the walls."""
-    low, high = bounds["low"], bounds["high"]
-    middle = [(a + b) / 2 for a, b in zip(low, high)]
-    extent = [b - a for a, b in zip(low, high)]
-    reach = 0.06 * max(extent[0], extent[1])
-    target = [middle[0], middle[1], low[2] + 0.15 * extent[2]]
-    return {"position": [target[0] - 0.7 * reach, target[1] - 1.1 * reach, target[2] + 0.75 * reach],
-            "target": target, "up": [0, 0, 1], "vertical_fov": 40, "viewport": list(size)}
+# Over the river towards the cathedral, from low enough to see walls, arches and domes.
+CLOSE_UP = {"position": [-105, -300, 78], "target": [4, -70, 12], "up": [0, 0, 1],
+            "vertical_fov": 40, "viewport": [800, 675]}
 
 
 def megabytes(count):
@@ -76,20 +70,20 @@ def main():
         pictures.append((FOLDER / name, time.monotonic() - start))
 
     say("demo: drawing")
-    picture("demo.png", "--control", "--size", "2400x1350", *view(own, info, "close.json", close_up))
+    picture("demo.png", "--control", "--size", "2400x1350", *view(own))
     picture("demo_whole.png", "--size", "2400x460")
     picture("demo_kinds.png", "--size", "2400x675", "--color", "kind", "--wireframe",
-            *view(own, info, "close.json", close_up))
+            *view(own))
 
     print_tables(model, built, info, levels, pictures)
 
 
-def view(own, info, name, camera):
+def view(own):
     """A model of one's own is shown whole: nobody knows where to look."""
     if own is not None:
         return ()
-    path = FOLDER / name
-    path.write_text(json.dumps(camera(info["bounds"], (800, 675))))
+    path = FOLDER / "close.json"
+    path.write_text(json.dumps(CLOSE_UP))
     return ("--view", path)
 
 

@@ -1,5 +1,7 @@
 #include "generate/model_builder.h"
 
+#include "base/assert.h"
+
 #include <cmath>
 #include <utility>
 
@@ -13,14 +15,26 @@ struct CoatColor {
 };
 
 constexpr CoatColor kCoats[] = {
-    {"wall plaster", 0.78f, 0.74f, 0.66f},   {"wall ochre", 0.68f, 0.47f, 0.22f},
-    {"wall brick", 0.42f, 0.13f, 0.07f},     {"wall concrete", 0.45f, 0.45f, 0.46f},
-    {"wall sandstone", 0.60f, 0.48f, 0.33f}, {"roof tile", 0.45f, 0.10f, 0.04f},
-    {"roof slate", 0.08f, 0.09f, 0.12f},     {"roof copper", 0.13f, 0.38f, 0.28f},
-    {"stone", 0.38f, 0.37f, 0.35f},          {"metal", 0.20f, 0.21f, 0.23f},
-    {"glass", 0.05f, 0.10f, 0.16f},          {"wood", 0.24f, 0.12f, 0.05f},
-    {"grass", 0.12f, 0.24f, 0.06f},          {"leaves", 0.06f, 0.18f, 0.04f},
-    {"asphalt", 0.06f, 0.06f, 0.065f},
+    {"wall plaster", 0.78f, 0.74f, 0.66f},
+    {"wall ochre", 0.66f, 0.43f, 0.18f},
+    {"wall cream", 0.82f, 0.70f, 0.47f},
+    {"wall rose", 0.66f, 0.40f, 0.32f},
+    {"wall brick", 0.42f, 0.13f, 0.07f},
+    {"wall concrete", 0.45f, 0.45f, 0.46f},
+    {"wall sandstone", 0.60f, 0.48f, 0.33f},
+    {"roof tile", 0.45f, 0.11f, 0.05f},
+    {"roof brown tile", 0.24f, 0.085f, 0.05f},
+    {"roof slate", 0.08f, 0.09f, 0.12f},
+    {"roof copper", 0.13f, 0.38f, 0.28f},
+    {"stone", 0.38f, 0.37f, 0.35f},
+    {"metal", 0.20f, 0.21f, 0.23f},
+    {"glass", 0.05f, 0.10f, 0.16f},
+    {"wood", 0.24f, 0.12f, 0.05f},
+    {"grass", 0.15f, 0.26f, 0.08f},
+    {"field", 0.28f, 0.31f, 0.10f},
+    {"leaves", 0.06f, 0.18f, 0.04f},
+    {"asphalt", 0.16f, 0.16f, 0.17f},
+    {"water", 0.07f, 0.20f, 0.27f},
 };
 static_assert(std::size(kCoats) == static_cast<std::size_t>(Coat::Count));
 
@@ -115,7 +129,7 @@ void ModelBuilder::patch(int columns, int rows, AttributeId n, const PointOf& po
   }
 }
 
-std::vector<AttributeId> ModelBuilder::smooth_patch(int columns, int rows, const PointOf& point,
+ModelBuilder::RimNormals ModelBuilder::smooth_patch(int columns, int rows, const PointOf& point,
                                                     const PointOf& normal_of) {
   const auto index = [&](int i, int j) { return std::size_t(j * (columns + 1) + i); };
   std::vector<VertexId> v;
@@ -138,7 +152,45 @@ std::vector<AttributeId> ModelBuilder::smooth_patch(int columns, int rows, const
       triangle({v[a], v[c], v[d]}, {n[a], n[c], n[d]});
     }
   }
-  return {n.end() - (columns + 1), n.end()};
+  return {{n.begin(), n.begin() + columns + 1}, {n.end() - (columns + 1), n.end()}};
+}
+
+void ModelBuilder::polygon(std::span<const Vec3d> loop, const Vec3d& facing) {
+  const AttributeId n = normal(facing);
+  std::vector<Vec3d> rest(loop.begin(), loop.end());
+  // Twice the area, seen from outside. Coordinates are multiples of 5 mm: what is not above 1e-6 is
+  // a line.
+  const auto turn = [&](const Vec3d& p, const Vec3d& q, const Vec3d& r) {
+    return dot(cross(q - p, r - p), facing);
+  };
+  const auto is_ear = [&](std::size_t i) {
+    const std::size_t count = rest.size();
+    const Vec3d &p = rest[(i + count - 1) % count], &q = rest[i], &r = rest[(i + 1) % count];
+    if (turn(p, q, r) <= 1e-6) return false;
+    for (const Vec3d& other : rest) {
+      if (other == p || other == q || other == r) continue;
+      if (turn(p, q, other) > -1e-6 && turn(q, r, other) > -1e-6 && turn(r, p, other) > -1e-6) {
+        return false;
+      }
+    }
+    return true;
+  };
+  while (rest.size() >= 3) {
+    const std::size_t count = rest.size();
+    std::size_t best = count;
+    double best_length = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double diagonal = length(rest[(i + 1) % count] - rest[(i + count - 1) % count]);
+      if ((best < count && diagonal >= best_length) || !is_ear(i)) continue;
+      best = i;
+      best_length = diagonal;
+    }
+    CREASE_ASSERT(best < count);
+    triangle({vertex(rest[(best + count - 1) % count]), vertex(rest[best]),
+              vertex(rest[(best + 1) % count])},
+             {n, n, n});
+    rest.erase(rest.begin() + std::ptrdiff_t(best));
+  }
 }
 
 void ModelBuilder::fan(std::span<const Vec3d> loop, const Vec3d& centre, const Vec3d& facing) {
@@ -148,12 +200,6 @@ void ModelBuilder::fan(std::span<const Vec3d> loop, const Vec3d& centre, const V
     const VertexId v = vertex(loop[i]), w = vertex(loop[(i + 1) % loop.size()]);
     triangle({middle, v, w}, {n, n, n});
   }
-}
-
-void ModelBuilder::fan(std::span<const Vec3d> loop, const Vec3d& facing) {
-  Vec3d sum;
-  for (const Vec3d& p : loop) sum += p * (1.0 / double(loop.size()));
-  fan(loop, on_grid(sum), facing);
 }
 
 ModelBuilder::Mark ModelBuilder::mark() const {

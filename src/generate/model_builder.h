@@ -26,10 +26,13 @@ namespace crease {
 enum class Coat : std::uint8_t {  // the material of a surface
   Plaster,
   Ochre,
+  Cream,
+  Rose,
   Brick,
   Concrete,
   Sandstone,
   RedTile,
+  BrownTile,
   Slate,
   Copper,
   Stone,
@@ -37,8 +40,10 @@ enum class Coat : std::uint8_t {  // the material of a surface
   Glass,
   Wood,
   Grass,
+  Field,
   Leaves,
   Asphalt,
+  Water,
   Count,
 };
 
@@ -90,12 +95,15 @@ class ModelBuilder {
 
   // columns x rows quads, i to the right and j upwards as seen from outside.
   void patch(int columns, int rows, AttributeId n, const PointOf& point);
-  // Returns the normals of the top row.
-  std::vector<AttributeId> smooth_patch(int columns, int rows, const PointOf& point,
-                                        const PointOf& normal);
-  // A convex polygon, or one that is seen whole from `centre`, counter-clockwise from outside.
+  struct RimNormals {
+    std::vector<AttributeId> low, high;  // of the first and the last row
+  };
+  RimNormals smooth_patch(int columns, int rows, const PointOf& point, const PointOf& normal);
+  // A polygon in a plane without holes, counter-clockwise from where `facing` points, cut along its
+  // shortest diagonals. Time O(corners cubed).
+  void polygon(std::span<const Vec3d> loop, const Vec3d& facing);
+  // Triangles around `centre`, which sees all of the loop.
   void fan(std::span<const Vec3d> loop, const Vec3d& centre, const Vec3d& facing);
-  void fan(std::span<const Vec3d> loop, const Vec3d& facing);  // around the middle
 
   std::size_t triangle_count() const { return mesh_.triangle_count(); }
   // Everything since then is taken back.

@@ -11,34 +11,24 @@ constexpr Vec3d kUp{0, 0, 1};
 
 }  // namespace
 
-void add_box(ModelBuilder& b, const Vec3d& low, const Vec3d& high, double cell) {
+void add_box(ModelBuilder& b, const Vec3d& low, const Vec3d& high) {
   b.begin_body();
-  int cells[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    cells[axis] = cell > 0 ? std::max(1, int((high[axis] - low[axis]) / cell + 0.5)) : 1;
-  }
-  // All sides take their points from one lattice, so that they round alike.
-  const auto lattice = [&](const int(&at)[3]) {
-    Vec3d p;
-    for (int axis = 0; axis < 3; ++axis) {
-      p[axis] = on_grid(low[axis] + (high[axis] - low[axis]) * at[axis] / cells[axis]);
-    }
-    return p;
-  };
   for (int axis = 0; axis < 3; ++axis) {
     for (int end = 0; end < 2; ++end) {
       // u x v is the axis: seen from its far end, u runs right and v up; from the near end, v and
       // u.
       const int u = (axis + (end == 1 ? 1 : 2)) % 3, v = (axis + (end == 1 ? 2 : 1)) % 3;
+      const auto at = [&](bool right, bool up) {
+        Vec3d p = low;
+        p[axis] = end == 1 ? high[axis] : low[axis];
+        if (right) p[u] = high[u];
+        if (up) p[v] = high[v];
+        return on_grid(p);
+      };
       Vec3d outwards;
       outwards[axis] = end == 1 ? 1 : -1;
-      b.patch(cells[u], cells[v], b.normal(outwards), [&](int i, int j) {
-        int at[3];
-        at[axis] = end * cells[axis];
-        at[u] = i;
-        at[v] = j;
-        return lattice(at);
-      });
+      b.quad({at(false, false), at(true, false), at(true, true), at(false, true)},
+             b.normal(outwards));
     }
   }
 }
@@ -53,19 +43,26 @@ LatheStrip straight_strip(double radius0, double z0, double radius1, double z1, 
   return strip;
 }
 
-LatheStrip dome_strip(double radius, double z0, double height, int rows) {
+LatheStrip dome_strip(double radius, double z0, double height, int rows, double lantern) {
   LatheStrip strip;
+  const auto add = [&](const Vec3d& p) {
+    strip.push_back({radius * p.x, z0 + height * p.y, p.x * height, p.y * radius});
+  };
   for (int j = 0; j <= rows; ++j) {
     const Vec3d p = on_circle(j, 4 * rows);
-    strip.push_back({radius * p.x, z0 + height * p.y, p.x * height, p.y * radius});
+    if (lantern == 0 || radius * p.x > 1.2 * lantern) add(p);
   }
+  const double x = lantern / radius;
+  if (lantern > 0) add({x, std::sqrt(1 - x * x), 0});
   return strip;
 }
 
 void add_lathe(ModelBuilder& b, const Vec3d& centre, int segments,
-               const std::vector<LatheStrip>& strips) {
+               const std::vector<LatheStrip>& strips, const std::vector<Coat>& coats) {
   b.begin_body();
-  for (const LatheStrip& strip : strips) {
+  for (std::size_t s = 0; s < strips.size(); ++s) {
+    const LatheStrip& strip = strips[s];
+    if (!coats.empty()) b.coat(coats[s]);
     const auto at = [&](int j) { return strip[std::size_t(j)]; };
     const auto point = [&](int i, int j) {
       const Vec3d p = on_circle(i % segments, segments) * at(j).radius;
@@ -82,15 +79,34 @@ void add_lathe(ModelBuilder& b, const Vec3d& centre, int segments,
       return on_circle(i, segments) * at(j).out + kUp * at(j).up;
     };
     // A tip: the side's normals do not meet there, so each triangle has its own.
-    const bool tip = at(rows).radius == 0 && at(rows).out != 0;
-    const std::vector<AttributeId> rim =
-        b.smooth_patch(segments, tip ? rows - 1 : rows, point,
-                       [&](int i, int j) { return normal(i % segments, j); });
-    if (!tip) continue;
+    const auto is_tip = [&](int j) { return at(j).radius == 0 && at(j).out != 0; };
+    const int first = is_tip(0) ? 1 : 0, last = is_tip(rows) ? rows - 1 : rows;
+    const auto normals_of = [&](int j) {
+      std::vector<AttributeId> normals;
+      for (int i = 0; i < segments; ++i) normals.push_back(b.normal(normal(i, j)));
+      return normals;
+    };
+    ModelBuilder::RimNormals rim;
+    if (first < last) {
+      rim = b.smooth_patch(
+          segments, last - first, [&](int i, int j) { return point(i, j + first); },
+          [&](int i, int j) { return normal(i % segments, j + first); });
+    } else {
+      rim.low = rim.high = normals_of(first);
+    }
+    const auto corner = [&](const std::vector<AttributeId>& n, int i) {
+      return n[std::size_t(i % segments)];
+    };
     for (int i = 0; i < segments; ++i) {
-      b.triangle({b.vertex(point(i, rows - 1)), b.vertex(point(i + 1, rows - 1)),
-                  b.vertex(point(0, rows))},
-                 {rim[std::size_t(i)], rim[std::size_t(i + 1)], b.normal(normal(i + 0.5, rows))});
+      const auto at_rim = [&](int step, int j) { return b.vertex(point(i + step, j)); };
+      if (last < rows) {
+        b.triangle({at_rim(0, last), at_rim(1, last), b.vertex(point(0, rows))},
+                   {corner(rim.high, i), corner(rim.high, i + 1), b.normal(normal(i + 0.5, rows))});
+      }
+      if (first > 0) {
+        b.triangle({at_rim(1, first), at_rim(0, first), b.vertex(point(0, 0))},
+                   {corner(rim.low, i + 1), corner(rim.low, i), b.normal(normal(i + 0.5, 0))});
+      }
     }
   }
 }
@@ -118,76 +134,9 @@ void add_column(ModelBuilder& b, const Vec3d& foot, double radius, double height
   add_lathe(
       b, foot, segments,
       {straight_strip(0, 0, plinth, 0), straight_strip(plinth, 0, plinth, low),
-       straight_strip(plinth, low, radius, low),
-       straight_strip(radius, low, radius * 0.85, high, 2),
+       straight_strip(plinth, low, radius, low), straight_strip(radius, low, radius * 0.85, high),
        straight_strip(radius * 0.85, high, plinth, high),
        straight_strip(plinth, high, plinth, height), straight_strip(plinth, height, 0, height)});
-}
-
-void add_gable_roof(ModelBuilder& b, const GableRoof& roof) {
-  b.begin_body();
-  const double run = on_grid((roof.depth / 2 + roof.overhang) / roof.rows);
-  const double rise = on_grid(roof.rise / roof.rows);
-  const double middle = roof.low.y + roof.depth / 2;
-  const double left = roof.low.x - roof.overhang, right = roof.low.x + roof.width + roof.overhang;
-  const int columns = std::max(2, int((right - left) / 2.5));
-  const auto x = [&](int i) { return on_grid(left + (right - left) * i / columns); };
-  const auto front = [&](double at, int j) {
-    return Vec3d{at, on_grid(middle - run * (roof.rows - j)), roof.low.z + rise * j};
-  };
-  const auto back = [&](double at, int j) {
-    return Vec3d{at, on_grid(middle + run * (roof.rows - j)), roof.low.z + rise * j};
-  };
-  b.coat(roof.roof);
-  b.patch(columns, roof.rows, b.normal({0, -rise, run}),
-          [&](int i, int j) { return front(x(i), j); });
-  b.patch(columns, roof.rows, b.normal({0, rise, run}),
-          [&](int i, int j) { return back(x(columns - i), j); });
-
-  b.coat(roof.gable);
-  std::vector<Vec3d> gable;  // of the right side, counter-clockwise
-  for (int j = 0; j < roof.rows; ++j) gable.push_back(back(right, j));
-  for (int j = roof.rows; j >= 0; --j) gable.push_back(front(right, j));
-  b.fan(gable, {1, 0, 0});
-  std::reverse(gable.begin(), gable.end());
-  for (Vec3d& p : gable) p.x = left;
-  b.fan(gable, {-1, 0, 0});
-
-  b.coat(Coat::Wood);
-  std::vector<Vec3d> below;
-  for (int i = 0; i <= columns; ++i) below.push_back(back(x(i), 0));
-  for (int i = columns; i >= 0; --i) below.push_back(front(x(i), 0));
-  b.fan(below, -kUp);
-}
-
-void add_barrel_roof(ModelBuilder& b, const Vec3d& low, double width, double depth, int segments,
-                     Coat roof, Coat ends) {
-  b.begin_body();
-  const int columns = std::max(2, int(width / 3));
-  const double radius = depth / 2, middle = low.y + radius;
-  const auto point = [&](double x, int j) {
-    const Vec3d p = on_circle(j, 2 * segments) * radius;
-    return Vec3d{x, on_grid(middle - p.x), on_grid(low.z + p.y)};
-  };
-  const auto x = [&](int i) { return on_grid(low.x + width * i / columns); };
-  b.coat(roof);
-  b.smooth_patch(
-      columns, segments, [&](int i, int j) { return point(x(i), j); },
-      [&](int, int j) {
-        const Vec3d p = on_circle(j, 2 * segments);
-        return Vec3d{0, -p.x, p.y};
-      });
-  b.coat(ends);
-  std::vector<Vec3d> end;
-  for (int j = 0; j <= segments; ++j) end.push_back(point(low.x, j));
-  b.fan(end, {-1, 0, 0});
-  std::reverse(end.begin(), end.end());
-  for (Vec3d& p : end) p.x = x(columns);
-  b.fan(end, {1, 0, 0});
-  std::vector<Vec3d> below;
-  for (int i = 0; i <= columns; ++i) below.push_back(point(x(i), segments));
-  for (int i = columns; i >= 0; --i) below.push_back(point(x(i), 0));
-  b.fan(below, -kUp);
 }
 
 //   o---------o    The faces run between the opening's outline and the wall's, point by point;
@@ -214,47 +163,53 @@ void add_arch(ModelBuilder& b, const Arch& arch) {
   }
   inner.push_back({-radius, 0});
   outer.push_back({-half, 0});
-  const double middle = arch.low.x + half;
-  const auto at = [&](const Outline& p, double y) {
-    return Vec3d{on_grid(middle + p.x), arch.low.y + y, on_grid(arch.low.z + p.z)};
-  };
   const std::size_t count = inner.size();
   const double back = arch.thickness;
   const auto on_top = [&](const Outline& p) { return p.z > arch.height - 0.001; };
 
   b.coat(arch.coat);
   const AttributeId front_normal = b.normal({0, -1, 0}), back_normal = b.normal({0, 1, 0});
-  const AttributeId side_normal[3] = {b.normal({1, 0, 0}), b.normal(kUp), b.normal({-1, 0, 0})};
-  const auto outside = [&](const Outline& p, const Outline& q, AttributeId n) {
-    b.quad({at(p, 0), at(p, back), at(q, back), at(q, 0)}, n);
-  };
-  for (std::size_t k = 0; k + 1 < count; ++k) {
-    const Outline &p = outer[k], &q = outer[k + 1], &r = inner[k + 1], &s = inner[k];
-    b.quad({at(s, 0), at(p, 0), at(q, 0), at(r, 0)}, front_normal);
-    b.quad({at(p, back), at(s, back), at(r, back), at(q, back)}, back_normal);
-    const bool left = k >= count / 2;
-    if (on_top(p) == on_top(q)) {
-      outside(p, q, on_top(p) ? side_normal[1] : left ? side_normal[2] : side_normal[0]);
-      continue;
+  const AttributeId right_normal = b.normal({1, 0, 0}), left_normal = b.normal({-1, 0, 0});
+  const AttributeId up = b.normal(kUp), down = b.normal(-kUp);
+  for (int bay = 0; bay < arch.bays; ++bay) {
+    // Distances from the middle are rounded, so that neighbours have the same points between them.
+    const double middle = on_grid(arch.low.x + (bay + 0.5) * arch.width);
+    const auto at = [&](const Outline& p, double y) {
+      return Vec3d{middle + on_grid(p.x), arch.low.y + y, on_grid(arch.low.z + p.z)};
+    };
+    const bool first = bay == 0, last = bay + 1 == arch.bays;
+    const auto outside = [&](const Outline& p, const Outline& q, bool top, bool left) {
+      if (!top && !(left ? first : last)) return;  // within the wall
+      b.quad({at(p, 0), at(p, back), at(q, back), at(q, 0)}, top    ? up
+                                                             : left ? left_normal
+                                                                    : right_normal);
+    };
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+      const Outline &p = outer[k], &q = outer[k + 1], &r = inner[k + 1], &s = inner[k];
+      b.quad({at(s, 0), at(p, 0), at(q, 0), at(r, 0)}, front_normal);
+      b.quad({at(p, back), at(s, back), at(r, back), at(q, back)}, back_normal);
+      if (on_top(p) == on_top(q)) {
+        outside(p, q, on_top(p), k >= count / 2);
+        continue;
+      }
+      const Outline corner{on_top(p) ? -half : half, arch.height};
+      b.quad({at(p, 0), at(corner, 0), at(q, 0), at(q, 0)}, front_normal);
+      b.quad({at(q, back), at(corner, back), at(p, back), at(p, back)}, back_normal);
+      outside(p, corner, on_top(p), false);
+      outside(corner, q, on_top(q), true);
     }
-    const Outline corner{on_top(p) ? -half : half, arch.height};
-    b.quad({at(p, 0), at(corner, 0), at(q, 0), at(q, 0)}, front_normal);
-    b.quad({at(q, back), at(corner, back), at(p, back), at(p, back)}, back_normal);
-    outside(p, corner, on_top(p) ? side_normal[1] : side_normal[0]);
-    outside(corner, q, on_top(q) ? side_normal[1] : side_normal[2]);
-  }
-  b.smooth_patch(
-      int(count) - 1, 1,
-      [&](int i, int j) { return at(inner[count - 1 - std::size_t(i)], j == 0 ? back : 0); },
-      [&](int i, int) {
-        const int k = std::clamp(int(count) - 2 - i, 0, arch.segments);
-        const Vec3d p = on_circle(k, 2 * arch.segments);
-        return Vec3d{-p.x, 0, -p.y};
-      });
-  const AttributeId down = b.normal(-kUp);
-  const Outline feet[2][2] = {{inner[0], outer[0]}, {outer[count - 1], inner[count - 1]}};
-  for (const auto& [from, to] : feet) {
-    b.quad({at(from, back), at(to, back), at(to, 0), at(from, 0)}, down);
+    b.smooth_patch(
+        int(count) - 1, 1,
+        [&](int i, int j) { return at(inner[count - 1 - std::size_t(i)], j == 0 ? back : 0); },
+        [&](int i, int) {
+          const int k = std::clamp(int(count) - 2 - i, 0, arch.segments);
+          const Vec3d p = on_circle(k, 2 * arch.segments);
+          return Vec3d{-p.x, 0, -p.y};
+        });
+    const Outline feet[2][2] = {{inner[0], outer[0]}, {outer[count - 1], inner[count - 1]}};
+    for (const auto& [from, to] : feet) {
+      b.quad({at(from, back), at(to, back), at(to, 0), at(from, 0)}, down);
+    }
   }
 }
 
@@ -302,17 +257,36 @@ void add_spire(ModelBuilder& b, const Vec3d& centre, double radius, double heigh
   b.fan(rim, centre, -kUp);
 }
 
-void add_balcony(ModelBuilder& b, const Vec3d& low, double width, double depth, int posts) {
-  constexpr double kSlab = 0.2, kRail = 0.06, kHeight = 1.0;
-  b.coat(Coat::Stone);
-  add_box(b, low - Vec3d{0, depth, 0}, low + Vec3d{width, 0, kSlab});
-  b.coat(Coat::Metal);
-  const double front = low.y - depth + 0.05, bottom = low.z + kSlab, top = bottom + kHeight;
-  add_box(b, {low.x, front, top}, {low.x + width, front + kRail, top + kRail});
-  for (int i = 0; i < posts; ++i) {
-    const double x = on_grid(low.x + (width - kRail) * i / (posts - 1));
-    add_box(b, {x, front, bottom}, {on_grid(x + kRail), front + kRail, top});
-  }
+//   3--4       7--0    From above; the points end a hand's breadth inside the wall, so that no face
+//   |  5-------6  |    lies on it.
+//   2-------------1
+void add_balcony(ModelBuilder& b, const Vec3d& low, double width, double depth, Coat coat) {
+  constexpr double kInWall = 0.1, kThickness = 0.1, kSlab = 0.2, kHeight = 1.15;
+  b.begin_body();
+  b.coat(coat);
+  const double x[] = {
+      width, width, 0, 0, kThickness, kThickness, width - kThickness, width - kThickness};
+  const double y[] = {
+      kInWall, -depth, -depth, kInWall, kInWall, kThickness - depth, kThickness - depth, kInWall};
+  const auto at = [&](std::size_t i, double z) { return on_grid(low + Vec3d{x[i], y[i], z}); };
+  const double top = kHeight;
+  const AttributeId up = b.normal(kUp), right = b.normal({1, 0, 0}), left = b.normal({-1, 0, 0});
+  const AttributeId front = b.normal({0, -1, 0}), back = b.normal({0, 1, 0});
+  b.quad({at(0, 0), at(1, 0), at(2, 0), at(3, 0)}, b.normal(-kUp));
+  b.quad({at(2, 0), at(1, 0), at(1, top), at(2, top)}, front);
+  b.quad({at(1, 0), at(0, 0), at(0, top), at(1, top)}, right);
+  b.quad({at(3, 0), at(2, 0), at(2, top), at(3, top)}, left);
+  b.quad({at(1, top), at(0, top), at(7, top), at(6, top)}, up);
+  b.quad({at(2, top), at(1, top), at(6, top), at(5, top)}, up);
+  b.quad({at(3, top), at(2, top), at(5, top), at(4, top)}, up);
+  b.quad({at(5, kSlab), at(4, kSlab), at(4, top), at(5, top)}, right);
+  b.quad({at(6, kSlab), at(5, kSlab), at(5, top), at(6, top)}, back);
+  b.quad({at(7, kSlab), at(6, kSlab), at(6, top), at(7, top)}, left);
+  b.quad({at(4, kSlab), at(5, kSlab), at(6, kSlab), at(7, kSlab)}, up);
+  const Vec3d end[] = {at(0, 0),     at(0, top), at(7, top), at(7, kSlab),
+                       at(4, kSlab), at(4, top), at(3, top), at(3, 0)};
+  std::vector<Vec3d> loop(std::rbegin(end), std::rend(end));
+  b.polygon(loop, {0, 1, 0});
 }
 
 // Vertical walls through few points: each is a plane whatever the rounding.
@@ -335,17 +309,18 @@ void add_crenels(ModelBuilder& b, const Vec3d& centre, double outer, double inne
   }
 }
 
+// As few triangles as still look round: there are thousands.
 void add_tree(ModelBuilder& b, const Vec3d& foot, double height, bool conifer) {
   b.coat(Coat::Wood);
-  add_cylinder(b, foot, 0.2, height * 0.4, 6);
+  add_spire(b, foot - kUp * 0.2, 0.25, height * 0.6, 5);
   b.coat(Coat::Leaves);
   const double radius = height * (conifer ? 0.22 : 0.28);
   if (conifer) {
-    add_cone(b, foot + kUp * on_grid(height * 0.25), radius, height * 0.75, 10, 2);
+    add_cone(b, foot + kUp * on_grid(height * 0.2), radius, height * 0.8, 9);
     return;
   }
   LatheStrip crown;
-  constexpr int kRows = 4;
+  constexpr int kRows = 3;
   for (int j = 0; j <= kRows; ++j) {
     const Vec3d p = on_circle(j, 2 * kRows);  // from the bottom pole to the top
     crown.push_back({radius * p.y, radius * 1.1 * (1 - p.x), p.y * 1.1, -p.x});

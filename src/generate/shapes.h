@@ -7,8 +7,7 @@
 
 namespace crease {
 
-// A box of cells no longer than `cell`; 0: one cell a side.
-void add_box(ModelBuilder& b, const Vec3d& low, const Vec3d& high, double cell = 0);
+void add_box(ModelBuilder& b, const Vec3d& low, const Vec3d& high);
 
 // One piece of a lathe's profile: smooth within, hard against its neighbours.
 struct LathePoint {
@@ -19,13 +18,14 @@ using LatheStrip = std::vector<LathePoint>;
 
 // Straight pieces, cut into rows.
 LatheStrip straight_strip(double radius0, double z0, double radius1, double z1, int rows = 1);
-// A quarter of an ellipse, from the rim at z0 to the pole at z0 + height.
-LatheStrip dome_strip(double radius, double z0, double height, int rows);
+// A quarter of an ellipse, from the rim at z0 to the pole at z0 + height, or to where the radius is
+// that of a lantern.
+LatheStrip dome_strip(double radius, double z0, double height, int rows, double lantern = 0);
 
 // Turns the strips, from the bottom up, around the z axis through `centre`. The profile starts and
-// ends on the axis.
+// ends on the axis. Without coats the builder's own is taken; else there is one for each strip.
 void add_lathe(ModelBuilder& b, const Vec3d& centre, int segments,
-               const std::vector<LatheStrip>& strips);
+               const std::vector<LatheStrip>& strips, const std::vector<Coat>& coats = {});
 void add_cylinder(ModelBuilder& b, const Vec3d& centre, double radius, double height, int segments,
                   int rows = 1);
 void add_dome(ModelBuilder& b, const Vec3d& centre, double radius, double height, int segments);
@@ -35,26 +35,12 @@ void add_cone(ModelBuilder& b, const Vec3d& centre, double radius, double height
 void add_spire(ModelBuilder& b, const Vec3d& centre, double radius, double height, int sides);
 void add_column(ModelBuilder& b, const Vec3d& foot, double radius, double height, int segments);
 
-// A roof over width x depth, ridge along x, gables left and right. The run of a row is a multiple
-// of 5 mm, so the depth is rounded to that.
-struct GableRoof {
-  Vec3d low;
-  double width, depth, rise;
-  double overhang = 0.4;
-  int rows = 3;
-  Coat roof = Coat::RedTile, gable = Coat::Plaster;
-};
-void add_gable_roof(ModelBuilder& b, const GableRoof& roof);
-
-// Half a cylinder, lying along x over width x depth.
-void add_barrel_roof(ModelBuilder& b, const Vec3d& low, double width, double depth, int segments,
-                     Coat roof, Coat ends);
-
-// A wall of width x thickness x height, on x, with an arched opening in its middle.
+// A wall of bays x width by thickness by height, on x, with an arched opening in each bay's middle.
 struct Arch {
   Vec3d low;
   double width, thickness, height;
   double opening, spring;  // width of the opening, height where the arch begins
+  int bays = 1;
   int segments = 12;
   Coat coat = Coat::Sandstone;
 };
@@ -63,8 +49,8 @@ void add_arch(ModelBuilder& b, const Arch& arch);
 // Steps that rise along y.
 void add_stairs(ModelBuilder& b, const Vec3d& low, double width, int steps, double tread,
                 double rise);
-// A slab on a wall that faces -y, with posts and a rail.
-void add_balcony(ModelBuilder& b, const Vec3d& low, double width, double depth, int posts);
+// A slab with a parapet on a wall that faces -y; `low` is on the wall.
+void add_balcony(ModelBuilder& b, const Vec3d& low, double width, double depth, Coat coat);
 // A round tower's battlements.
 void add_crenels(ModelBuilder& b, const Vec3d& centre, double outer, double inner, double height,
                  int merlons);
