@@ -12,10 +12,13 @@ namespace crease {
 namespace {
 
 void add_trees(ModelBuilder& b, Random& random, double width, double depth) {
+  // Two do not grow in one place, nor to one height.
   const int count = random.between(1, 2);
+  const double room = width / count - 1;
   for (int i = 0; i < count; ++i) {
-    const double x = random.metres(0, width), y = random.metres(0, depth);
-    const double height = random.metres(4, 9);
+    const double x = on_grid(i * (room + 1)) + random.metres(0, room);
+    const double y = random.metres(0, depth);
+    const double height = i == 0 ? random.metres(4, 6.4) : random.metres(6.6, 9);
     add_tree(b, {x, y, 0}, height, random.chance(30));
   }
 }

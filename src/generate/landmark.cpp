@@ -205,9 +205,10 @@ void add_landmark(ModelBuilder& b, Random& random) {
     });
   }
   for (int i = 0; i < 40; ++i) {
-    const double x = random.metres(-58, 56), y = random.metres(26, 44);
+    // Each in a strip of its own, so that no two grow in one place.
+    const double x = -58 + 5.8 * (i / 2) + random.metres(0, 1.6), y = random.metres(26, 44);
     const double height = random.metres(5, 9);
-    add_tree(b, {x, i % 2 == 0 ? y : -y, 0}, height, random.chance(30));
+    add_tree(b, {on_grid(x), i % 2 == 0 ? y : -y, 0}, height, random.chance(30));
   }
 }
 
