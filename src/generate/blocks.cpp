@@ -13,7 +13,7 @@ namespace {
 
 void add_trees(ModelBuilder& b, Random& random, double width, double depth) {
   // Two do not grow in one place, nor to one height.
-  const int count = random.between(1, 2);
+  const int count = random.chance(30) ? 2 : 1;
   const double room = width / count - 1;
   for (int i = 0; i < count; ++i) {
     const double x = on_grid(i * (room + 1)) + random.metres(0, room);
@@ -64,9 +64,9 @@ struct RowKind {
   int percent;
   double least, most, depth;
 };
-constexpr RowKind kOldRow[] = {{kTownHouse, 66, 6.4, 9, 10.6},
-                               {kApartments, 23, 11, 17, 10.6},
-                               {kArcadeHouse, 8, 11, 16, 11.6},
+constexpr RowKind kOldRow[] = {{kTownHouse, 70, 6.4, 9, 10.6},
+                               {kApartments, 20, 11, 17, 10.6},
+                               {kArcadeHouse, 7, 11, 15, 11.6},
                                {kRound, 3, 11, 12, 11}};
 constexpr RowKind kTerrace[] = {{kTownHouse, 90, 6.4, 8.4, 10}, {kArcadeHouse, 10, 11, 14, 12}};
 

@@ -265,7 +265,7 @@ void add_office_tower(ModelBuilder& b, Random& random, double width, double dept
   const Coat wall = random.chance(60) ? Coat::Concrete : Coat::Sandstone;
   const int floors = random.between(7, 16);
   WallStyle style{.floors = floors, .floor_height = 3.6, .sill = 0.7, .coat = wall};
-  int bays = std::max(2, int(width / 4.5)), side_bays = std::max(2, int(depth / 4.5));
+  int bays = std::max(2, int(width / 5)), side_bays = std::max(2, int(depth / 5));
   style.bays = {bays, side_bays, bays, side_bays};
   style.window_width = on_grid(std::min(width / bays, depth / side_bays) - 1.0);
   style.window_height = 2.3;

@@ -137,7 +137,7 @@ void add_town_hall(ModelBuilder& b, Random& random, double width, double depth) 
 void add_rotunda(ModelBuilder& b, Random& random, double width, double depth) {
   const double radius = on_grid(std::min({width, depth, 16.0}) / 2 - 1);
   const Vec3d centre{on_grid(width / 2), on_grid(depth / 2), 0};
-  const int columns = random.between(5, 8) * 2;
+  const int columns = random.between(4, 6) * 2;
   const double height = on_grid(radius * 0.9);
   b.coat(Coat::Stone);
   const double step = 0.2;
