@@ -12,10 +12,6 @@ namespace {
 constexpr double kSameValue = 1e-3;
 constexpr double kSameCopy = 2e-2;  // for a wedge that only moved along
 
-// A flat triangle shows its geometric normal from where that is nearer to the input by this much
-// (squared chord of about two degrees).
-constexpr double kDeriveMargin = 1.2e-3;
-
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
@@ -72,44 +68,38 @@ PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
 }
 
 void PatchSimplifier::hold(const Entry& entry, double cost, double cost_with_ring) {
-  const Index id = static_cast<Index>(held_.size());
-  held_.push_back({entry.a, entry.b, held_of_vertex_[entry.a], held_of_vertex_[entry.b],
-                   static_cast<float>(cost), true});
-  held_of_vertex_[entry.a] = held_of_vertex_[entry.b] = id;
-  if (!(cost_with_ring <= steering_.cost_limit)) return;
-  push({static_cast<float>(cost_with_ring), entry.a, entry.b, entry.stamp, id});
-}
-
-void PatchSimplifier::release_ring(Index v) {
-  for (Index t : triangles_of(v)) {
-    for (Index c = 0; c < 3; ++c) {
-      const Index w = vertex_of_corner_[3 * t + c];
-      if (held_of_vertex_[w] != kNone) release(w);
+  if (blamed_ == kNone) {
+    if (cost_with_ring <= steering_.cost_limit) {
+      push({static_cast<float>(cost_with_ring), entry.a, entry.b, kNone});
     }
+    return;
   }
+  const Index id = static_cast<Index>(held_.size());
+  held_.push_back({entry.a, entry.b, held_of_triangle_[blamed_], static_cast<float>(cost), true});
+  held_of_triangle_[blamed_] = id;
+  if (!(cost_with_ring <= steering_.cost_limit)) return;
+  push({static_cast<float>(cost_with_ring), entry.a, entry.b, id});
 }
 
-void PatchSimplifier::release(Index v) {
-  Index i = held_of_vertex_[v];
-  held_of_vertex_[v] = kNone;
-  while (i != kNone) {
-    Held& pair = held_[i];
-    i = pair.a == v ? pair.next_of_a : pair.next_of_b;
-    if (!pair.waiting) continue;
-    pair.waiting = false;
-    push({pair.cost, pair.a, pair.b, kNone, kNone});
+void PatchSimplifier::release(Index triangle) {
+  Index i = held_of_triangle_[triangle];
+  held_of_triangle_[triangle] = kNone;
+  for (; i != kNone; i = held_[i].next) {
+    if (!held_[i].waiting) continue;
+    held_[i].waiting = false;
+    push({held_[i].cost, held_[i].a, held_[i].b, kNone});
   }
 }
 
 PatchResult PatchSimplifier::run() {
   result_.new_values.resize(layer_count());
-  held_of_vertex_.assign(vertices_.size(), kNone);
+  held_of_triangle_.assign(global_triangle_.size(), kNone);
   order_.clear();
   next_in_order_ = 0;
   for (const auto& [a, b] : pairs_) {
     const double cost = place(a, b).cost;
     if (!(cost <= steering_.cost_limit)) continue;
-    order_.push_back({static_cast<float>(cost), a, b, 0, kNone});
+    order_.push_back({static_cast<float>(cost), a, b, kNone});
   }
   std::sort(order_.begin(), order_.end(), [](const Entry& x, const Entry& y) { return y < x; });
 
@@ -122,7 +112,6 @@ PatchResult PatchSimplifier::run() {
     entry.b = survivor(entry.b);
     if (entry.a == entry.b) continue;
     if (entry.a > entry.b) std::swap(entry.a, entry.b);
-    entry.stamp = vertices_[entry.a].version + vertices_[entry.b].version;
     entry.held = kNone;
     const float next = next_cost();
 
@@ -186,6 +175,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   q.error = worst(worst(q.error, p.error), error);
 
   // Triangles: vanish, or change hands.
+  if (!represented_.empty()) hand_over_represented();
   for (std::size_t i = ring_kept_; i < ring_corners_.size(); ++i) {
     vertex_of_corner_[ring_corners_[i]] = kept;
   }
@@ -193,7 +183,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   for (Index corner : ring_corners_) triangle_pool_.push_back(corner / 3);
   q.triangles = {first, static_cast<Index>(triangle_pool_.size()) - first};
   q.position = target;
-  ++q.version;
+  q.flat_around = q.flat_around && p.flat_around;
   p.alive = false;
   p.into = kept;
   for (Index t : vanishing_) {
@@ -207,9 +197,9 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
       Index* end = std::remove(begin, begin + around.count, t);
       around.count = static_cast<Index>(end - begin);
     }
-    if (!represented_.empty()) hand_over_represented(t, kept);
+    release(t);
   }
-  if (!represented_.empty()) derive_where_better(kept);
+  if (!represented_.empty()) derive_where_better(kept, q.error);
 
   contraction.error = q.error;
   contraction.change_count = static_cast<Index>(result_.changes.size()) - contraction.first_change;
@@ -217,7 +207,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
       static_cast<Index>(result_.derived.size()) - contraction.first_derived;
   last_key_ = std::max(last_key_, cost);
   result_.contractions.push_back({last_key_, contraction});
-  release_ring(kept);
+  for (Index t : triangles_of(kept)) release(t);
 }
 
 void PatchSimplifier::find_ring(Index kept, Index removed) {
@@ -373,44 +363,6 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   wedges_of(layer, kept) = {first, count};
 }
 
-// What a vanished triangle stood for is stood for by the neighbour that looks most like it.
-void PatchSimplifier::hand_over_represented(Index t, Index kept) {
-  const Vec3d& share = represented_[t];
-  Index best = kNone;
-  double best_dot = -1e300;
-  for (Index u : triangles_of(kept)) {
-    bool touches = false;
-    for (Index c = 0; c < 3; ++c) {
-      const Index w = vertex_of_corner_[3 * t + c];
-      touches = touches || (w != kept && vertices_[w].alive && corner_of(u, w) >= 0);
-    }
-    if (!touches) continue;
-    const double agreement = dot(normalized(represented_[u]), share);
-    if (agreement > best_dot) {
-      best_dot = agreement;
-      best = u;
-    }
-  }
-  if (best != kNone) represented_[best] += share;
-}
-
-void PatchSimplifier::derive_where_better(Index kept) {
-  std::size_t l = 0;
-  while (!work_->layers[l].is_normal) ++l;
-  for (Index t : triangles_of(kept)) {
-    if (!flat_[t]) continue;
-    const Vec3d geometric = normalized(normal_of(t));
-    if (dot(geometric, geometric) == 0) continue;
-    const Wedge& wedge = wedges_[l][wedge_of_corner_[l][3 * t]];
-    const Vec3d stored{wedge.value[0], wedge.value[1], wedge.value[2]};
-    const Vec3d input = normalized(represented_[t]);
-    if (squared(geometric - input) + kDeriveMargin >= squared(stored - input)) continue;
-    flat_[t] = 0;
-    derived_[t] = 1;
-    result_.derived.push_back(TriangleId{global_triangle_[t]});
-  }
-}
-
 void PatchSimplifier::write_back() {
   for (Index t = 0; t < global_triangle_.size(); ++t) {
     const Index global = global_triangle_[t];
@@ -420,9 +372,7 @@ void PatchSimplifier::write_back() {
     }
     work_->derived[global] = derived_[t];
     if (!represented_.empty()) {
-      const Vec3d& r = represented_[t];
-      work_->represented[global] = {static_cast<float>(r.x), static_cast<float>(r.y),
-                                    static_cast<float>(r.z)};
+      work_->represented[global] = represented_[t];
     }
     for (Index c = 0; c < 3; ++c) {
       work_->vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[3 * t + c]].global;

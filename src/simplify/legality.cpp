@@ -1,6 +1,7 @@
 // What a contraction does to the triangles around it: folds, coincidences, and flat triangles that
-// turn away from the normal they show. Each is a cost, not a ban: at detail scale it keeps such a
-// contraction from being chosen while there is another, and as the bands grow nothing gets stuck.
+// turn away from the normal they show or vanish. Each is a cost, not a ban: at detail scale it
+// keeps such a contraction from being chosen while there is another, and as the bands grow nothing
+// gets stuck.
 #include "simplify/patch_simplifier.h"
 
 #include <cmath>
@@ -13,54 +14,43 @@ namespace {
 // A triangle that turns by more than this has folded over.
 constexpr double kFoldCosine = 0.2;
 
-// How much a geometric normal that leaves the shown one counts beside a shown one that leaves the
-// input's.
-constexpr double kTurnShare = 0.25;
-
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
 
 }  // namespace
 
-// The shading error of a flat triangle with the geometric unit normal `normal` (DESIGN 10): against
-// the mean normal of the input that it stands for, with the better of stored and derived.
-double PatchSimplifier::flat_cost(Index t, const Vec3d& normal, double area) const {
-  const Vec3d input = normalized(represented_[t]);
-  const double derived_error = squared(normal - input);
-  if (derived_[t]) return area * derived_error;
-  std::size_t l = 0;
-  while (!work_->layers[l].is_normal) ++l;
-  const Wedge& wedge = wedges_[l][wedge_of_corner_[l][3 * t]];
-  const Vec3d stored{wedge.value[0], wedge.value[1], wedge.value[2]};
-  const double stored_error = squared(stored - input) + kTurnShare * squared(normal - stored);
-  return area * std::min(stored_error, derived_error);
+void PatchSimplifier::blame(Index t, double cost) {
+  if (!(cost > blamed_cost_)) return;
+  blamed_ = t;
+  blamed_cost_ = cost;
 }
 
-double PatchSimplifier::fold_cost(Index moved, Index other, const Vec3d& target,
-                                  double& vanished_area, std::size_t& survivors) {
+double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target) {
   double cost = 0;
-  const double step2 = squared(vertices_[other].position - vertices_[moved].position);
-  for (Index t : triangles_of(moved)) {
+  const double step2 = squared(vertices_[b].position - vertices_[a].position);
+  const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
+  for (std::size_t i = 0; i < ring_corners_.size(); ++i) {
+    const Index t = ring_corners_[i] / 3;
     const Vec3d before = normal_of(t);
-    const double twice_before = length(before);
-    if (corner_of(t, other) >= 0) {
-      vanished_area += 0.25 * twice_before;  // seen from both ends
-      continue;
+    const Vec3d after = normal_if_moved(t, i < ring_kept_ ? a : b, target);
+    const double agreement = dot(before, after);
+    const double before2 = dot(before, before), after2 = dot(after, after);
+    double own = 0;
+    if (agreement < 0 || agreement * agreement < kFoldCosine * kFoldCosine * before2 * after2) {
+      own = step2 * 0.5 * (std::sqrt(before2) + std::sqrt(after2));
     }
-    ++survivors;
-    const Vec3d after = normal_if_moved(t, moved, target);
-    const double twice_after = length(after);
-    if (dot(before, after) < kFoldCosine * twice_before * twice_after) {
-      cost += step2 * 0.5 * (twice_before + twice_after);
+    if (!represented_.empty() && (flat_[t] || derived_[t]) && after2 > 0) {
+      const double twice_after = std::sqrt(after2);
+      const double now = flat_error(t, after * (1 / twice_after), 0.5 * twice_after);
+      own += normal_scale2 * std::max(0.0, now - flat_error_[t]);
     }
-    if (!represented_.empty() && (flat_[t] || derived_[t]) && twice_after > 0) {
-      const double now = flat_cost(t, after * (1 / twice_after), 0.5 * twice_after);
-      const double was =
-          twice_before > 0 ? flat_cost(t, before * (1 / twice_before), 0.5 * twice_before) : 0;
-      const double scale = steering_.normal_scale * steering_.normal_scale;
-      cost += scale * std::max(0.0, now - was);
-    }
+    if (!(own > 0)) continue;
+    blame(t, own);
+    cost += own;
+  }
+  if (!represented_.empty()) {
+    for (Index t : vanishing_) cost += normal_scale2 * vanishing_error(t);
   }
   return cost;
 }
@@ -69,40 +59,45 @@ double PatchSimplifier::fold_cost(Index moved, Index other, const Vec3d& target,
 // edge there, or two triangles coincide.
 double PatchSimplifier::coincidence_cost(Index a, Index b) {
   const Index beside_a = ++mark_now_, told = ++mark_now_;
-  std::size_t shared = 0;
-  for (Index t : triangles_of(a)) {
+  for (std::size_t i = 0; i < ring_kept_; ++i) {
+    const Index t = ring_corners_[i] / 3;
     for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = beside_a;
   }
-  for (Index t : triangles_of(a)) {
-    if (corner_of(t, b) < 0) continue;
+  for (Index t : vanishing_) {
     for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = told;
   }
-  for (Index t : triangles_of(b)) {
+  std::size_t shared = 0;
+  Index culprit = kNone;
+  for (std::size_t i = ring_kept_; i < ring_corners_.size(); ++i) {
+    const Index t = ring_corners_[i] / 3;
     for (Index c = 0; c < 3; ++c) {
       const Index v = vertex_of_corner_[3 * t + c];
       if (v == a || v == b || mark_[v] != beside_a) continue;
       mark_[v] = told;
+      culprit = t;
       ++shared;
     }
   }
   if (shared == 0) return 0;
   const double step2 = squared(vertices_[b].position - vertices_[a].position);
-  return static_cast<double>(shared) * step2 * (surface_[a].weight + surface_[b].weight) / 3;
+  const double cost =
+      static_cast<double>(shared) * step2 * (surface_[a].weight + surface_[b].weight) / 3;
+  blame(culprit, cost);
+  return cost;
 }
 
 double PatchSimplifier::ring_cost(Index a, Index b, const Vec3d& target) {
-  double vanished_area = 0;
-  std::size_t survivors = 0;
-  double cost = fold_cost(a, b, target, vanished_area, survivors);
-  cost += fold_cost(b, a, target, vanished_area, survivors);
-  if (survivors == 0) {
+  blamed_ = kNone;
+  blamed_cost_ = 0;
+  double cost = fold_cost(a, b, target);
+  if (ring_corners_.empty()) {
     // A part disappears. Its own planes may not mind; whoever looks at it does.
-    std::size_t vanishing = 0;
-    for (Index t : triangles_of(a)) vanishing += corner_of(t, b) >= 0;
-    if (steering_.keep_one_triangle && vanishing >= live_triangles_) {
+    if (steering_.keep_one_triangle && vanishing_.size() >= live_triangles_) {
       return std::numeric_limits<double>::infinity();
     }
-    cost += vanished_area * squared(vertices_[b].position - vertices_[a].position);
+    double area = 0;
+    for (Index t : vanishing_) area += 0.5 * length(normal_of(t));
+    cost += area * squared(vertices_[b].position - vertices_[a].position);
   }
   return cost + coincidence_cost(a, b);
 }

@@ -31,6 +31,7 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
   load(triangles, patch_id);
   load_wedges();
   load_quadrics();
+  load_represented();
   load_edges();
   if (steering_.virtual_distance > 0 && work.part_count > 1) find_virtual_pairs();
 }
@@ -94,14 +95,6 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
   }
   mark_.assign(vertices_.size(), 0);
   mark_now_ = 0;
-
-  if (!work_->represented.empty()) {
-    represented_.resize(n);
-    for (std::size_t t = 0; t < n; ++t) {
-      const Vec3f& r = work_->represented[triangles[t]];
-      represented_[t] = {r.x, r.y, r.z};
-    }
-  }
 }
 
 // Wedges of a vertex lie together, in the order in which its triangles name them. Nearly all

@@ -130,6 +130,8 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     if (!layer.steers) continue;
+    // Face normals stay what they are (DB03 b); what they cost is in flat_shading.cpp.
+    if (layer.is_normal && vertices_[a].flat_around && vertices_[b].flat_around) continue;
     const double scale = layer_scale(l);
     const std::vector<Wedge>& wedges = wedges_[l];
     const std::vector<AttributeQuadric>& quadrics = attribute_quadrics_[l];
@@ -232,6 +234,7 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
 // its middle may not.
 PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed best,
                                                     const Quadric* cost_if_kept) {
+  find_ring(a, b);
   const double ring = ring_cost(a, b, best.position);
   const double free_cost = best.cost;
   best.cost += ring;

@@ -59,13 +59,13 @@ class PatchSimplifier {
   struct Vertex {
     Vec3d position;  // grid units less center_
     Index global = 0;
-    Index version = 0;
     Index into = kNone;  // of a removed vertex: the one it was contracted into
     Slice triangles;     // in triangle_pool_
     bool locked = false;
     bool alive = true;
-    LevelError base;   // of the bands before
-    LevelError error;  // now
+    bool flat_around = true;  // all its triangles are flat or derived
+    LevelError base;          // of the bands before
+    LevelError error;         // now
   };
   struct Placed {
     double cost = 0;
@@ -76,7 +76,6 @@ class PatchSimplifier {
   struct Entry {
     float cost;
     Index a, b;
-    Index stamp;                            // of a's and b's versions
     Index held;                             // in held_, or kNone
     bool operator<(const Entry& o) const {  // std heaps put the largest first
       return cost != o.cost ? cost > o.cost : a != o.a ? a > o.a : b > o.b;
@@ -117,10 +116,18 @@ class PatchSimplifier {
 
   // legality.cpp
   double ring_cost(Index a, Index b, const Vec3d& target);
-  double fold_cost(Index moved, Index other, const Vec3d& target, double& vanished_area,
-                   std::size_t& survivors);
+  double fold_cost(Index a, Index b, const Vec3d& target);
   double coincidence_cost(Index a, Index b);
-  double flat_cost(Index t, const Vec3d& normal, double area) const;
+  void blame(Index t, double cost);
+
+  // flat_shading.cpp
+  void load_represented();
+  Vec3d shown_normal(Index t) const;
+  double flat_error(Index t, const Vec3d& normal, double area) const;
+  Index heir_of(Index vanishing) const;
+  double vanishing_error(Index t) const;
+  void hand_over_represented();
+  void derive_where_better(Index kept, LevelError& error);
 
   // contract.cpp
   void contract(Index a, Index b, const Vec3d& target, double cost);
@@ -129,15 +136,12 @@ class PatchSimplifier {
                       LevelError& error);
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
                      const Vec3d& target, double* value);
-  void hand_over_represented(Index t, Index kept);
-  void derive_where_better(Index kept);
   void push(const Entry& entry);
   bool pop(Entry& entry);
   float next_cost() const;
   Index survivor(Index v);
   void hold(const Entry& entry, double cost, double cost_with_ring);
-  void release_ring(Index v);
-  void release(Index v);
+  void release(Index triangle);
 
   // Twice the area long.
   Vec3d normal_of(Index t) const {
@@ -180,7 +184,9 @@ class PatchSimplifier {
   std::vector<char> triangle_alive_;
   std::vector<char> flat_;  // stored normal the same at all three corners, and not derived
   std::vector<char> derived_;
-  std::vector<Vec3d> represented_;
+  std::vector<Represented> represented_;
+  std::vector<double> flat_error_;  // of flat and derived triangles, as they are: area * chord^2
+  std::size_t normal_layer_ = 0;
   std::size_t live_triangles_ = 0;
 
   std::vector<std::vector<Wedge>> wedges_;                         // per layer, slices by vertex
@@ -196,17 +202,19 @@ class PatchSimplifier {
 
   PatchResult result_;
 
-  // Pairs that would fold something wait in the heap at that higher cost. When a neighbour has
-  // moved they may have become legal, so they are tried again at once, and the waiting entry is
-  // void.
+  // Pairs that would fold something wait in the heap at that higher cost. When the triangle that is
+  // to blame has changed they may have become legal, so they are tried again at once, and the
+  // waiting entry is void.
   struct Held {
     Index a, b;
-    Index next_of_a, next_of_b;  // in the lists of their vertices
-    float cost;                  // without the fold
+    Index next;  // in the list of the same triangle
+    float cost;  // without the fold
     bool waiting;
   };
   std::vector<Held> held_;
-  std::vector<Index> held_of_vertex_;  // head of a list in held_, or kNone
+  std::vector<Index> held_of_triangle_;  // head of a list in held_, or kNone
+  Index blamed_ = kNone;                 // by the last ring_cost()
+  double blamed_cost_ = 0;
 
   // Scratch of load_edges().
   std::vector<Vec3d> unit_normal_;

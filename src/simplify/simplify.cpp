@@ -20,7 +20,7 @@ namespace simplification {
 namespace {
 
 // A band should leave about this share of its triangles; its limit is steered towards that.
-constexpr double kBandShare = 0.45;
+constexpr double kBandShare = 0.6;
 
 // Below this many triangles one last band goes all the way.
 constexpr std::size_t kLastBand = 64;
@@ -92,9 +92,10 @@ WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
       };
       const double area = 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
       const std::span<const float> n = normals->value(normals->of_corner[3 * t]);
-      work.represented[t] = {static_cast<float>(area * double(n[0])),
-                             static_cast<float>(area * double(n[1])),
-                             static_cast<float>(area * double(n[2]))};
+      const Vec3d sum = Vec3d{double(n[0]), double(n[1]), double(n[2])} * area;
+      work.represented[t] = {
+          {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)},
+          static_cast<float>(area)};
     }
   }
   return work;
@@ -237,7 +238,7 @@ class Simplifier {
       const double share = double(work_.live.size()) / double(before);
       stalled_ = share > 0.98 ? stalled_ + 1 : 0;
       const double exponent = std::log(kBandShare) / std::log(std::min(share, 0.97));
-      factor = std::clamp(std::pow(factor, std::clamp(exponent, 0.3, 3.0)), 3.0, 4096.0);
+      factor = std::clamp(std::pow(factor, std::clamp(exponent, 0.3, 3.0)), 2.0, 4096.0);
       limit *= factor;
     }
     scale_errors();

@@ -36,6 +36,13 @@ struct WorkLayer {
   }
 };
 
+// The input normals that a flat triangle stands for: with n of unit length, the area where they
+// differ from n, times the square of the difference, is 2 * (area - n.sum).
+struct Represented {
+  Vec3f sum;  // of area * normal
+  float area = 0;
+};
+
 struct WorkMesh {
   std::vector<Vec3i> positions;                 // per input vertex, grid units
   std::vector<LevelError> error_of_vertex;      // of the contractions under it, surface and line in
@@ -44,10 +51,9 @@ struct WorkMesh {
   std::vector<std::uint32_t> vertex_of_corner;  // 3 a triangle
   std::vector<std::uint32_t> category_of_triangle;  // material and part as one; empty: all the same
   std::vector<char> derived;                        // per triangle: shows its geometric normal
-  std::vector<Vec3f> represented;             // per triangle: sum of area * normal of the input
-                                              // triangles that it stands for; empty: nothing flat
-  std::vector<std::uint32_t> part_of_vertex;  // a vertex of the part: equal for vertices that
-                                              // triangles or contractions connect
+  std::vector<Represented> represented;             // per triangle; empty: nothing is flat
+  std::vector<std::uint32_t> part_of_vertex;        // a vertex of the part: equal for vertices that
+                                                    // triangles or contractions connect
   std::size_t part_count = 0;
   std::vector<std::uint32_t> live;  // the triangles that are left, ascending
   std::vector<WorkLayer> layers;

@@ -1,0 +1,140 @@
+// The shading of flat triangles: which input normals each stands for, what showing another costs,
+// and when it is better to show the geometric normal than the stored one (DESIGN 10).
+//
+// A flat triangle keeps its stored normal (DB03 rule b). When a triangle vanishes, the input that
+// it stood for is stood for by a neighbour: the heir, whose shown normal is nearest to it. So the
+// error of every level is known beside the input, whatever bands came before.
+#include "simplify/patch_simplifier.h"
+
+#include <cmath>
+
+namespace crease::simplification {
+
+namespace {
+
+// How much a geometric normal that leaves the shown one counts beside a shown one that leaves the
+// input's.
+constexpr double kTurnShare = 0.1;
+
+// How much a normal that nothing shows any more counts. In full it would make the last contractions
+// of a small feature dearer than the ruin of a large one.
+constexpr double kVanishShare = 0.1;
+
+// A flat triangle shows its geometric normal from where that is nearer to the input by this much
+// (squared chord of about two degrees).
+constexpr double kDeriveMargin = 1.2e-3;
+
+double squared(const Vec3d& v) {
+  return dot(v, v);
+}
+
+Vec3d to_double(const Vec3f& v) {
+  return {double(v.x), double(v.y), double(v.z)};
+}
+
+// Area times squared chord between the input normals and `shown`.
+double error_of(const Represented& input, const Vec3d& shown) {
+  return std::max(0.0, 2 * (double(input.area) - dot(to_double(input.sum), shown)));
+}
+
+}  // namespace
+
+void PatchSimplifier::load_represented() {
+  represented_.clear();
+  if (work_->represented.empty()) {
+    for (Vertex& vertex : vertices_) vertex.flat_around = false;
+    return;
+  }
+  normal_layer_ = 0;
+  while (!work_->layers[normal_layer_].is_normal) ++normal_layer_;
+  represented_.resize(global_triangle_.size());
+  flat_error_.assign(global_triangle_.size(), 0);
+  for (Index t = 0; t < global_triangle_.size(); ++t) {
+    represented_[t] = work_->represented[global_triangle_[t]];
+    if (flat_[t] || derived_[t]) {
+      flat_error_[t] = flat_error(t, unit_normal_[t], 0.5 * length(normal_of(t)));
+    } else {
+      for (Index c = 0; c < 3; ++c) vertices_[vertex_of_corner_[3 * t + c]].flat_around = false;
+    }
+  }
+}
+
+// Smooth triangles are taken by their geometry.
+Vec3d PatchSimplifier::shown_normal(Index t) const {
+  if (!flat_[t]) return normalized(normal_of(t));
+  const Wedge& wedge = wedges_[normal_layer_][wedge_of_corner_[normal_layer_][3 * t]];
+  return {wedge.value[0], wedge.value[1], wedge.value[2]};
+}
+
+// With the geometric unit normal `normal`, the better of stored and derived.
+double PatchSimplifier::flat_error(Index t, const Vec3d& normal, double area) const {
+  const double derived = error_of(represented_[t], normal);
+  if (derived_[t]) return derived;
+  const Vec3d stored = shown_normal(t);
+  return std::min(derived,
+                  error_of(represented_[t], stored) + kTurnShare * area * squared(normal - stored));
+}
+
+// Among the surviving triangles that touch the vanishing one's third vertex; see find_ring().
+PatchSimplifier::Index PatchSimplifier::heir_of(Index vanishing) const {
+  const Vec3d share = to_double(represented_[vanishing].sum);
+  Index best = kNone;
+  double best_agreement = 0;
+  for (Index corner : ring_corners_) {
+    const Index u = corner / 3;
+    bool touches = false;
+    for (Index c = 1; c < 3; ++c) {
+      const Index w = vertex_of_corner_[3 * u + (corner + c) % 3];
+      touches = touches || corner_of(vanishing, w) >= 0;
+    }
+    if (!touches) continue;
+    const double agreement = dot(shown_normal(u), share);
+    if (best != kNone && agreement <= best_agreement) continue;
+    best = u;
+    best_agreement = agreement;
+  }
+  return best;
+}
+
+// What it costs that a flat triangle vanishes.
+double PatchSimplifier::vanishing_error(Index t) const {
+  if (!flat_[t] && !derived_[t]) return 0;
+  const Index heir = heir_of(t);
+  const Vec3d shown = heir == kNone ? Vec3d{} : shown_normal(heir);
+  return kVanishShare * std::max(0.0, error_of(represented_[t], shown) - flat_error_[t]);
+}
+
+void PatchSimplifier::hand_over_represented() {
+  for (Index t : vanishing_) {
+    const Index heir = heir_of(t);
+    if (heir == kNone) continue;
+    Represented& to = represented_[heir];
+    to.sum += represented_[t].sum;
+    to.area += represented_[t].area;
+  }
+}
+
+void PatchSimplifier::derive_where_better(Index kept, LevelError& error) {
+  for (Index t : triangles_of(kept)) {
+    if (!flat_[t] && !derived_[t]) continue;
+    const Vec3d twice = normal_of(t);
+    const double twice_area = length(twice);
+    if (!(twice_area > 0)) continue;
+    const Vec3d geometric = twice * (1 / twice_area);
+    const Represented& input = represented_[t];
+    if (flat_[t] && error_of(input, geometric) + kDeriveMargin * double(input.area) <
+                        error_of(input, shown_normal(t))) {
+      flat_[t] = 0;
+      derived_[t] = 1;
+      result_.derived.push_back(TriangleId{global_triangle_[t]});
+    }
+    flat_error_[t] = flat_error(t, geometric, 0.5 * twice_area);
+    const double shown = error_of(input, derived_[t] ? geometric : shown_normal(t));
+    if (!(input.area > 0)) continue;
+    const double chord = std::sqrt(shown / double(input.area));
+    error.degrees = std::max(error.degrees,
+                             static_cast<float>(degrees(2 * std::asin(std::min(1.0, chord / 2)))));
+  }
+}
+
+}  // namespace crease::simplification
