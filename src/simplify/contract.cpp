@@ -285,9 +285,14 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
     return slot < of_kept.count ? slot : of_kept.count + (wedge - of_removed.first);
   };
 
-  // Wedges that no surviving triangle uses are removed (G03 3.4, R).
+  // Wedges that no surviving triangle uses are removed (G03 3.4, R). A triangle that shows its
+  // geometric normal has a wedge, but its attribute no longer stands at the vertex.
+  constexpr char kUsed = 1, kShown = 2;
   used_.assign(of_kept.count + of_removed.count, 0);
-  for (Index corner : ring_corners_) used_[slot_of(wedge_of_corner[corner])] = 1;
+  for (Index corner : ring_corners_) {
+    const bool shown = !(work.is_normal && derived_[corner / 3]);
+    used_[slot_of(wedge_of_corner[corner])] |= shown ? kUsed | kShown : kUsed;
+  }
 
   std::vector<Index>& result_of_slot = parent_;  // join_wedges is done with it
   result_of_slot.assign(used_.size(), kNone);
@@ -322,8 +327,10 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
     for (std::size_t k = 0; k < members.size(); ++k) {
       result_of_slot[slot_of(members[k])] = static_cast<Index>(results_.size() - 1);
       const Index from = wedges[members[k]].id;
-      bool told = from == result.id || !used_[slot_of(members[k])];
-      for (std::size_t i = 0; i < k && !told; ++i) told = wedges[members[i]].id == from;
+      bool told = from == result.id || !(used_[slot_of(members[k])] & kShown);
+      for (std::size_t i = 0; i < k && !told; ++i) {
+        told = wedges[members[i]].id == from && (used_[slot_of(members[i])] & kShown);
+      }
       if (told) continue;
       result_.changes.push_back(
           {static_cast<Index>(layer), AttributeId{from}, AttributeId{result.id}});
