@@ -13,13 +13,13 @@ namespace crease::cli {
 
 namespace {
 
-struct Options {
+struct BuildArguments {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   ReadOptions read;
 };
 
-Result<Imported> import_inputs(const Options& options, const Common& common) {
+Result<Imported> import_inputs(const BuildArguments& options, const Common& common) {
   Result<ImportOptions> import = import_options(options.read, common);
   if (!import.ok()) return import.failure();
   Result<Imported> imported = options.inputs.size() == 1
@@ -34,7 +34,7 @@ Result<Imported> import_inputs(const Options& options, const Common& common) {
   return imported;
 }
 
-Result<Report> run(const Options& options, const Common& common) {
+Result<Report> run_build(const BuildArguments& options, const Common& common) {
   const Stopwatch watch;
   for (const std::filesystem::path& input : options.inputs) {
     if (is_crease_file(input)) {
@@ -84,7 +84,7 @@ Result<Report> run(const Options& options, const Common& common) {
 }  // namespace
 
 Command add_build(CLI::App& app, const Common& common) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BuildArguments>();
   CLI::App* command = app.add_subcommand("build", "import, simplify, write one .crease file");
   command
       ->add_option(
@@ -98,7 +98,7 @@ Command add_build(CLI::App& app, const Common& common) {
   add_build_options(*command, options->read);
   command->footer(
       "Example:\n  crease build bunny.ply -o bunny.crease --normals crease:30 --precision 14bits");
-  return {command, [options, &common] { return run(*options, common); }};
+  return {command, [options, &common] { return run_build(*options, common); }};
 }
 
 }  // namespace crease::cli

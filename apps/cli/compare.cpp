@@ -13,7 +13,7 @@ namespace crease::cli {
 
 namespace {
 
-struct Options {
+struct CompareArguments {
   std::filesystem::path a, b;
   CompareOptions compare;
   ReadOptions read;
@@ -27,7 +27,7 @@ std::string row(const char* name, const Spread& spread, double diagonal) {
   return line;
 }
 
-Result<Report> run(const Options& options, const Common& common) {
+Result<Report> run_compare(const CompareArguments& options, const Common& common) {
   const Stopwatch watch;
   Mesh meshes[2];
   const std::filesystem::path* paths[2] = {&options.a, &options.b};
@@ -61,7 +61,7 @@ Result<Report> run(const Options& options, const Common& common) {
 }  // namespace
 
 Command add_compare(CLI::App& app, const Common& common) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand(
       "compare", "surface distance and normal deviation of two meshes, both ways");
   command->add_option("A", options->a, "mesh or .crease file, at full resolution")->required();
@@ -75,7 +75,7 @@ Command add_compare(CLI::App& app, const Common& common) {
       ->capture_default_str();
   add_import_options(*command, options->read);
   command->footer("Example:\n  crease compare city.glb city_20.glb --samples 1000000 --json");
-  return {command, [options, &common] { return run(*options, common); }};
+  return {command, [options, &common] { return run_compare(*options, common); }};
 }
 
 }  // namespace crease::cli

@@ -16,7 +16,7 @@ namespace crease::cli {
 
 namespace {
 
-struct Options {
+struct ExtractArguments {
   std::filesystem::path file, output;
   LevelOptions level;
   LodChainOptions chain;
@@ -24,7 +24,7 @@ struct Options {
   ReadOptions read;
 };
 
-Json asked_json(const Options& options) {
+Json asked_json(const ExtractArguments& options) {
   Json asked = Json::object();
   if (options.level.triangles) asked["triangles"] = *options.level.triangles;
   if (options.level.ratio) asked["ratio"] = *options.level.ratio;
@@ -43,7 +43,8 @@ std::string shortfall_of(const Chosen& chosen, const ProgressiveMesh& mesh) {
          in_length(hausdorff(*chosen.measured));
 }
 
-Result<Report> extract_one(const Options& options, ProgressiveMesh& mesh, const Common& common) {
+Result<Report> extract_one(const ExtractArguments& options, ProgressiveMesh& mesh,
+                           const Common& common) {
   const bool measures = options.level.samples > 0;
   const Mesh full = measures ? mesh.extract() : Mesh{};
   Result<Chosen> chosen = choose_level(mesh, full, options.level, common);
@@ -98,7 +99,7 @@ Result<Report> extract_one(const Options& options, ProgressiveMesh& mesh, const 
   return report;
 }
 
-Result<Report> run(const Options& options, const Common& common) {
+Result<Report> run_extract(const ExtractArguments& options, const Common& common) {
   const Stopwatch watch;
   const bool is_chain = options.chain.levels > 0;
   if (is_chain && (options.level.triangles || options.level.ratio || options.level.error)) {
@@ -130,7 +131,7 @@ Result<Report> run(const Options& options, const Common& common) {
 }  // namespace
 
 Command add_extract(CLI::App& app, const Common& common) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExtractArguments>();
   CLI::App* command = app.add_subcommand("extract", "one level of detail, or a chain, as a mesh");
   command->add_option("FILE", options->file, ".crease, or a mesh file, which is built on the fly")
       ->required();
@@ -145,7 +146,7 @@ Command add_extract(CLI::App& app, const Common& common) {
   command->footer(
       "Examples:\n  crease extract bunny.crease -o bunny_10.glb --ratio 0.1\n"
       "  crease extract bunny.crease -o bunny_lod.glb --levels 4");
-  return {command, [options, &common] { return run(*options, common); }};
+  return {command, [options, &common] { return run_extract(*options, common); }};
 }
 
 }  // namespace crease::cli

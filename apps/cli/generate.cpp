@@ -12,13 +12,13 @@ namespace crease::cli {
 
 namespace {
 
-struct Options {
+struct GenerateArguments {
   std::string shape;
   std::filesystem::path output;
   CityOptions city;
 };
 
-Result<Report> run(const Options& options, const Common&) {
+Result<Report> run_generate(const GenerateArguments& options, const Common&) {
   const Stopwatch watch;
   const Mesh mesh = generate_city(options.city);
   if (interrupted()) return interrupted_failure();
@@ -39,7 +39,7 @@ Result<Report> run(const Options& options, const Common&) {
 }  // namespace
 
 Command add_generate(CLI::App& app, const Common& common) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GenerateArguments>();
   CLI::App* command =
       app.add_subcommand("generate", "procedural models: the same bytes everywhere");
   command->add_option("SHAPE", options->shape, "city")->required()->check(CLI::IsMember({"city"}));
@@ -54,7 +54,7 @@ Command add_generate(CLI::App& app, const Common& common) {
       ->type_name("S")
       ->capture_default_str();
   command->footer("Example:\n  crease generate city -o city.glb --triangles 1000000 --seed 1");
-  return {command, [options, &common] { return run(*options, common); }};
+  return {command, [options, &common] { return run_generate(*options, common); }};
 }
 
 }  // namespace crease::cli

@@ -15,7 +15,7 @@ namespace crease::cli {
 
 namespace {
 
-struct Options {
+struct InfoArguments {
   std::filesystem::path file;
   ReadOptions read;
 };
@@ -161,7 +161,7 @@ Report file_report(const CreaseFile& file) {
   return report;
 }
 
-Result<Report> run(const Options& options, const Common& common) {
+Result<Report> run_info(const InfoArguments& options, const Common& common) {
   Report report;
   if (is_crease_file(options.file)) {
     const Result<CreaseFile> file = read_crease(options.file, {});
@@ -184,12 +184,12 @@ Result<Report> run(const Options& options, const Common& common) {
 }  // namespace
 
 Command add_info(CLI::App& app, const Common& common) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoArguments>();
   CLI::App* command = app.add_subcommand("info", "what is inside a .crease or a mesh file");
   command->add_option("FILE", options->file, "the file")->required();
   add_import_options(*command, options->read);
   command->footer("Example:\n  crease info bunny.crease --json");
-  return {command, [options, &common] { return run(*options, common); }};
+  return {command, [options, &common] { return run_info(*options, common); }};
 }
 
 }  // namespace crease::cli

@@ -14,7 +14,7 @@ namespace crease::cli {
 
 namespace {
 
-struct Options {
+struct RenderArguments {
   std::vector<std::filesystem::path> files;
   std::filesystem::path output;
   PanelOptions panels;
@@ -39,7 +39,7 @@ Coloring coloring_of(const std::string& name) {
   return Coloring::Shaded;
 }
 
-Result<RenderOptions> render_options(const Options& options) {
+Result<RenderOptions> render_options(const RenderArguments& options) {
   RenderOptions render;
   render.coloring = coloring_of(options.coloring);
   render.wireframe = options.wireframe;
@@ -61,7 +61,7 @@ Result<RenderOptions> render_options(const Options& options) {
   return render;
 }
 
-Result<Report> run(Options options, const Common& common) {
+Result<Report> run_render(RenderArguments options, const Common& common) {
   const Stopwatch watch;
   if (!options.levels.empty()) {
     const LevelOptions& one = options.panels.level;
@@ -108,7 +108,7 @@ Result<Report> run(Options options, const Common& common) {
 }  // namespace
 
 Command add_render(CLI::App& app, const Common& common) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderArguments>();
   CLI::App* command =
       app.add_subcommand("render", "a picture without a display, levels side by side");
   command->add_option("FILE", options->files, ".crease or mesh files, each with its own panels")
@@ -145,7 +145,7 @@ Command add_render(CLI::App& app, const Common& common) {
   add_build_options(*command, options->panels.read);
   command->footer(
       "Example:\n  crease render bunny.crease -o bunny.png --levels 1,0.2,0.02 --wireframe");
-  return {command, [options, &common] { return run(*options, common); }};
+  return {command, [options, &common] { return run_render(*options, common); }};
 }
 
 }  // namespace crease::cli

@@ -14,7 +14,7 @@ namespace crease::cli {
 
 namespace {
 
-struct Options {
+struct ValidateArguments {
   std::filesystem::path file;
 };
 
@@ -33,7 +33,7 @@ Result<std::vector<std::byte>> read_bytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-Result<Report> run(const Options& options) {
+Result<Report> run_validate(const ValidateArguments& options) {
   const Stopwatch watch;
   const Result<std::vector<std::byte>> bytes = read_bytes(options.file);
   if (!bytes.ok()) return bytes.failure();
@@ -68,12 +68,12 @@ Result<Report> run(const Options& options) {
 }  // namespace
 
 Command add_validate(CLI::App& app, const Common&) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ValidateArguments>();
   CLI::App* command =
       app.add_subcommand("validate", "every checksum and every invariant of a .crease file");
   command->add_option("FILE", options->file, "the .crease file")->required();
   command->footer("Example:\n  crease validate bunny.crease --json");
-  return {command, [options] { return run(*options); }};
+  return {command, [options] { return run_validate(*options); }};
 }
 
 }  // namespace crease::cli

@@ -19,6 +19,15 @@
 
 namespace crease {
 
+// One number; the caller has checked that its four bytes are there.
+inline std::uint32_t u32_at(std::span<const std::byte> bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value |= std::to_integer<std::uint32_t>(bytes[offset + i]) << (8 * i);
+  }
+  return value;
+}
+
 class ByteWriter {
  public:
   void u8(std::uint8_t v) { bytes_.push_back(std::byte{v}); }

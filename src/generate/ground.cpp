@@ -7,8 +7,7 @@ namespace crease {
 
 namespace {
 
-constexpr double kWater = -3.5, kBottom = -9;
-constexpr Vec3d kUp{0, 0, 1};
+constexpr double kWaterLevel = -3.5, kBottom = -9;
 
 // Between the middles of the streets around block i.
 double cell_low(const StreetAxis& axis, int i) {
@@ -62,7 +61,7 @@ void add_ground(ModelBuilder& b, const StreetGrid& grid, const BlockRange& range
     }
   }
   const std::size_t columns = x.size() - 1;
-  const auto level = [](const Row& row) { return row.river ? kWater : 0; };
+  const auto level = [](const Row& row) { return row.river ? kWaterLevel : 0; };
 
   const AttributeId up = b.normal(kUp), north = b.normal({0, 1, 0}), south = b.normal({0, -1, 0});
   const AttributeId west = b.normal({-1, 0, 0}), east = b.normal({1, 0, 0});
@@ -101,8 +100,8 @@ void add_ground(ModelBuilder& b, const StreetGrid& grid, const BlockRange& range
     const Vec3d &p = rim[i], &q = rim[(i + 1) % rim.size()];
     const AttributeId n = p.y == q.y ? (q.x > p.x ? south : north) : q.y > p.y ? east : west;
     const bool river = p.x == q.x && std::min(p.y, q.y) == grid.river_low && has_river(range);
-    if (!river) side(p, q, kWater, 0, n);
-    side(p, q, kBottom, kWater, n);
+    if (!river) side(p, q, kWaterLevel, 0, n);
+    side(p, q, kBottom, kWaterLevel, n);
   }
   std::vector<Vec3d> below(rim.rbegin(), rim.rend());
   for (Vec3d& p : below) p.z = kBottom;

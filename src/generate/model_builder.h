@@ -23,6 +23,8 @@
 
 namespace crease {
 
+inline constexpr Vec3d kUp{0, 0, 1};
+
 enum class Coat : std::uint8_t {  // the material of a surface
   Plaster,
   Ochre,

@@ -5,11 +5,7 @@
 
 namespace crease {
 
-namespace {
-
-constexpr Vec3d kUp{0, 0, 1};
-
-}  // namespace
+namespace {}  // namespace
 
 void add_box(ModelBuilder& b, const Vec3d& low, const Vec3d& high) {
   b.begin_body();

@@ -8,7 +8,6 @@ namespace crease {
 namespace {
 
 constexpr Vec3d kAlong[4] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
-constexpr Vec3d kUp{0, 0, 1};
 
 }  // namespace
 

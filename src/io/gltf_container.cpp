@@ -1,4 +1,5 @@
 // GLB and b3dm containers, "data:" URIs and files beside a .gltf.
+#include "base/bytes.h"
 #include "io/gltf_document.h"
 #include "io/text.h"
 
@@ -15,15 +16,6 @@ constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
 constexpr std::uint32_t kB3dmMagic = 0x6D643362;  // "b3dm"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN\0"
-
-// Little-endian; the caller has checked that four bytes are there.
-std::uint32_t u32_at(std::span<const std::byte> bytes, std::size_t offset) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value |= std::to_integer<std::uint32_t>(bytes[offset + i]) << (8 * i);
-  }
-  return value;
-}
 
 std::string_view characters(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

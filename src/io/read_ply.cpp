@@ -32,13 +32,13 @@ struct NamedGroup {
   std::size_t least;  // this many, from the first, make the group
 };
 
-constexpr NamedGroup kNormal{{"nx", "ny", "nz", ""}, 3};
-constexpr NamedGroup kColors[] = {
+constexpr NamedGroup kNormalGroup{{"nx", "ny", "nz", ""}, 3};
+constexpr NamedGroup kColorGroups[] = {
     {{"red", "green", "blue", "alpha"}, 3},
     {{"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"}, 3},
     {{"r", "g", "b", "a"}, 3},
 };
-constexpr NamedGroup kTexCoords[] = {
+constexpr NamedGroup kTexCoordGroups[] = {
     {{"s", "t", "", ""}, 2},
     {{"u", "v", "", ""}, 2},
     {{"texture_u", "texture_v", "", ""}, 2},
@@ -211,13 +211,13 @@ class PlyReader {
     ElementLayers plan;
     plan.targets.resize(element.properties.size());
     const bool is_face = per == RawLayer::Per::Face;
-    take_group(element, kNormal, plan, [&](std::uint32_t) { return normal_layer(per); });
-    for (const NamedGroup& group : kColors) {
+    take_group(element, kNormalGroup, plan, [&](std::uint32_t) { return normal_layer(per); });
+    for (const NamedGroup& group : kColorGroups) {
       if (take_group(element, group, plan, [&](std::uint32_t n) { return color_layer(per, n); }))
         break;
     }
     if (!is_face) {
-      for (const NamedGroup& group : kTexCoords) {
+      for (const NamedGroup& group : kTexCoordGroups) {
         if (take_group(element, group, plan,
                        [&](std::uint32_t) { return texcoord_layer("uv", per); })) {
           break;

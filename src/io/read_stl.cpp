@@ -1,6 +1,7 @@
 // STL, binary and text. Binary is told by its size, 84 + 50 n, since binary files begin with
 // "solid" too. Facet normals are not used: they are flat by definition, often zero, and say nothing
 // that the winding does not; hard edges come from the crease angle.
+#include "base/bytes.h"
 #include "io/formats.h"
 #include "io/text.h"
 
@@ -17,12 +18,6 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 84;
 constexpr std::size_t kFacetBytes = 50;
-
-std::uint32_t u32_at(std::span<const std::byte> bytes, std::size_t offset) {
-  std::uint32_t x = 0;
-  for (int i = 3; i >= 0; --i) x = x << 8 | std::to_integer<std::uint32_t>(bytes[offset + i]);
-  return x;
-}
 
 double f32_at(std::span<const std::byte> bytes, std::size_t offset) {
   return static_cast<double>(std::bit_cast<float>(u32_at(bytes, offset)));

@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;  // members in the order they are written
 
 constexpr std::uint32_t kArrayBuffer = 34962, kElementArrayBuffer = 34963;
-constexpr std::uint32_t kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
+constexpr std::uint32_t kFloats = 5126, kUnsignedShorts = 5123, kUnsignedInts = 5125;
 constexpr const char* kGenerator = "crease";
 
 // The attribute that a layer becomes.
@@ -312,7 +312,7 @@ class GlbWriter {
       for (std::uint32_t s : vertices) {
         append_value(stream.semantic, job.layers[l]->value(job.split.values[l][s]), stream.values);
       }
-      attributes[stream.semantic.name] = add_accessor(job.streams[l + 1], offset, kFloat,
+      attributes[stream.semantic.name] = add_accessor(job.streams[l + 1], offset, kFloats,
                                                       vertices.size(), stream.semantic.dimension);
     }
     return {{"attributes", std::move(attributes)},
@@ -334,7 +334,7 @@ class GlbWriter {
         stream.values.push_back(x);
       }
     }
-    const std::size_t accessor = add_accessor(job.streams[0], offset, kFloat, vertices.size(), 3);
+    const std::size_t accessor = add_accessor(job.streams[0], offset, kFloats, vertices.size(), 3);
     accessors_[accessor]["min"] = low;
     accessors_[accessor]["max"] = high;
     return accessor;
@@ -345,11 +345,11 @@ class GlbWriter {
     if (vertex_count > 65535) {
       const std::size_t offset = wide_.size() * 4;
       wide_.insert(wide_.end(), indices.begin(), indices.end());
-      return add_accessor(kWide, offset, kUnsignedInt, indices.size(), 1);
+      return add_accessor(kWide, offset, kUnsignedInts, indices.size(), 1);
     }
     const std::size_t offset = narrow_.size() * 2;
     for (std::uint32_t i : indices) narrow_.push_back(static_cast<std::uint16_t>(i));
-    return add_accessor(kNarrow, offset, kUnsignedShort, indices.size(), 1);
+    return add_accessor(kNarrow, offset, kUnsignedShorts, indices.size(), 1);
   }
 
   // The bufferView is known at the end, when the streams have their sizes.

@@ -39,7 +39,7 @@ nlohmann::json json_of(const std::vector<std::byte>& bytes) {
   return nlohmann::json::parse(text, text + length, nullptr, false);
 }
 
-const AttributeLayer& layer_named(const Mesh& mesh, const std::string& name) {
+const AttributeLayer& required_layer(const Mesh& mesh, const std::string& name) {
   const auto found = std::ranges::find(mesh.layers, name, &AttributeLayer::name);
   REQUIRE(found != mesh.layers.end());
   return *found;
@@ -154,10 +154,10 @@ TEST_CASE("GLB: texture coordinates, colours, own layers, materials and parts co
   CHECK(largest_move(sorted, back) == 0);  // halves and quarters around the middle are floats
   for (const char* name : {"normal", "uv", "color", "wind"}) {
     CAPTURE(name);
-    CHECK(largest_difference(layer_named(sorted, name), layer_named(back, name)) < 1e-7);
+    CHECK(largest_difference(required_layer(sorted, name), required_layer(back, name)) < 1e-7);
   }
-  CHECK(largest_difference(layer_named(sorted, "semantic surface"),
-                           layer_named(back, "semantic_surface")) == 0);
+  CHECK(largest_difference(required_layer(sorted, "semantic surface"),
+                           required_layer(back, "semantic_surface")) == 0);
 }
 
 TEST_CASE("GLB: city coordinates lose less than a ten-thousandth of a millimetre per metre") {
