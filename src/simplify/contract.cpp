@@ -12,6 +12,9 @@ namespace {
 constexpr double kSameValue = 1e-3;
 constexpr double kSameCopy = 2e-2;  // for a wedge that only moved along
 
+// A pair that would fold something is tried again at once so often; then it waits.
+constexpr std::uint32_t kTries = 2;
+
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
@@ -68,17 +71,18 @@ PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
 }
 
 void PatchSimplifier::hold(const Entry& entry, double cost, double cost_with_ring) {
-  if (blamed_ == kNone) {
+  if (blamed_ == kNone || entry.tries >= kTries) {
     if (cost_with_ring <= steering_.cost_limit) {
-      push({static_cast<float>(cost_with_ring), entry.a, entry.b, kNone});
+      push({static_cast<float>(cost_with_ring), entry.a, entry.b, kNone, entry.tries});
     }
     return;
   }
   const Index id = static_cast<Index>(held_.size());
-  held_.push_back({entry.a, entry.b, held_of_triangle_[blamed_], static_cast<float>(cost), true});
+  held_.push_back({entry.a, entry.b, held_of_triangle_[blamed_], static_cast<float>(cost),
+                   entry.tries + 1, true});
   held_of_triangle_[blamed_] = id;
   if (!(cost_with_ring <= steering_.cost_limit)) return;
-  push({static_cast<float>(cost_with_ring), entry.a, entry.b, id});
+  push({static_cast<float>(cost_with_ring), entry.a, entry.b, id, entry.tries + 1});
 }
 
 void PatchSimplifier::release(Index triangle) {
@@ -87,7 +91,7 @@ void PatchSimplifier::release(Index triangle) {
   for (; i != kNone; i = held_[i].next) {
     if (!held_[i].waiting) continue;
     held_[i].waiting = false;
-    push({held_[i].cost, held_[i].a, held_[i].b, kNone});
+    push({held_[i].cost, held_[i].a, held_[i].b, kNone, held_[i].tries});
   }
 }
 
@@ -99,7 +103,7 @@ PatchResult PatchSimplifier::run() {
   for (const auto& [a, b] : pairs_) {
     const double cost = place(a, b).cost;
     if (!(cost <= steering_.cost_limit)) continue;
-    order_.push_back({static_cast<float>(cost), a, b, kNone});
+    order_.push_back({static_cast<float>(cost), a, b, kNone, 0});
   }
   std::sort(order_.begin(), order_.end(), [](const Entry& x, const Entry& y) { return y < x; });
 

@@ -26,11 +26,15 @@ void PatchSimplifier::blame(Index t, double cost) {
   blamed_cost_ = cost;
 }
 
-double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target) {
+// Stops when it is above `bound`: dear enough.
+double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double bound) {
   double cost = 0;
   const double step2 = squared(vertices_[b].position - vertices_[a].position);
   const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
-  for (std::size_t i = 0; i < ring_corners_.size(); ++i) {
+  const bool a_stays = target == vertices_[a].position, b_stays = target == vertices_[b].position;
+  const std::size_t begin = a_stays ? ring_kept_ : 0;
+  const std::size_t end = b_stays ? ring_kept_ : ring_corners_.size();
+  for (std::size_t i = begin; i < end && cost <= bound; ++i) {
     const Index t = ring_corners_[i] / 3;
     const Vec3d before = normal_of(t);
     const Vec3d after = normal_if_moved(t, i < ring_kept_ ? a : b, target);
@@ -48,9 +52,6 @@ double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target) {
     if (!(own > 0)) continue;
     blame(t, own);
     cost += own;
-  }
-  if (!represented_.empty()) {
-    for (Index t : vanishing_) cost += normal_scale2 * vanishing_error(t);
   }
   return cost;
 }
@@ -86,10 +87,9 @@ double PatchSimplifier::coincidence_cost(Index a, Index b) {
   return cost;
 }
 
-double PatchSimplifier::ring_cost(Index a, Index b, const Vec3d& target) {
-  blamed_ = kNone;
-  blamed_cost_ = 0;
-  double cost = fold_cost(a, b, target);
+// What does not depend on where the vertex goes.
+double PatchSimplifier::vanishing_cost(Index a, Index b) {
+  double cost = coincidence_cost(a, b);
   if (ring_corners_.empty()) {
     // A part disappears. Its own planes may not mind; whoever looks at it does.
     if (steering_.keep_one_triangle && vanishing_.size() >= live_triangles_) {
@@ -99,7 +99,39 @@ double PatchSimplifier::ring_cost(Index a, Index b, const Vec3d& target) {
     for (Index t : vanishing_) area += 0.5 * length(normal_of(t));
     cost += area * squared(vertices_[b].position - vertices_[a].position);
   }
-  return cost + coincidence_cost(a, b);
+  if (!represented_.empty()) {
+    const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
+    for (Index t : vanishing_) cost += normal_scale2 * vanishing_error(t);
+  }
+  return cost;
+}
+
+// The place with the triangles around it included: where the optimum would fold one, an end of the
+// pair or its middle may not.
+PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed best,
+                                                    const Quadric* cost_if_kept) {
+  blamed_ = kNone;
+  blamed_cost_ = 0;
+  find_ring(a, b);
+  const double free_cost = best.cost;
+  const double vanishing = vanishing_cost(a, b);
+  const double limit = steering_.cost_limit - vanishing;
+  if (!(free_cost <= limit)) return {free_cost + vanishing, best.position};
+  const double fold = fold_cost(a, b, best.position, limit - free_cost);
+  best.cost += fold;
+  if (fold > 0) {
+    const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
+    const Vec3d others[] = {pa, pb, rounded((pa + pb) * 0.5)};
+    const int count = steering_.placement == Placement::Endpoint ? 2 : 3;
+    for (int i = 0; i < count; ++i) {
+      const double cost = std::max(free_cost, cost_if_kept[i == 1].at(others[i]));
+      if (!(cost < best.cost)) continue;
+      const double total = cost + fold_cost(a, b, others[i], best.cost - cost);
+      if (total < best.cost) best = {total, others[i]};
+    }
+  }
+  best.cost += vanishing;
+  return best;
 }
 
 }  // namespace crease::simplification

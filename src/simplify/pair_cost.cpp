@@ -18,15 +18,6 @@ constexpr double kGridNoise = 0.5;
 // The optimum stays within this many pair lengths of the pair's middle.
 constexpr double kReach = 1.0;
 
-// To the nearest integer; |x| < 2^51. std::round is a call where there is no SSE 4.1.
-double rounded(double x) {
-  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
-  return (x + kShift) - kShift;
-}
-Vec3d rounded(const Vec3d& x) {
-  return {rounded(x.x), rounded(x.y), rounded(x.z)};
-}
-
 }  // namespace
 
 double PatchSimplifier::layer_scale(std::size_t layer) const {
@@ -227,27 +218,6 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
   const double cost_x = sum.at(x);
   if (cost_x < best.cost - tie - grid_noise) best = {cost_x, x};
   best.cost += tie;
-  return best;
-}
-
-// The place with the ring included: where the optimum would fold a triangle, an end of the pair or
-// its middle may not.
-PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed best,
-                                                    const Quadric* cost_if_kept) {
-  find_ring(a, b);
-  const double ring = ring_cost(a, b, best.position);
-  const double free_cost = best.cost;
-  best.cost += ring;
-  if (!(ring > 0)) return best;
-  const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
-  const Vec3d others[] = {pa, pb, rounded((pa + pb) * 0.5)};
-  const int count = steering_.placement == Placement::Endpoint ? 2 : 3;
-  for (int i = 0; i < count; ++i) {
-    const double cost = std::max(free_cost, cost_if_kept[i == 1].at(others[i]));
-    if (!(cost < best.cost)) continue;
-    const double total = cost + ring_cost(a, b, others[i]);
-    if (total < best.cost) best = {total, others[i]};
-  }
   return best;
 }
 

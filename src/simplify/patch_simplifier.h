@@ -5,7 +5,7 @@
 //   patch.start(work, triangles, patch_id, steering);
 //   PatchResult result = patch.run();
 //
-// Inside, everything is local and small enough for the second-level cache: 16,000 triangles take
+// Inside, everything is local and small enough for the second-level cache: 8,000 triangles take
 // about 3 MB. Vertices that other patches share are locked: they neither move nor vanish.
 #pragma once
 
@@ -77,6 +77,7 @@ class PatchSimplifier {
     float cost;
     Index a, b;
     Index held;                             // in held_, or kNone
+    Index tries;                            // so often it was held
     bool operator<(const Entry& o) const {  // std heaps put the largest first
       return cost != o.cost ? cost > o.cost : a != o.a ? a > o.a : b > o.b;
     }
@@ -107,7 +108,6 @@ class PatchSimplifier {
   // pair_cost.cpp
   // `cost_if_kept`: when given, the cost as a function of the place, for keeping a's or b's values.
   Placed place(Index a, Index b, Quadric* cost_if_kept = nullptr);
-  Placed make_legal(Index a, Index b, Placed best, const Quadric* cost_if_kept);
   bool meet(Index a, Index b) const;
   void join_wedges(std::size_t layer, Index a, Index b, std::vector<Joined>& joined);
   void add_attribute_costs(Index a, Index b, Quadric& sum);
@@ -115,8 +115,9 @@ class PatchSimplifier {
   double layer_scale(std::size_t layer) const;
 
   // legality.cpp
-  double ring_cost(Index a, Index b, const Vec3d& target);
-  double fold_cost(Index a, Index b, const Vec3d& target);
+  Placed make_legal(Index a, Index b, Placed best, const Quadric* cost_if_kept);
+  double vanishing_cost(Index a, Index b);
+  double fold_cost(Index a, Index b, const Vec3d& target, double bound);
   double coincidence_cost(Index a, Index b);
   void blame(Index t, double cost);
 
@@ -209,11 +210,12 @@ class PatchSimplifier {
     Index a, b;
     Index next;  // in the list of the same triangle
     float cost;  // without the fold
+    Index tries;
     bool waiting;
   };
   std::vector<Held> held_;
   std::vector<Index> held_of_triangle_;  // head of a list in held_, or kNone
-  Index blamed_ = kNone;                 // by the last ring_cost()
+  Index blamed_ = kNone;                 // by the last make_legal()
   double blamed_cost_ = 0;
 
   // Scratch of load_edges().

@@ -30,6 +30,15 @@ inline double sum_of(const Row& r) {
   return (r[0] + r[2]) + (r[1] + r[3]);
 }
 
+// To the nearest grid position; |x| < 2^51. std::round is a call where there is no SSE 4.1.
+inline double rounded(double x) {
+  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
+  return (x + kShift) - kShift;
+}
+inline Vec3d rounded(const Vec3d& x) {
+  return {rounded(x.x), rounded(x.y), rounded(x.z)};
+}
+
 struct Quadric {
   // The symmetric matrix of x^T A x + 2 b x + c by rows: (A | b) and below it c.
   Row row[3] = {};

@@ -11,22 +11,57 @@ namespace {
 
 // How many cells away a partner is looked for. Cells hold about two vertices, so "near" is also
 // relative to how dense the vertices are.
-constexpr int kShells = 3;
+constexpr int kShells = 2;
 
+// Vertices by the cell of a grid that they lie in.
 class Cells {
  public:
-  Cells(const Vec3d& low, double size) : low_(low), size_(size) {}
-  std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return (std::uint64_t(x + 8) << 42) ^ (std::uint64_t(y + 8) << 21) ^ std::uint64_t(z + 8);
+  Cells(const Vec3d& low, const Vec3d& high, double size, std::size_t vertex_count) : low_(low) {
+    // Never many more cells than vertices.
+    const double most = 8 * static_cast<double>(vertex_count) + 64;
+    for (size_ = size;; size_ *= 1.5) {
+      double cells = 1;
+      for (int i = 0; i < 3; ++i) cells *= std::floor((high[i] - low[i]) / size_) + 1;
+      if (cells <= most) break;
+    }
+    for (int i = 0; i < 3; ++i) count_[i] = static_cast<int>((high[i] - low[i]) / size_) + 1;
+    first_.assign(std::size_t(count_[0]) * count_[1] * count_[2] + 1, 0);
   }
-  void cell(const Vec3d& p, std::int64_t (&c)[3]) const {
-    for (int i = 0; i < 3; ++i) c[i] = static_cast<std::int64_t>((p[i] - low_[i]) / size_);
-  }
+
   double size() const { return size_; }
+  int coordinate(const Vec3d& p, int axis) const {
+    return std::min(static_cast<int>((p[axis] - low_[axis]) / size_), count_[axis] - 1);
+  }
+
+  // Twice over all vertices: count() them, then, after start(), put() them, in ascending order.
+  void count(const Vec3d& p) { ++first_[cell_of(p)]; }
+  void start() {
+    std::uint32_t sum = 0;
+    for (std::uint32_t& first : first_) sum = first += sum;  // ends
+    vertices_.resize(sum);
+  }
+  void put_backwards(const Vec3d& p, std::uint32_t v) { vertices_[--first_[cell_of(p)]] = v; }
+
+  // Empty outside of the grid.
+  std::span<const std::uint32_t> at(int x, int y, int z) const {
+    if (x < 0 || y < 0 || z < 0 || x >= count_[0] || y >= count_[1] || z >= count_[2]) return {};
+    const std::size_t cell = index(x, y, z);
+    return std::span(vertices_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+  }
 
  private:
+  std::size_t index(int x, int y, int z) const {
+    return (std::size_t(z) * count_[1] + y) * count_[0] + x;
+  }
+  std::size_t cell_of(const Vec3d& p) const {
+    return index(coordinate(p, 0), coordinate(p, 1), coordinate(p, 2));
+  }
+
   Vec3d low_;
-  double size_;
+  double size_ = 1;
+  int count_[3] = {1, 1, 1};
+  std::vector<std::uint32_t> first_;  // in vertices_, by cell
+  std::vector<std::uint32_t> vertices_;
 };
 
 }  // namespace
@@ -53,22 +88,17 @@ void PatchSimplifier::find_virtual_pairs() {
   double volume = 1;
   for (int i = 0; i < 3; ++i) volume *= std::max(extent[i], longest / std::sqrt(double(n)));
   const double density = std::cbrt(2 * volume / n);
-  const Cells cells(low, std::max(std::min(density, steering_.virtual_distance), longest / 1e6));
-
-  std::vector<std::pair<std::uint64_t, Index>> sorted(n);
-  for (Index v = 0; v < n; ++v) {
-    std::int64_t c[3];
-    cells.cell(vertices_[v].position, c);
-    sorted[v] = {cells.key(c[0], c[1], c[2]), v};
-  }
-  std::sort(sorted.begin(), sorted.end());
+  Cells cells(low, high, std::max(std::min(density, steering_.virtual_distance), longest / 1e6), n);
+  for (const Vertex& v : vertices_) cells.count(v.position);
+  cells.start();
+  for (Index v = n; v-- > 0;) cells.put_backwards(vertices_[v].position, v);
 
   const double limit2 = steering_.virtual_distance * steering_.virtual_distance;
   const std::size_t edge_count = pairs_.size();
   for (Index v = 0; v < n; ++v) {
     if (vertices_[v].locked) continue;
-    std::int64_t c[3];
-    cells.cell(vertices_[v].position, c);
+    int c[3];
+    for (int i = 0; i < 3; ++i) c[i] = cells.coordinate(vertices_[v].position, i);
     Index best = kNone;
     double best2 = limit2;
     for (int shell = 0; shell <= kShells; ++shell) {
@@ -78,10 +108,7 @@ void PatchSimplifier::find_virtual_pairs() {
         for (int y = -shell; y <= shell; ++y) {
           const bool inside = std::abs(x) < shell && std::abs(y) < shell;
           for (int z = -shell; z <= shell; z += inside ? std::max(1, 2 * shell) : 1) {
-            const std::uint64_t key = cells.key(c[0] + x, c[1] + y, c[2] + z);
-            auto at = std::lower_bound(sorted.begin(), sorted.end(), std::pair(key, Index(0)));
-            for (; at != sorted.end() && at->first == key; ++at) {
-              const Index u = at->second;
+            for (Index u : cells.at(c[0] + x, c[1] + y, c[2] + z)) {
               if (part[u] == part[v] || vertices_[u].locked) continue;
               const Vec3d gap = vertices_[u].position - vertices_[v].position;
               const double gap2 = dot(gap, gap);
