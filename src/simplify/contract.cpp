@@ -15,6 +15,10 @@ constexpr double kSameCopy = 2e-2;  // for a wedge that only moved along
 // A pair that would fold something is tried again at once so often; then it waits.
 constexpr std::uint32_t kTries = 2;
 
+// A contraction that costs more than this many times the next one is not chosen now; how much more
+// need not be known.
+constexpr double kDear = 8;
+
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
@@ -128,7 +132,9 @@ PatchResult PatchSimplifier::run() {
       push(entry);
       continue;
     }
-    placed = make_legal(entry.a, entry.b, placed, cost_if_kept);
+    const double bound =
+        std::min(steering_.cost_limit, kDear * double(std::max(next, static_cast<float>(cost))));
+    placed = make_legal(entry.a, entry.b, placed, bound, cost_if_kept);
     if (!(placed.cost <= steering_.cost_limit) ||
         (static_cast<float>(placed.cost) > entry.cost && static_cast<float>(placed.cost) > next)) {
       hold(entry, cost, placed.cost);

@@ -107,17 +107,14 @@ double PatchSimplifier::vanishing_cost(Index a, Index b) {
 }
 
 // The place with the triangles around it included: where the optimum would fold one, an end of the
-// pair or its middle may not.
-PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed best,
+// pair or its middle may not. A cost above `bound` is a lower one.
+PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed best, double bound,
                                                     const Quadric* cost_if_kept) {
   blamed_ = kNone;
   blamed_cost_ = 0;
   find_ring(a, b);
   const double free_cost = best.cost;
-  const double vanishing = vanishing_cost(a, b);
-  const double limit = steering_.cost_limit - vanishing;
-  if (!(free_cost <= limit)) return {free_cost + vanishing, best.position};
-  const double fold = fold_cost(a, b, best.position, limit - free_cost);
+  const double fold = fold_cost(a, b, best.position, bound - free_cost);
   best.cost += fold;
   if (fold > 0) {
     const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
@@ -126,11 +123,11 @@ PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed bes
     for (int i = 0; i < count; ++i) {
       const double cost = std::max(free_cost, cost_if_kept[i == 1].at(others[i]));
       if (!(cost < best.cost)) continue;
-      const double total = cost + fold_cost(a, b, others[i], best.cost - cost);
+      const double total = cost + fold_cost(a, b, others[i], std::min(best.cost, bound) - cost);
       if (total < best.cost) best = {total, others[i]};
     }
   }
-  best.cost += vanishing;
+  if (best.cost <= bound) best.cost += vanishing_cost(a, b);
   return best;
 }
 

@@ -15,8 +15,9 @@ constexpr double kThin = 1e-4;
 // a faceted sphere every edge is hard, and none of them is a feature.
 constexpr double kFlatLineCosine = 0.866;  // 30 degrees
 
-// Two sheets folded onto each other: the planes agree, so only a line can hold the edge.
-constexpr double kFoldCosine = -0.5;
+// Two triangles on the same side of their edge, folded onto each other or doubled: the planes
+// agree, so only a line can hold the edge.
+constexpr double kFoldCosine = 0.5;
 
 }  // namespace
 
@@ -251,6 +252,17 @@ void PatchSimplifier::load_edges() {
   }
 }
 
+// The unit vector in the triangle's plane that leads away from its edge v-w.
+Vec3d PatchSimplifier::away_from(Index t, Index v, Index w) const {
+  const Vec3d& p = vertices_[v].position;
+  const Vec3d edge = vertices_[w].position - p;
+  const Index* corners = &vertex_of_corner_[3 * t];
+  Vec3d side = vertices_[corners[0] ^ corners[1] ^ corners[2] ^ v ^ w].position - p;
+  const double length2 = dot(edge, edge);
+  if (length2 > 0) side -= edge * (dot(side, edge) / length2);
+  return normalized(side);
+}
+
 // Whether an edge is a border, a crease, or where more than two sheets meet.
 bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
   if (edge.triangle_count != 2) return true;
@@ -260,8 +272,7 @@ bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
           work_->category_of_triangle[global_triangle_[u]]) {
     return true;
   }
-  const double bend = dot(unit_normal_[t], unit_normal_[u]);
-  if (bend < kFoldCosine) return true;
+  if (dot(away_from(t, v, w), away_from(u, v, w)) > kFoldCosine) return true;
   if (!several_wedges_[v] && !several_wedges_[w]) return false;
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const auto wedge_at = [&](Index triangle, Index vertex) {
@@ -270,7 +281,7 @@ bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
     if (wedge_at(t, v) == wedge_at(u, v) && wedge_at(t, w) == wedge_at(u, w)) continue;
     const bool facets =
         work_->layers[l].is_normal && (flat_[t] || derived_[t]) && (flat_[u] || derived_[u]);
-    if (!facets || bend < kFlatLineCosine) return true;
+    if (!facets || dot(unit_normal_[t], unit_normal_[u]) < kFlatLineCosine) return true;
   }
   return false;
 }

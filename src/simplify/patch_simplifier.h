@@ -99,6 +99,7 @@ class PatchSimplifier {
   void load_wedges();
   void load_quadrics();
   void load_edges();
+  Vec3d away_from(Index t, Index v, Index w) const;
   bool is_line(Index v, const Edge& edge) const;
   void add_line(Index a, Index b, Index triangle);
 
@@ -115,7 +116,7 @@ class PatchSimplifier {
   double layer_scale(std::size_t layer) const;
 
   // legality.cpp
-  Placed make_legal(Index a, Index b, Placed best, const Quadric* cost_if_kept);
+  Placed make_legal(Index a, Index b, Placed best, double bound, const Quadric* cost_if_kept);
   double vanishing_cost(Index a, Index b);
   double fold_cost(Index a, Index b, const Vec3d& target, double bound);
   double coincidence_cost(Index a, Index b);

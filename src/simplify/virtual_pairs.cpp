@@ -13,6 +13,9 @@ namespace {
 // relative to how dense the vertices are.
 constexpr int kShells = 2;
 
+// Where vertices crowd, no more than these are looked at for each.
+constexpr int kCandidates = 200;
+
 // Vertices by the cell of a grid that they lie in.
 class Cells {
  public:
@@ -101,6 +104,7 @@ void PatchSimplifier::find_virtual_pairs() {
     for (int i = 0; i < 3; ++i) c[i] = cells.coordinate(vertices_[v].position, i);
     Index best = kNone;
     double best2 = limit2;
+    int candidates = 0;
     for (int shell = 0; shell <= kShells; ++shell) {
       const double reached = (shell - 1) * cells.size();
       if (shell > 1 && reached * reached > best2) break;
@@ -109,6 +113,7 @@ void PatchSimplifier::find_virtual_pairs() {
           const bool inside = std::abs(x) < shell && std::abs(y) < shell;
           for (int z = -shell; z <= shell; z += inside ? std::max(1, 2 * shell) : 1) {
             for (Index u : cells.at(c[0] + x, c[1] + y, c[2] + z)) {
+              if (++candidates > kCandidates) break;
               if (part[u] == part[v] || vertices_[u].locked) continue;
               const Vec3d gap = vertices_[u].position - vertices_[v].position;
               const double gap2 = dot(gap, gap);
