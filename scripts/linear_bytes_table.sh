@@ -24,11 +24,11 @@ for model; do
   "$crease" info "$file" --json | python3 -c '
 import json, os, sys
 info, name = json.load(sys.stdin), os.path.basename(sys.argv[1]).split(".")[0]
-b, t = info["linear_bytes"], info["triangles"]
-kinds = " / ".join(f"{100 * info[k + "_triangles"] / t:.0f}" for k in ("sn", "fn", "nsn"))
-def megabytes(n): return f"{n / 1e6:.2f} MB"
-print(f"| {name} | {t:,} | {kinds} % | {megabytes(b["crease"])} | {megabytes(b["wedge"])} | "
-      f"{megabytes(b["replicated"])} | {100 * b["crease"] / b["wedge"]:.0f} % | "
-      f"{100 * b["crease"] / b["replicated"]:.0f} % |")
+count, linear = info["triangles"], info["linear_bytes"]
+kinds = [100 * info[kind] / count for kind in ("sn_triangles", "fn_triangles", "nsn_triangles")]
+three, wedge, replicated = linear["crease"], linear["wedge"], linear["replicated"]
+sizes = " | ".join(f"{size / 1e6:.2f} MB" for size in (three, wedge, replicated))
+print(f"| {name} | {count:,} | {kinds[0]:.0f} / {kinds[1]:.0f} / {kinds[2]:.0f} % | {sizes} | "
+      f"{100 * three / wedge:.0f} % | {100 * three / replicated:.0f} % |")
 ' "$model"
 done

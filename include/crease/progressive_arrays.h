@@ -129,7 +129,7 @@ struct LinearBytes {
   std::size_t crease = 0;      // section 5: positions once, normals by kind
   std::size_t wedge = 0;       // Hoppe 1998: faces -> wedges -> vertices
   std::size_t replicated = 0;  // a vertex for every (position, normal) pair, one index buffer
-  std::size_t records = 0;     // packed contractions, corner changes, deltas
+  std::size_t records = 0;     // packed contractions, and normals that only coarser levels show
 };
 LinearBytes linear_bytes(const ProgressiveArrays& arrays);
 

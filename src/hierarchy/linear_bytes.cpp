@@ -34,6 +34,15 @@ std::size_t wedge_count(const ProgressiveArrays& arrays) {
   return static_cast<std::size_t>(std::unique(wedges.begin(), wedges.end()) - wedges.begin());
 }
 
+// Normals that the full level shows; the others come up at coarser levels only.
+std::size_t full_normal_count(const ProgressiveArrays& arrays) {
+  std::vector<bool> shown(arrays.normals.size(), false);
+  std::fill_n(shown.begin(), arrays.full.sn_vertices, true);
+  for (const std::uint32_t normal : arrays.fn_normals) shown[normal] = true;
+  for (const std::uint32_t normal : arrays.nsn_normals) shown[normal] = true;
+  return static_cast<std::size_t>(std::count(shown.begin(), shown.end(), true));
+}
+
 template <typename T>
 std::size_t bytes_of(const std::vector<T>& v) {
   return v.size() * sizeof(T);
@@ -46,16 +55,18 @@ LinearBytes linear_bytes(const ProgressiveArrays& arrays) {
   const std::size_t positions = kPosition * full.vertices();
   const std::size_t triangles = 3 * kIndex * full.triangles();
   const std::size_t wedges = wedge_count(arrays);
+  const std::size_t normals = full_normal_count(arrays);
   const PackedContractions& p = arrays.contractions;
 
   LinearBytes bytes;
-  bytes.crease = positions + triangles + kNormal * arrays.normals.size() +
+  bytes.crease = positions + triangles + kNormal * normals +
                  kIndex * (arrays.fn_normals.size() + arrays.nsn_normals.size());
   bytes.wedge = positions + triangles + (kIndex + kNormal) * wedges;
   bytes.replicated = triangles + (kPosition + kNormal) * wedges;
   bytes.records = bytes_of(p.kept) + bytes_of(p.headers) + bytes_of(p.deltas) + bytes_of(p.wide) +
                   bytes_of(p.corners) + bytes_of(p.own) + bytes_of(p.block_ends) +
-                  bytes_of(p.blocks) + bytes_of(p.errors);
+                  bytes_of(p.blocks) + bytes_of(p.errors) +
+                  kNormal * (arrays.normals.size() - normals);
   return bytes;
 }
 
