@@ -193,6 +193,9 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   for (Index corner : ring_corners_) triangle_pool_.push_back(corner / 3);
   q.triangles = {first, static_cast<Index>(triangle_pool_.size()) - first};
   q.position = target;
+  if (!work_->category_of_triangle.empty() && category_around_[kept] != category_around_[removed]) {
+    category_around_[kept] = kNone;
+  }
   q.flat_around = q.flat_around && p.flat_around;
   p.alive = false;
   p.into = kept;

@@ -12,17 +12,13 @@ namespace crease::simplification {
 
 namespace {
 
-// How much a geometric normal that leaves the shown one counts beside a shown one that leaves the
-// input's.
-constexpr double kTurnShare = 0.1;
+// A flat triangle shows its geometric normal from where that is nearer to the input by this much
+// (squared chord of about two degrees).
+constexpr double kDeriveMargin = 1.2e-3;
 
 // How much a normal that nothing shows any more counts. In full it would make the last contractions
 // of a small feature dearer than the ruin of a large one.
 constexpr double kVanishShare = 0.1;
-
-// A flat triangle shows its geometric normal from where that is nearer to the input by this much
-// (squared chord of about two degrees).
-constexpr double kDeriveMargin = 1.2e-3;
 
 double squared(const Vec3d& v) {
   return dot(v, v);
@@ -66,13 +62,13 @@ Vec3d PatchSimplifier::shown_normal(Index t) const {
   return {wedge.value[0], wedge.value[1], wedge.value[2]};
 }
 
-// With the geometric unit normal `normal`, the better of stored and derived.
+// With the geometric unit normal `normal`, the better of stored and derived. A triangle that turns
+// away from the normal it goes on showing is as wrong as one that shows a wrong normal.
 double PatchSimplifier::flat_error(Index t, const Vec3d& normal, double area) const {
   const double derived = error_of(represented_[t], normal);
   if (derived_[t]) return derived;
   const Vec3d stored = shown_normal(t);
-  return std::min(derived,
-                  error_of(represented_[t], stored) + kTurnShare * area * squared(normal - stored));
+  return std::min(derived, error_of(represented_[t], stored) + area * squared(normal - stored));
 }
 
 // Among the surviving triangles that touch the vanishing one's third vertex; see find_ring().

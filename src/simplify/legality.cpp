@@ -14,6 +14,10 @@ namespace {
 // A triangle that turns by more than this has folded over.
 constexpr double kFoldCosine = 0.2;
 
+// What an area that changes hands between materials or parts counts, beside one whose normal is off
+// by a radian.
+constexpr double kCategoryShare = 1;
+
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
@@ -87,6 +91,32 @@ double PatchSimplifier::coincidence_cost(Index a, Index b) {
   return cost;
 }
 
+// Materials and parts: a window that vanishes leaves its area to the wall, and one that swells
+// takes the wall's. Area that only vanishes costs nothing here.
+double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
+  if (work_->category_of_triangle.empty()) return 0;
+  if (category_around_[a] == category_around_[b] && category_around_[a] != kNone) return 0;
+  changed_area_.clear();
+  const auto change = [&](Index t, double area) {
+    const Index category = category_of(t);
+    for (auto& [other, sum] : changed_area_) {
+      if (other != category) continue;
+      sum += area;
+      return;
+    }
+    changed_area_.emplace_back(category, area);
+  };
+  for (Index t : vanishing_) change(t, -0.5 * length(normal_of(t)));
+  for (std::size_t i = 0; i < ring_corners_.size(); ++i) {
+    const Index t = ring_corners_[i] / 3, moved = i < ring_kept_ ? a : b;
+    if (target == vertices_[moved].position) continue;
+    change(t, 0.5 * (length(normal_if_moved(t, moved, target)) - length(normal_of(t))));
+  }
+  double gained = 0, lost = 0;
+  for (const auto& [category, area] : changed_area_) (area > 0 ? gained : lost) += std::abs(area);
+  return kCategoryShare * steering_.normal_scale * steering_.normal_scale * std::min(gained, lost);
+}
+
 // What does not depend on where the vertex goes.
 double PatchSimplifier::vanishing_cost(Index a, Index b) {
   double cost = coincidence_cost(a, b);
@@ -106,6 +136,11 @@ double PatchSimplifier::vanishing_cost(Index a, Index b) {
   return cost;
 }
 
+double PatchSimplifier::ring_cost(Index a, Index b, const Vec3d& target, double bound) {
+  const double cost = fold_cost(a, b, target, bound);
+  return cost <= bound ? cost + category_cost(a, b, target) : cost;
+}
+
 // The place with the triangles around it included: where the optimum would fold one, an end of the
 // pair or its middle may not. A cost above `bound` is a lower one.
 PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed best, double bound,
@@ -114,7 +149,7 @@ PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed bes
   blamed_cost_ = 0;
   find_ring(a, b);
   const double free_cost = best.cost;
-  const double fold = fold_cost(a, b, best.position, bound - free_cost);
+  const double fold = ring_cost(a, b, best.position, bound - free_cost);
   best.cost += fold;
   if (fold > 0) {
     const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
@@ -123,7 +158,7 @@ PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed bes
     for (int i = 0; i < count; ++i) {
       const double cost = std::max(free_cost, cost_if_kept[i == 1].at(others[i]));
       if (!(cost < best.cost)) continue;
-      const double total = cost + fold_cost(a, b, others[i], std::min(best.cost, bound) - cost);
+      const double total = cost + ring_cost(a, b, others[i], std::min(best.cost, bound) - cost);
       if (total < best.cost) best = {total, others[i]};
     }
   }

@@ -96,6 +96,17 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
   }
   mark_.assign(vertices_.size(), 0);
   mark_now_ = 0;
+
+  if (!work_->category_of_triangle.empty()) {
+    category_around_.resize(vertices_.size());
+    for (Index t = 0; t < n; ++t) {
+      for (Index c = 0; c < 3; ++c) category_around_[vertex_of_corner_[3 * t + c]] = category_of(t);
+    }
+    for (std::size_t corner = 0; corner < 3 * n; ++corner) {
+      Index& category = category_around_[vertex_of_corner_[corner]];
+      if (category != category_of(static_cast<Index>(corner / 3))) category = kNone;
+    }
+  }
 }
 
 // Wedges of a vertex lie together, in the order in which its triangles name them. Nearly all
@@ -267,9 +278,7 @@ Vec3d PatchSimplifier::away_from(Index t, Index v, Index w) const {
 bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
   if (edge.triangle_count != 2) return true;
   const Index w = edge.other, t = edge.triangle[0], u = edge.triangle[1];
-  if (!work_->category_of_triangle.empty() &&
-      work_->category_of_triangle[global_triangle_[t]] !=
-          work_->category_of_triangle[global_triangle_[u]]) {
+  if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) {
     return true;
   }
   if (dot(away_from(t, v, w), away_from(u, v, w)) > kFoldCosine) return true;

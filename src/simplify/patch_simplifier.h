@@ -117,6 +117,8 @@ class PatchSimplifier {
 
   // legality.cpp
   Placed make_legal(Index a, Index b, Placed best, double bound, const Quadric* cost_if_kept);
+  double ring_cost(Index a, Index b, const Vec3d& target, double bound);
+  double category_cost(Index a, Index b, const Vec3d& target);
   double vanishing_cost(Index a, Index b);
   double fold_cost(Index a, Index b, const Vec3d& target, double bound);
   double coincidence_cost(Index a, Index b);
@@ -167,6 +169,7 @@ class PatchSimplifier {
         .subspan(vertices_[v].triangles.first, vertices_[v].triangles.count);
   }
   Slice& wedges_of(std::size_t layer, Index v) { return wedge_slices_[layer][v]; }
+  Index category_of(Index t) const { return work_->category_of_triangle[global_triangle_[t]]; }
   std::size_t layer_count() const { return work_->layers.size(); }
 
   WorkMesh* work_ = nullptr;
@@ -195,6 +198,9 @@ class PatchSimplifier {
   std::vector<std::vector<AttributeQuadric>> attribute_quadrics_;  // by wedge; of layers that steer
   std::vector<std::vector<Slice>> wedge_slices_;                   // per layer and vertex
   std::vector<std::vector<Index>> wedge_of_corner_;
+
+  std::vector<Index> category_around_;  // by vertex; kNone: several
+  std::vector<std::pair<Index, double>> changed_area_;
 
   std::vector<std::pair<Index, Index>> pairs_;  // edges, then virtual pairs
   std::vector<Entry> order_;                    // the pairs of the start, cheapest first
