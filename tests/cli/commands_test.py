@@ -132,7 +132,7 @@ class Commands(tool.Case):
 
     def test_extract_by_count_and_ratio(self):
         full = self.json("info", self.built())["triangles"]
-        for option, value, most in (("--triangles", 500, 500), ("--ratio", 0.25, full / 4)):
+        for option, value, most in (("--triangles", 500, 500), ("--ratio", 0.25, int(full / 4 + 0.5))):
             out = self.path("level.ply")
             level = self.json("extract", self.built(), "-o", out, option, value)
             self.has(level, "asked", "triangles", "vertices", "stopped_by", "error",
