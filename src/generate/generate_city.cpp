@@ -18,6 +18,10 @@ namespace crease {
 namespace {
 
 constexpr double kKerb = 0.15;
+
+// Pavements and lawns lie one in the other. They reach so far down that no simplifier folds their
+// sides away while their tops are still apart.
+constexpr double kSlabDepth = 3;
 constexpr std::size_t kLandmarkFrom = 150'000;  // triangles: a small city has only a church
 constexpr double kRoad = 12;
 
@@ -133,10 +137,10 @@ class City {
     b_.place({.origin = middle});
     b_.coat(Coat::Stone);
     const double x = width / 2, y = depth / 2;
-    add_box(b_, {-x, -y, -0.5}, {x, y, kKerb});
+    add_box(b_, {-x, -y, -kSlabDepth - 0.5}, {x, y, kKerb});
     if (!green) return;
     b_.coat(Coat::Grass);
-    add_box(b_, {-x + 2, -y + 2, 0}, {x - 2, y - 2, kKerb + 0.05});
+    add_box(b_, {-x + 2, -y + 2, -kSlabDepth}, {x - 2, y - 2, kKerb + 0.05});
   }
 
   std::size_t used_triangle_count() const {
