@@ -108,7 +108,16 @@ struct NormalRule {
   std::string words;
 };
 
-NormalRule rule_of(const NormalPolicy& asked, const RawMesh& raw) {
+// Where sharp edges are fragments, as the noise of a scan makes them, none of them is a feature.
+constexpr double kMostLooseCreases = 0.3;
+constexpr std::size_t kScanTriangles = 2000;  // fewer say nothing about noise
+
+bool is_scan(const Mesh& mesh, double angle_deg) {
+  return mesh.triangle_count() >= kScanTriangles &&
+         loose_crease_share(mesh, angle_deg) > kMostLooseCreases;
+}
+
+NormalRule rule_of(const NormalPolicy& asked, const RawMesh& raw, const Mesh& mesh) {
   NormalRule rule;
   rule.soft.face_of_triangle = raw.face_of_triangle;
   NormalPolicy policy = asked;
@@ -119,6 +128,12 @@ NormalRule rule_of(const NormalPolicy& asked, const RawMesh& raw) {
       return rule;
     }
     policy = raw.default_normals;
+    if (policy.kind == NormalPolicy::Kind::Crease && is_scan(mesh, policy.crease_angle_deg)) {
+      rule.soft.max_angle_deg = 180;
+      rule.words =
+          "smooth (a scan: edges over " + in_degrees(policy.crease_angle_deg) + " are fragments)";
+      return rule;
+    }
   }
   switch (policy.kind) {
     case NormalPolicy::Kind::Keep:
@@ -151,10 +166,12 @@ void settle_normals(Mesh& mesh, const RawMesh& raw, const ImportOptions& options
     mesh.layers.erase(given);
     report.zero_normals = normalize_given(normals);
   }
-  const bool any_given = std::any_of(normals.of_corner.begin(), normals.of_corner.end(),
-                                     [](AttributeId a) { return a != kNoAttribute; });
-  const NormalRule rule = rule_of(options.normals, raw);
+  const auto is_given = [](AttributeId a) { return a != kNoAttribute; };
+  const bool any_given = std::any_of(normals.of_corner.begin(), normals.of_corner.end(), is_given);
+  const bool all_given = std::all_of(normals.of_corner.begin(), normals.of_corner.end(), is_given);
   const bool asked_for_new = options.normals.kind != NormalPolicy::Kind::Keep;
+  const NormalRule rule =
+      any_given && all_given && !asked_for_new ? NormalRule{} : rule_of(options.normals, raw, mesh);
   if (any_given && !asked_for_new) {
     const std::size_t missing = complete_normals(normals, mesh, rule.soft);
     report.normals = "the file's";

@@ -288,4 +288,21 @@ std::size_t complete_normals(AttributeLayer& given, const Mesh& mesh, const Soft
   return missing;
 }
 
+double loose_crease_share(const Mesh& mesh, double angle_deg) {
+  const std::vector<Vec3d> normals = face_normals(mesh, {});
+  const double cosine = std::cos(radians(angle_deg));
+  std::vector<std::uint32_t> creases_at(mesh.vertex_count(), 0);
+  for_each_edge(mesh, [&](std::span<const std::uint32_t> edge) {
+    if (edge.size() != 2 || dot(normals[edge[0] / 3], normals[edge[1] / 3]) >= cosine) return;
+    ++creases_at[vertex_at(mesh, edge[0])];
+    ++creases_at[vertex_at(mesh, next_corner(edge[0]))];
+  });
+  std::size_t any = 0, one = 0;
+  for (std::uint32_t count : creases_at) {
+    any += count > 0;
+    one += count == 1;
+  }
+  return any == 0 ? 0 : static_cast<double>(one) / static_cast<double>(any);
+}
+
 }  // namespace crease

@@ -142,6 +142,24 @@ TEST_CASE("counts agree with the independent table") {
   }
 }
 
+TEST_CASE("without normals a scan is smooth and a machine part is not") {
+  const std::filesystem::path scan = shared_model("scan/bunny_stanford.ply.xz");
+  const std::filesystem::path part = shared_model("cad/fandisk.off");
+  if (scan.empty() || part.empty()) return;
+  const Result<Imported> smooth = import_mesh(scan, {}), hard = import_mesh(part, {});
+  REQUIRE((smooth.ok() && hard.ok()));
+  CHECK(smooth->report.normals ==
+        "smooth (a scan: edges over 30 degrees are fragments), as the file has none");
+  const auto creased = [](const Mesh& mesh) {
+    const ShadingKinds kinds = classify_shading(mesh);
+    return std::count(kinds.of_vertex.begin(), kinds.of_vertex.end(), VertexKind::NSN);
+  };
+  CHECK(creased(smooth->mesh) == 0);
+  CHECK(hard->report.normals ==
+        "hard edges where the angle is over 30 degrees, as the file has none");
+  CHECK(creased(hard->mesh) > 100);
+}
+
 TEST_CASE("raw normals of a city become one normal a plane") {
   const std::filesystem::path path = shared_model("city/linz_oldtown_rawnormals_92k.obj.xz");
   if (path.empty()) return;

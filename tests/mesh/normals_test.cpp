@@ -73,6 +73,17 @@ TEST_CASE("a sphere is smooth below the angle and faceted above it") {
   CHECK(std::count(kinds.of_vertex.begin(), kinds.of_vertex.end(), VertexKind::SN) == 0);
 }
 
+TEST_CASE("creases of a solid hardly ever end, those of a noisy surface do at once") {
+  CHECK(loose_crease_share(hard_box(16), 30) == 0);
+  CHECK(loose_crease_share(hard_cylinder(64, 30), 30) == 0);
+  CHECK(loose_crease_share(smooth_sphere(24, 48), 30) == 0);
+  Mesh noisy = smooth_sphere(48, 96);
+  for (std::size_t v = 0; v < noisy.vertex_count(); v += 7) {
+    noisy.positions[v] = noisy.positions[v] * 1.02;
+  }
+  CHECK(loose_crease_share(noisy, 30) > 0.3);
+}
+
 TEST_CASE("smoothing groups decide alone") {
   // Sides 0 and 1 of a box in one group, the others in none.
   const Mesh box = without_normals(hard_box(1));
