@@ -15,7 +15,7 @@ all:
 
 demo:
 	scripts/setup.sh
-	scripts/build.sh release crease
+	scripts/build.sh release crease_cli
 	scripts/demo.py $(if $(MODEL),'$(MODEL)')
 
 test:

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Configures a preset and builds targets of it (all without a name), with ccache when it is there.
 #
-#   scripts/build.sh release crease
+#   scripts/build.sh release crease_cli
 set -eu
 cd "$(dirname "$0")/.."
 preset=$1
