@@ -179,8 +179,21 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
     error.line = raised(error.line, std::sqrt(line_[line].at(target) / line_[line].weight));
   }
 
-  // Wedges are joined while the vanishing triangles still stand.
   find_ring(kept, removed);
+  if (ring_corners_.empty()) {
+    // A part disappears: its planes fit what is left of it, but what it stood for is gone.
+    double longest2 = 0;
+    for (Index t : vanishing_) {
+      const Index* v = &vertex_of_corner_[3 * t];
+      for (Index c = 0; c < 3; ++c) {
+        longest2 = std::max(longest2,
+                            squared(vertices_[v[c]].position - vertices_[v[(c + 1) % 3]].position));
+      }
+    }
+    error.surface = raised(error.surface, std::sqrt(longest2));
+  }
+
+  // Wedges are joined while the vanishing triangles still stand.
   for (std::size_t l = 0; l < layer_count(); ++l) contract_layer(l, kept, removed, target, error);
   q.error = worst(worst(q.error, p.error), error);
 

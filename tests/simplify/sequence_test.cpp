@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace crease;
@@ -67,6 +69,40 @@ TEST_CASE("sequences of real models are legal and the same for 1, 2 and 7 thread
     if (path.empty() || (kSanitized && std::filesystem::file_size(path) > 200'000)) continue;
     CAPTURE(name);
     check_all(import_mesh(path, {})->mesh, 4000);
+  }
+}
+
+TEST_CASE("a part that disappears is in the error") {
+  // Eight boxes in a row, each half of the one before, far apart.
+  Mesh mesh = hard_box(1);
+  const Mesh box = mesh;
+  const std::size_t corners = box.positions.size();
+  for (int i = 1; i < 8; ++i) {
+    const double size = std::pow(0.5, i);
+    for (const Vec3d& p : box.positions) mesh.positions.push_back(p * size + Vec3d{10.0 * i, 0, 0});
+    for (const Triangle& t : box.triangles) {
+      Triangle copy;
+      for (int c = 0; c < 3; ++c) copy[c] = VertexId(index_of(t[c]) + corners * std::size_t(i));
+      mesh.triangles.push_back(copy);
+    }
+    const std::vector<AttributeId>& of_corner = box.normals()->of_corner;
+    mesh.layers[0].of_corner.insert(mesh.layers[0].of_corner.end(), of_corner.begin(),
+                                    of_corner.end());
+  }
+  const Grid grid = make_grid(mesh, {});
+  snap(mesh, grid);
+  const ContractionSequence sequence = *simplify(mesh, grid, {});
+  float told = 0;
+  for (std::size_t n = 0; n < sequence.contractions.size(); ++n) {
+    told = std::max(told, sequence.contractions[n].error.surface);
+    const Level level = apply_contractions(mesh, sequence, n + 1);
+    for (int i = 0; i < 8; ++i) {
+      const auto begin = level.alive.begin() + std::ptrdiff_t(box.triangle_count()) * i;
+      if (std::count(begin, begin + std::ptrdiff_t(box.triangle_count()), true) > 0) continue;
+      CAPTURE(n);
+      CAPTURE(i);
+      CHECK(double(told) >= 0.5 * std::pow(0.5, i));
+    }
   }
 }
 
