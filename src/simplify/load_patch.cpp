@@ -263,17 +263,6 @@ void PatchSimplifier::load_edges() {
   }
 }
 
-// The unit vector in the triangle's plane that leads away from its edge v-w.
-Vec3d PatchSimplifier::away_from(Index t, Index v, Index w) const {
-  const Vec3d& p = vertices_[v].position;
-  const Vec3d edge = vertices_[w].position - p;
-  const Index* corners = &vertex_of_corner_[3 * t];
-  Vec3d side = vertices_[corners[0] ^ corners[1] ^ corners[2] ^ v ^ w].position - p;
-  const double length2 = dot(edge, edge);
-  if (length2 > 0) side -= edge * (dot(side, edge) / length2);
-  return normalized(side);
-}
-
 // Whether an edge is a border, a crease, or where more than two sheets meet.
 bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
   if (edge.triangle_count != 2) return true;
@@ -281,7 +270,13 @@ bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
   if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) {
     return true;
   }
-  if (dot(away_from(t, v, w), away_from(u, v, w)) > kFoldCosine) return true;
+  // Sides that run through the edge in the same direction are inside out to each other.
+  const auto runs_to_w = [&](Index triangle) {
+    return vertex_of_corner_[3 * triangle + static_cast<Index>(corner_of(triangle, v) + 1) % 3] ==
+           w;
+  };
+  const double bend = dot(unit_normal_[t], unit_normal_[u]);
+  if (runs_to_w(t) == runs_to_w(u) ? bend > kFoldCosine : bend < -kFoldCosine) return true;
   if (!several_wedges_[v] && !several_wedges_[w]) return false;
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const auto wedge_at = [&](Index triangle, Index vertex) {
@@ -290,7 +285,7 @@ bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
     if (wedge_at(t, v) == wedge_at(u, v) && wedge_at(t, w) == wedge_at(u, w)) continue;
     const bool facets =
         work_->layers[l].is_normal && (flat_[t] || derived_[t]) && (flat_[u] || derived_[u]);
-    if (!facets || dot(unit_normal_[t], unit_normal_[u]) < kFlatLineCosine) return true;
+    if (!facets || bend < kFlatLineCosine) return true;
   }
   return false;
 }

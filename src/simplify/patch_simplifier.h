@@ -99,7 +99,6 @@ class PatchSimplifier {
   void load_wedges();
   void load_quadrics();
   void load_edges();
-  Vec3d away_from(Index t, Index v, Index w) const;
   bool is_line(Index v, const Edge& edge) const;
   void add_line(Index a, Index b, Index triangle);
 
