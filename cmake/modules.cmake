@@ -105,8 +105,10 @@ function(crease_test name)
   cmake_parse_arguments(ARG "THREADED" "" "SOURCES;FOLDERS;LIBRARIES" ${ARGN})
   crease_program(test_${name} SOURCES ${ARG_SOURCES} FOLDERS ${ARG_FOLDERS} mesh
                  LIBRARIES crease_test_support ${ARG_LIBRARIES})
-  # doctest and RapidCheck take longer than the tests.
+  # To compile doctest, RapidCheck and nlohmann-json takes longer than to run the tests; what they
+  # test is as optimized as ever.
   set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 7)
+  target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   add_test(NAME ${name} COMMAND test_${name})
   if(ARG_THREADED)
     set_tests_properties(${name} PROPERTIES LABELS threads)
