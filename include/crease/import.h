@@ -64,7 +64,8 @@ struct Imported {
 // Reads one file; `.zst` and `.xz` are unpacked on the way. The format is told from the name and,
 // where that says nothing, from the first bytes. Formats' own default for absent normals: glTF and
 // CityJSON flat; STL, PLY and OFF crease 30 degrees; OBJ smoothing groups, without them crease 30.
-// Where most edges over 30 degrees are fragments, as in scans, crease 30 gives way to smooth. An edge inside a polygon of the file is never hard. Time O(n log n), memory about three times the
+// Where most edges over 30 degrees are fragments, as in scans, crease 30 gives way to smooth. An
+// edge inside a polygon of the file is never hard. Time O(n log n), memory about three times the
 // mesh.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options);
 

@@ -33,8 +33,9 @@ struct SoftEdges {
 // its neighbour's across its longest edges; if there is none, +z.
 std::vector<Vec3d> face_normals(const Mesh& mesh, std::span<const std::uint32_t> face_of_triangle);
 
-// How much of the creases is fragments: of the vertices at edges sharper than `angle_deg`, the share
-// with one such edge only, where a crease just ends. Real creases seldom end; noise does at once.
+// How much of the creases is fragments: of the vertices at edges sharper than `angle_deg`, the
+// share with one such edge only, where a crease just ends. Real creases seldom end; noise does at
+// once.
 double loose_crease_share(const Mesh& mesh, double angle_deg);
 
 // A normal layer, welded. Time O(n log valence), memory 80 bytes a triangle while it runs.
