@@ -5,6 +5,7 @@
 #include "io/formats.h"
 #include "io/ply_body.h"
 #include "io/ply_header.h"
+#include "io/ply_layers.h"
 
 #include <algorithm>
 #include <array>
@@ -18,14 +19,6 @@
 namespace crease {
 
 namespace {
-
-// What a property is for. Layer: component `component` of layers_[layer], times `scale`.
-struct Target {
-  enum class Kind { Position, Layer, Indices, CornerTexCoords, Ignored };
-  Kind kind = Kind::Ignored;
-  std::size_t layer = 0, component = 0;
-  double scale = 1;
-};
 
 struct NamedGroup {
   std::array<std::string_view, 4> names;
@@ -57,29 +50,6 @@ double color_scale(PlyType type) {
   if (!is_integer(type)) return 1;
   return type == PlyType::Int16 || type == PlyType::Uint16 ? 1.0 / 65535 : 1.0 / 255;
 }
-
-// The layers of one element, vertex or face, and where each property goes.
-struct ElementLayers {
-  std::vector<RawLayer> layers;
-  std::vector<Target> targets;     // one a property
-  std::vector<float> row;          // values of all layers, one layer after another
-  std::vector<std::size_t> begin;  // of each layer in `row`
-
-  void add(RawLayer layer) {
-    begin.push_back(row.size());
-    row.resize(row.size() + layer.dimension, 0.0f);
-    layers.push_back(std::move(layer));
-  }
-  void set(const Target& target, double x) {
-    row[begin[target.layer] + target.component] = static_cast<float>(x * target.scale);
-  }
-  void keep_row() {
-    for (std::size_t l = 0; l < layers.size(); ++l) {
-      const auto from = row.begin() + static_cast<std::ptrdiff_t>(begin[l]);
-      layers[l].values.insert(layers[l].values.end(), from, from + layers[l].dimension);
-    }
-  }
-};
 
 class PlyReader {
  public:
@@ -188,7 +158,7 @@ class PlyReader {
 
   // Gives the properties of `group` to a layer made by `make(dimension)`, if the element has them.
   template <typename Make>
-  static bool take_group(const PlyElement& element, const NamedGroup& group, ElementLayers& to,
+  static bool take_group(const PlyElement& element, const NamedGroup& group, PlyLayers& to,
                          Make make) {
     std::vector<std::size_t> found;
     for (std::string_view name : group.names) {
@@ -201,14 +171,14 @@ class PlyReader {
     const bool is_color = layer.role == AttributeRole::Color;
     for (std::size_t c = 0; c < found.size(); ++c) {
       const double scale = is_color ? color_scale(element.properties[found[c]].type) : 1;
-      to.targets[found[c]] = {Target::Kind::Layer, to.layers.size(), c, scale};
+      to.targets[found[c]] = {PlyTarget::Kind::Layer, to.layers.size(), c, scale};
     }
     to.add(std::move(layer));
     return true;
   }
 
-  ElementLayers plan(const PlyElement& element, RawLayer::Per per) {
-    ElementLayers plan;
+  PlyLayers plan(const PlyElement& element, RawLayer::Per per) {
+    PlyLayers plan;
     plan.targets.resize(element.properties.size());
     const bool is_face = per == RawLayer::Per::Face;
     take_group(element, kNormalGroup, plan, [&](std::uint32_t) { return normal_layer(per); });
@@ -226,16 +196,17 @@ class PlyReader {
     }
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
-      Target& target = plan.targets[p];
-      if (target.kind == Target::Kind::Layer) continue;
+      PlyTarget& target = plan.targets[p];
+      if (target.kind == PlyTarget::Kind::Layer) continue;
       if (property.is_list) {
         target.kind = list_target(property, is_face);
       } else if (!is_face &&
                  (property.name == "x" || property.name == "y" || property.name == "z")) {
-        target = {Target::Kind::Position, 0, static_cast<std::size_t>(property.name[0] - 'x'), 1};
+        target = {PlyTarget::Kind::Position, 0, static_cast<std::size_t>(property.name[0] - 'x'),
+                  1};
       } else {
         const bool is_category = is_face && is_integer(property.type);
-        target = {Target::Kind::Layer, plan.layers.size(), 0, 1};
+        target = {PlyTarget::Kind::Layer, plan.layers.size(), 0, 1};
         plan.add({property.name,
                   AttributeRole::Other,
                   is_category ? Interpolation::Categorical : Interpolation::Linear,
@@ -248,13 +219,13 @@ class PlyReader {
     return plan;
   }
 
-  Target::Kind list_target(const PlyProperty& property, bool is_face) {
+  PlyTarget::Kind list_target(const PlyProperty& property, bool is_face) {
     if (is_face && (property.name == "vertex_indices" || property.name == "vertex_index")) {
-      return Target::Kind::Indices;
+      return PlyTarget::Kind::Indices;
     }
-    if (is_face && property.name == "texcoord") return Target::Kind::CornerTexCoords;
+    if (is_face && property.name == "texcoord") return PlyTarget::Kind::CornerTexCoords;
     raw_.report.notes.push_back("list '" + property.name + "' ignored");
-    return Target::Kind::Ignored;
+    return PlyTarget::Kind::Ignored;
   }
 
   bool read_vertices(const PlyElement& element) {
@@ -268,9 +239,10 @@ class PlyReader {
     for (std::size_t i = 0; i < element.count; ++i) {
       Vec3d position;
       const auto take = [&](std::size_t p, double x) {
-        const Target& target = vertices_.targets[p];
-        if (target.kind == Target::Kind::Position) position[static_cast<int>(target.component)] = x;
-        if (target.kind == Target::Kind::Layer) vertices_.set(target, x);
+        const PlyTarget& target = vertices_.targets[p];
+        if (target.kind == PlyTarget::Kind::Position)
+          position[static_cast<int>(target.component)] = x;
+        if (target.kind == PlyTarget::Kind::Layer) vertices_.set(target, x);
         return true;
       };
       if (!read_row(element, i, take, [](std::size_t) { return true; })) return false;
@@ -287,7 +259,7 @@ class PlyReader {
 
   // A row that holds more numbers than the header says: which of them are meant is not known. What
   // comes before is kept: positions of vertices, corners of faces.
-  void note_long_rows(const PlyElement& element, ElementLayers& layers) {
+  void note_long_rows(const PlyElement& element, PlyLayers& layers) {
     if (rows_with_more_ == 0) return;
     raw_.report.notes.push_back(std::to_string(rows_with_more_) + " rows of '" + element.name +
                                 "' hold more numbers than the header says: their other properties "
@@ -298,9 +270,9 @@ class PlyReader {
 
   bool read_faces(const PlyElement& element) {
     faces_ = plan(element, RawLayer::Per::Face);
-    const bool has_indices =
-        std::any_of(faces_.targets.begin(), faces_.targets.end(),
-                    [](const Target& target) { return target.kind == Target::Kind::Indices; });
+    const bool has_indices = std::any_of(
+        faces_.targets.begin(), faces_.targets.end(),
+        [](const PlyTarget& target) { return target.kind == PlyTarget::Kind::Indices; });
     if (!has_indices && element.count > 0) {
       return refuse(body_.refuse(Error::BadFormat, "faces have no vertex_indices"));
     }
@@ -310,12 +282,12 @@ class PlyReader {
       corners_.clear();
       corner_uv_.clear();
       const auto take = [&](std::size_t p, double x) {
-        if (faces_.targets[p].kind == Target::Kind::Layer) faces_.set(faces_.targets[p], x);
+        if (faces_.targets[p].kind == PlyTarget::Kind::Layer) faces_.set(faces_.targets[p], x);
         return true;
       };
       const auto take_list = [&](std::size_t p) {
-        if (faces_.targets[p].kind == Target::Kind::CornerTexCoords) corner_uv_ = list_;
-        return faces_.targets[p].kind != Target::Kind::Indices || take_corners();
+        if (faces_.targets[p].kind == PlyTarget::Kind::CornerTexCoords) corner_uv_ = list_;
+        return faces_.targets[p].kind != PlyTarget::Kind::Indices || take_corners();
       };
       if (!read_row(element, i, take, take_list)) return false;
       if (corners_.size() < 3) {
@@ -490,7 +462,7 @@ class PlyReader {
   RawMesh raw_;
   FaceSink sink_;
   std::optional<Failure> failure_;
-  ElementLayers vertices_, faces_;
+  PlyLayers vertices_, faces_;
   std::size_t rows_with_more_ = 0, short_faces_ = 0;
   std::vector<double> list_, corner_uv_;
   std::vector<std::uint32_t> corners_;

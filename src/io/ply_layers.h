@@ -1,0 +1,43 @@
+// Where the properties of a PLY element go, and the attribute layers that they fill row by row.
+#pragma once
+
+#include "io/raw_mesh.h"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace crease {
+
+// What a property is for. Layer: component `component` of layers_[layer], times `scale`.
+struct PlyTarget {
+  enum class Kind { Position, Layer, Indices, CornerTexCoords, Ignored };
+  Kind kind = Kind::Ignored;
+  std::size_t layer = 0, component = 0;
+  double scale = 1;
+};
+
+// The layers of one element, vertex or face, and where each property goes.
+struct PlyLayers {
+  std::vector<RawLayer> layers;
+  std::vector<PlyTarget> targets;  // one a property
+  std::vector<float> row;          // values of all layers, one layer after another
+  std::vector<std::size_t> begin;  // of each layer in `row`
+
+  void add(RawLayer layer) {
+    begin.push_back(row.size());
+    row.resize(row.size() + layer.dimension, 0.0f);
+    layers.push_back(std::move(layer));
+  }
+  void set(const PlyTarget& target, double x) {
+    row[begin[target.layer] + target.component] = static_cast<float>(x * target.scale);
+  }
+  void keep_row() {
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+      const auto from = row.begin() + static_cast<std::ptrdiff_t>(begin[l]);
+      layers[l].values.insert(layers[l].values.end(), from, from + layers[l].dimension);
+    }
+  }
+};
+
+}  // namespace crease
