@@ -149,8 +149,7 @@ PatchResult PatchSimplifier::run() {
 
 void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cost) {
   // The nearer end stays, so that the stored step is short; with endpoints it is the target itself.
-  const bool keep_a =
-      squared(vertices_[a].position - target) < squared(vertices_[b].position - target);
+  const bool keep_a = squared(positions_[a] - target) < squared(positions_[b] - target);
   const Index kept = keep_a ? a : b, removed = keep_a ? b : a;
 
   Vertex& q = vertices_[kept];
@@ -165,8 +164,9 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   contraction.first_derived = static_cast<Index>(result_.derived.size());
 
   // Errors: the bands before, and this band's quadrics on top.
-  q.base = worst(q.base, p.base);
-  LevelError error = q.base;
+  Errors& errors = errors_[kept];
+  errors.base = worst(errors.base, errors_[removed].base);
+  LevelError error = errors.base;
   surface_[kept].add(surface_[removed]);
   if (surface_[kept].weight > 0) {
     error.surface =
@@ -186,8 +186,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
     for (Index t : vanishing_) {
       const Index* v = &vertex_of_corner_[3 * t];
       for (Index c = 0; c < 3; ++c) {
-        longest2 = std::max(longest2,
-                            squared(vertices_[v[c]].position - vertices_[v[(c + 1) % 3]].position));
+        longest2 = std::max(longest2, squared(positions_[v[c]] - positions_[v[(c + 1) % 3]]));
       }
     }
     error.surface = raised(error.surface, std::sqrt(longest2));
@@ -195,7 +194,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
 
   // Wedges are joined while the vanishing triangles still stand.
   for (std::size_t l = 0; l < layer_count(); ++l) contract_layer(l, kept, removed, target, error);
-  q.error = worst(worst(q.error, p.error), error);
+  errors.now = worst(worst(errors.now, errors_[removed].now), error);
 
   // Triangles: vanish, or change hands.
   if (!represented_.empty()) hand_over_represented();
@@ -205,7 +204,8 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   const Index first = static_cast<Index>(triangle_pool_.size());
   for (Index corner : ring_corners_) triangle_pool_.push_back(corner / 3);
   q.triangles = {first, static_cast<Index>(triangle_pool_.size()) - first};
-  q.position = target;
+  positions_[kept] = target;
+  for (Index t : triangles_of(kept)) facing_[t] = facing_of(t);
   if (!work_->category_of_triangle.empty() && category_around_[kept] != category_around_[removed]) {
     category_around_[kept] = kNone;
   }
@@ -225,9 +225,9 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
     }
     release(t);
   }
-  if (!represented_.empty()) derive_where_better(kept, q.error);
+  if (!represented_.empty()) derive_where_better(kept, errors.now);
 
-  contraction.error = q.error;
+  contraction.error = errors.now;
   contraction.change_count = static_cast<Index>(result_.changes.size()) - contraction.first_change;
   contraction.derived_count =
       static_cast<Index>(result_.derived.size()) - contraction.first_derived;
@@ -253,12 +253,36 @@ void PatchSimplifier::find_ring(Index kept, Index removed) {
   }
 }
 
-// The value of a joined wedge, written to `value`; returns its attribute id, or kNone if it is new.
-// Its area and quadric are the last in results_ and result_quadrics_.
+// One quadric out of the members', in the place of one of them; none if all show one attribute that
+// is the same all over their triangles.
+void PatchSimplifier::combine_quadrics(std::size_t layer, std::span<const Index> members,
+                                       Wedge& result) {
+  const std::vector<Wedge>& wedges = wedges_[layer];
+  Index host = kNone;
+  bool constant = true;
+  for (Index w : members) {
+    if (wedges[w].quadric != kNone) host = w;
+    constant = constant && wedges[w].quadric == kNone && wedges[w].id == wedges[members[0]].id;
+  }
+  result.quadric = host == kNone ? kNone : wedges[host].quadric;
+  if (constant) return;
+  std::vector<AttributeQuadric>& quadrics = attribute_quadrics_[layer];
+  if (host == kNone) {
+    result.quadric = static_cast<Index>(quadrics.size());
+    quadrics.emplace_back();
+  }
+  AttributeQuadric& all = quadrics[result.quadric];
+  for (Index w : members) {
+    if (w != host) add_quadric(layer, wedges[w], all);
+  }
+}
+
+// Gives a joined wedge, whose area and quadric are known, its value; returns its attribute id, or
+// kNone if it is new.
 PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
                                                      std::span<const Index> members, Index fixed,
                                                      Slice of_kept, const Vec3d& target,
-                                                     double* value) {
+                                                     Wedge& result) {
   const WorkLayer& work = work_->layers[layer];
   const std::vector<Wedge>& wedges = wedges_[layer];
   Index inherited = fixed;
@@ -268,20 +292,24 @@ PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
       if (w - of_kept.first < of_kept.count) inherited = w;
     }
   }
-  const double area = results_.back().area;
   const auto inherit = [&] {
-    std::copy_n(wedges[inherited].value, kMaxDimension, value);
+    std::copy_n(wedges[inherited].value, kMaxDimension, result.value);
     return wedges[inherited].id;
   };
-  if (fixed != kNone || !work.blends || steering_.placement == Placement::Endpoint || !(area > 0)) {
+  if (fixed != kNone || !work.blends || steering_.placement == Placement::Endpoint ||
+      !(result.area > 0) || (work.steers && result.quadric == kNone)) {
     return inherit();
   }
 
+  double value[kMaxDimension] = {};
   double norm2 = 0;
   for (int j = 0; j < work.dimension; ++j) {
-    value[j] = work.steers ? result_quadrics_.back().weighted_value(j, target) : 0;
-    for (Index w : members) value[j] += work.steers ? 0 : wedges[w].area * wedges[w].value[j];
-    value[j] /= area;
+    if (work.steers) {
+      value[j] = attribute_quadrics_[layer][result.quadric].weighted_value(j, target);
+    } else {
+      for (Index w : members) value[j] += wedges[w].area * double(wedges[w].value[j]);
+    }
+    value[j] /= result.area;
     norm2 += value[j] * value[j];
   }
   if (work.is_direction) {
@@ -291,8 +319,8 @@ PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
   const double same = members.size() == 1 ? kSameCopy : kSameValue;
   double away2 = 0;
   for (int j = 0; j < work.dimension; ++j) {
-    value[j] = double(static_cast<float>(value[j]));
-    const double away = value[j] - wedges[inherited].value[j];
+    result.value[j] = static_cast<float>(value[j]);
+    const double away = double(result.value[j]) - double(wedges[inherited].value[j]);
     away2 += away * away;
   }
   return away2 <= same * same ? inherit() : kNone;
@@ -303,7 +331,6 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   const WorkLayer& work = work_->layers[layer];
   join_wedges(layer, kept, removed, joined_);
   std::vector<Wedge>& wedges = wedges_[layer];
-  std::vector<AttributeQuadric>& quadrics = attribute_quadrics_[layer];
   std::vector<Index>& wedge_of_corner = wedge_of_corner_[layer];
   const Slice of_kept = wedges_of(layer, kept), of_removed = wedges_of(layer, removed);
   const auto slot_of = [&](Index wedge) {
@@ -323,7 +350,6 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   std::vector<Index>& result_of_slot = parent_;  // join_wedges is done with it
   result_of_slot.assign(used_.size(), kNone);
   results_.clear();
-  result_quadrics_.clear();
   double square_error = -1;
   for (const Joined& joined : joined_) {
     const std::span<const Index> members(&members_[joined.first_member], joined.member_count);
@@ -335,20 +361,15 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
       result.area += wedges[w].area;
       result.pinned = result.pinned || wedges[w].pinned;
     }
-    if (work.steers) {
-      AttributeQuadric& all = result_quadrics_.emplace_back(quadrics[members[0]]);
-      for (Index w : members.subspan(1)) all.add(quadrics[w], work.dimension);
-    }
-    const Index inherited =
-        chosen_value(layer, members, joined.fixed, of_kept, target, result.value);
+    if (work.steers) combine_quadrics(layer, members, result);
+    const Index inherited = chosen_value(layer, members, joined.fixed, of_kept, target, result);
     if (inherited != kNone) {
       result.id = inherited;
     } else {
       std::vector<float>& values = result_.new_values[layer];
       result.id =
           kLocalValue + static_cast<Index>(values.size()) / static_cast<Index>(work.dimension);
-      for (int j = 0; j < work.dimension; ++j)
-        values.push_back(static_cast<float>(result.value[j]));
+      values.insert(values.end(), result.value, result.value + work.dimension);
     }
     for (std::size_t k = 0; k < members.size(); ++k) {
       result_of_slot[slot_of(members[k])] = static_cast<Index>(results_.size() - 1);
@@ -362,7 +383,11 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
           {static_cast<Index>(layer), AttributeId{from}, AttributeId{result.id}});
     }
     if (work.steers && result.area > 0) {
-      const double square = result_quadrics_.back().at(target, work.dimension, result.value);
+      double square = 0;
+      if (result.quadric != kNone) {
+        square =
+            attribute_quadrics_[layer][result.quadric].at(target, work.dimension, result.value);
+      }
       square_error = std::max(square_error, square / result.area);
     }
   }
@@ -385,10 +410,8 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   if (count > of_kept.count && count > of_removed.count) {
     first = static_cast<Index>(wedges.size());
     wedges.resize(wedges.size() + count);
-    if (work.steers) quadrics.resize(wedges.size());
   }
   std::copy(results_.begin(), results_.end(), wedges.begin() + first);
-  std::copy(result_quadrics_.begin(), result_quadrics_.end(), quadrics.begin() + first);
   for (Index corner : ring_corners_) {
     Index& wedge = wedge_of_corner[corner];
     wedge = first + result_of_slot[slot_of(wedge)];
@@ -414,13 +437,15 @@ void PatchSimplifier::write_back() {
       }
     }
   }
-  for (const Vertex& vertex : vertices_) {
+  for (Index v = 0; v < vertices_.size(); ++v) {
+    const Vertex& vertex = vertices_[v];
     if (vertex.locked || !vertex.alive) continue;
+    const Vec3d& p = positions_[v];
     work_->positions[vertex.global] =
-        center_grid_ + Vec3i{static_cast<std::int32_t>(std::lround(vertex.position.x)),
-                             static_cast<std::int32_t>(std::lround(vertex.position.y)),
-                             static_cast<std::int32_t>(std::lround(vertex.position.z))};
-    work_->error_of_vertex[vertex.global] = vertex.error;
+        center_grid_ + Vec3i{static_cast<std::int32_t>(std::lround(p.x)),
+                             static_cast<std::int32_t>(std::lround(p.y)),
+                             static_cast<std::int32_t>(std::lround(p.z))};
+    work_->error_of_vertex[vertex.global] = errors_[v].now;
   }
 }
 

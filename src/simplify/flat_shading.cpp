@@ -48,7 +48,7 @@ void PatchSimplifier::load_represented() {
   for (Index t = 0; t < global_triangle_.size(); ++t) {
     represented_[t] = work_->represented[global_triangle_[t]];
     if (flat_[t] || derived_[t]) {
-      flat_error_[t] = flat_error(t, unit_normal_[t], 0.5 * length(normal_of(t)));
+      flat_error_[t] = flat_error(t, facing_[t].normal, facing_[t].area);
     } else {
       for (Index c = 0; c < 3; ++c) vertices_[vertex_of_corner_[3 * t + c]].flat_around = false;
     }
@@ -57,9 +57,9 @@ void PatchSimplifier::load_represented() {
 
 // Smooth triangles are taken by their geometry.
 Vec3d PatchSimplifier::shown_normal(Index t) const {
-  if (!flat_[t]) return normalized(normal_of(t));
+  if (!flat_[t]) return facing_[t].normal;
   const Wedge& wedge = wedges_[normal_layer_][wedge_of_corner_[normal_layer_][3 * t]];
-  return {wedge.value[0], wedge.value[1], wedge.value[2]};
+  return {double(wedge.value[0]), double(wedge.value[1]), double(wedge.value[2])};
 }
 
 // With the geometric unit normal `normal`, the better of stored and derived. A triangle that turns
@@ -71,18 +71,20 @@ double PatchSimplifier::flat_error(Index t, const Vec3d& normal, double area) co
   return std::min(derived, error_of(represented_[t], stored) + area * squared(normal - stored));
 }
 
-// Among the surviving triangles that touch the vanishing one's third vertex; see find_ring().
+// Among the surviving triangles that touch the vanishing one's third vertex; see find_ring(). Of
+// the vanishing triangle's other vertices, the ring's triangles have the contracted pair alone.
 PatchSimplifier::Index PatchSimplifier::heir_of(Index vanishing) const {
   const Vec3d share = to_double(represented_[vanishing].sum);
+  const Index* ends = &vertex_of_corner_[3 * vanishing];
   Index best = kNone;
   double best_agreement = 0;
   for (Index corner : ring_corners_) {
     const Index u = corner / 3;
-    bool touches = false;
-    for (Index c = 1; c < 3; ++c) {
-      const Index w = vertex_of_corner_[3 * u + (corner + c) % 3];
-      touches = touches || corner_of(vanishing, w) >= 0;
-    }
+    const Index* v = &vertex_of_corner_[3 * u];
+    const Index moved = corner - 3 * u;
+    const Index w1 = v[moved == 2 ? 0 : moved + 1], w2 = v[moved == 0 ? 2 : moved - 1];
+    const bool touches = w1 == ends[0] || w1 == ends[1] || w1 == ends[2] || w2 == ends[0] ||
+                         w2 == ends[1] || w2 == ends[2];
     if (!touches) continue;
     const double agreement = dot(shown_normal(u), share);
     if (best != kNone && agreement <= best_agreement) continue;
@@ -111,12 +113,11 @@ void PatchSimplifier::hand_over_represented() {
 }
 
 void PatchSimplifier::derive_where_better(Index kept, LevelError& error) {
+  double worst_square = 0;  // of the chords between what is shown and the input
   for (Index t : triangles_of(kept)) {
     if (!flat_[t] && !derived_[t]) continue;
-    const Vec3d twice = normal_of(t);
-    const double twice_area = length(twice);
-    if (!(twice_area > 0)) continue;
-    const Vec3d geometric = twice * (1 / twice_area);
+    if (!(facing_[t].area > 0)) continue;
+    const Vec3d geometric = facing_[t].normal;
     const Represented& input = represented_[t];
     if (flat_[t] && error_of(input, geometric) + kDeriveMargin * double(input.area) <
                         error_of(input, shown_normal(t))) {
@@ -124,13 +125,12 @@ void PatchSimplifier::derive_where_better(Index kept, LevelError& error) {
       derived_[t] = 1;
       result_.derived.push_back(TriangleId{global_triangle_[t]});
     }
-    flat_error_[t] = flat_error(t, geometric, 0.5 * twice_area);
+    flat_error_[t] = flat_error(t, geometric, facing_[t].area);
     const double shown = error_of(input, derived_[t] ? geometric : shown_normal(t));
-    if (!(input.area > 0)) continue;
-    const double chord = std::sqrt(shown / double(input.area));
-    error.degrees = std::max(error.degrees,
-                             static_cast<float>(degrees(2 * std::asin(std::min(1.0, chord / 2)))));
+    if (input.area > 0) worst_square = std::max(worst_square, shown / double(input.area));
   }
+  const double half_chord = std::min(1.0, 0.5 * std::sqrt(worst_square));
+  error.degrees = std::max(error.degrees, static_cast<float>(degrees(2 * std::asin(half_chord))));
 }
 
 }  // namespace crease::simplification

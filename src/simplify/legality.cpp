@@ -14,6 +14,16 @@ namespace {
 // A triangle that turns by more than this has folded over.
 constexpr double kFoldCosine = 0.2;
 
+// A triangle that turns by less than a millionth stays in its plane.
+constexpr double kCoplanarCosine2 = 1 - 1e-12;
+
+// A flat triangle whose error is at most this share of its area (0.06 degrees) shows what it stands
+// for.
+constexpr double kRight = 1e-6;
+
+// Folds that cost less than this share of the rest are no reason to look for another place.
+constexpr double kMinor = 0.01;
+
 // What an area that changes hands between materials or parts counts, beside one whose normal is off
 // by a radian.
 constexpr double kCategoryShare = 1;
@@ -33,22 +43,25 @@ void PatchSimplifier::blame(Index t, double cost) {
 // Stops when it is above `bound`: dear enough.
 double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double bound) {
   double cost = 0;
-  const double step2 = squared(vertices_[b].position - vertices_[a].position);
+  const double step2 = squared(positions_[b] - positions_[a]);
   const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
-  const bool a_stays = target == vertices_[a].position, b_stays = target == vertices_[b].position;
+  const bool a_stays = target == positions_[a], b_stays = target == positions_[b];
   const std::size_t begin = a_stays ? ring_kept_ : 0;
   const std::size_t end = b_stays ? ring_kept_ : ring_corners_.size();
   for (std::size_t i = begin; i < end && cost <= bound; ++i) {
     const Index t = ring_corners_[i] / 3;
-    const Vec3d before = normal_of(t);
+    const Facing& before = facing_[t];
     const Vec3d after = normal_if_moved(t, i < ring_kept_ ? a : b, target);
-    const double agreement = dot(before, after);
-    const double before2 = dot(before, before), after2 = dot(after, after);
+    const double agreement = dot(before.normal, after);
+    const double after2 = dot(after, after);
+    const double cosine2 = agreement * agreement;  // times after2
     double own = 0;
-    if (agreement < 0 || agreement * agreement < kFoldCosine * kFoldCosine * before2 * after2) {
-      own = step2 * 0.5 * (std::sqrt(before2) + std::sqrt(after2));
+    if (agreement < 0 || (before.area > 0 && cosine2 < kFoldCosine * kFoldCosine * after2)) {
+      own = step2 * (before.area + 0.5 * std::sqrt(after2));
     }
-    if (!represented_.empty() && (flat_[t] || derived_[t]) && after2 > 0) {
+    const bool stays_right = own == 0 && cosine2 >= kCoplanarCosine2 * after2 &&
+                             flat_error_.size() > t && flat_error_[t] <= kRight * before.area;
+    if (!stays_right && !represented_.empty() && (flat_[t] || derived_[t]) && after2 > 0) {
       const double twice_after = std::sqrt(after2);
       const double now = flat_error(t, after * (1 / twice_after), 0.5 * twice_after);
       own += normal_scale2 * std::max(0.0, now - flat_error_[t]);
@@ -84,7 +97,7 @@ double PatchSimplifier::coincidence_cost(Index a, Index b) {
     }
   }
   if (shared == 0) return 0;
-  const double step2 = squared(vertices_[b].position - vertices_[a].position);
+  const double step2 = squared(positions_[b] - positions_[a]);
   const double cost =
       static_cast<double>(shared) * step2 * (surface_[a].weight + surface_[b].weight) / 3;
   blame(culprit, cost);
@@ -106,11 +119,11 @@ double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
     }
     changed_area_.emplace_back(category, area);
   };
-  for (Index t : vanishing_) change(t, -0.5 * length(normal_of(t)));
+  for (Index t : vanishing_) change(t, -facing_[t].area);
   for (std::size_t i = 0; i < ring_corners_.size(); ++i) {
     const Index t = ring_corners_[i] / 3, moved = i < ring_kept_ ? a : b;
-    if (target == vertices_[moved].position) continue;
-    change(t, 0.5 * (length(normal_if_moved(t, moved, target)) - length(normal_of(t))));
+    if (target == positions_[moved]) continue;
+    change(t, 0.5 * length(normal_if_moved(t, moved, target)) - facing_[t].area);
   }
   double gained = 0, lost = 0;
   for (const auto& [category, area] : changed_area_) (area > 0 ? gained : lost) += std::abs(area);
@@ -126,8 +139,8 @@ double PatchSimplifier::vanishing_cost(Index a, Index b) {
       return std::numeric_limits<double>::infinity();
     }
     double area = 0;
-    for (Index t : vanishing_) area += 0.5 * length(normal_of(t));
-    cost += area * squared(vertices_[b].position - vertices_[a].position);
+    for (Index t : vanishing_) area += facing_[t].area;
+    cost += area * squared(positions_[b] - positions_[a]);
   }
   if (!represented_.empty()) {
     const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
@@ -151,8 +164,9 @@ PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed bes
   const double free_cost = best.cost;
   const double fold = ring_cost(a, b, best.position, bound - free_cost);
   best.cost += fold;
-  if (fold > 0) {
-    const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
+  const double noise = kGridNoise * kGridNoise * (surface_[a].weight + surface_[b].weight);
+  if (fold > kMinor * free_cost + noise) {
+    const Vec3d &pa = positions_[a], &pb = positions_[b];
     const Vec3d others[] = {pa, pb, rounded((pa + pb) * 0.5)};
     const int count = steering_.placement == Placement::Endpoint ? 2 : 3;
     for (int i = 0; i < count; ++i) {

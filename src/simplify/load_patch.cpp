@@ -40,6 +40,8 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
 void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id) {
   if (local_of_vertex_.empty()) local_of_vertex_.assign(work_->positions.size(), kNone);
   vertices_.clear();
+  errors_.clear();
+  positions_.clear();
   const std::size_t n = triangles.size();
   global_triangle_.assign(triangles.begin(), triangles.end());
   vertex_of_corner_.resize(3 * n);
@@ -59,8 +61,8 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
         Vertex vertex;
         vertex.global = global;
         vertex.locked = work_->owner_of_vertex[global] != patch_id;
-        vertex.base = vertex.error = work_->error_of_vertex[global];
         vertices_.push_back(vertex);
+        errors_.push_back({work_->error_of_vertex[global], work_->error_of_vertex[global]});
         const Vec3i& p = work_->positions[global];
         for (int i = 0; i < 3; ++i) {
           low[i] = std::min(low[i], p[i]);
@@ -76,7 +78,7 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
   for (Vertex& vertex : vertices_) {
     local_of_vertex_[vertex.global] = kNone;  // leave the scratch as it was
     const Vec3i p = work_->positions[vertex.global] - center_grid_;
-    vertex.position = {double(p.x), double(p.y), double(p.z)};
+    positions_.push_back({double(p.x), double(p.y), double(p.z)});
   }
 
   // Triangles around each vertex: counts, then slots.
@@ -115,6 +117,7 @@ void PatchSimplifier::load_wedges() {
   wedges_.resize(layer_count());
   wedge_slices_.resize(layer_count());
   wedge_of_corner_.resize(layer_count());
+  attribute_quadrics_.resize(layer_count());
   std::vector<Index> first_id;
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
@@ -144,7 +147,7 @@ void PatchSimplifier::load_wedges() {
       Wedge& wedge = wedges.emplace_back();
       wedge.id = id;
       const float* value = layer.value(id);
-      for (int j = 0; j < layer.dimension; ++j) wedge.value[j] = double(value[j]);
+      std::copy_n(value, layer.dimension, wedge.value);
     };
     for (Index v = 0; v < vertices_.size(); ++v) {
       Slice& slice = slices[v];
@@ -162,9 +165,11 @@ void PatchSimplifier::load_wedges() {
       slice.count = static_cast<Index>(wedges.size()) - slice.first;
     }
 
+    Index quadric_count = 0;
     for (Index t = 0; t < global_triangle_.size(); ++t) {
       Index* w = &id_of_corner[3 * t];
-      const bool pinned = w[0] == w[1] && w[1] == w[2] && !(layer.is_normal && derived_[t]);
+      const bool constant = w[0] == w[1] && w[1] == w[2];
+      const bool pinned = constant && !(layer.is_normal && derived_[t]);
       if (pinned && layer.is_normal) flat_[t] = 1;
       for (Index c = 0; c < 3; ++c) {
         const Slice& slice = slices[vertex_of_corner_[3 * t + c]];
@@ -173,30 +178,28 @@ void PatchSimplifier::load_wedges() {
         if (slice.count > 1) {
           while (wedges[w[c]].id != id) ++w[c];
         }
-        if (pinned) wedges[w[c]].pinned = true;
+        Wedge& wedge = wedges[w[c]];
+        if (pinned) wedge.pinned = true;
+        if (!constant && layer.steers && wedge.quadric == kNone) wedge.quadric = quadric_count++;
       }
     }
+    attribute_quadrics_[l].assign(quadric_count, AttributeQuadric{});
   }
 }
 
 CREASE_WIDE void PatchSimplifier::load_quadrics() {
   surface_.assign(vertices_.size(), Quadric{});
-  unit_normal_.assign(global_triangle_.size(), Vec3d{});
-  attribute_quadrics_.resize(layer_count());
-  for (std::size_t l = 0; l < layer_count(); ++l) {
-    if (!work_->layers[l].steers) continue;
-    attribute_quadrics_[l].assign(wedges_[l].size(), AttributeQuadric{});
-  }
+  facing_.assign(global_triangle_.size(), Facing{});
   for (Index t = 0; t < global_triangle_.size(); ++t) {
     const Index* v = &vertex_of_corner_[3 * t];
-    const Vec3d& p0 = vertices_[v[0]].position;
-    const Vec3d e1 = vertices_[v[1]].position - p0, e2 = vertices_[v[2]].position - p0;
+    const Vec3d& p0 = positions_[v[0]];
+    const Vec3d e1 = positions_[v[1]] - p0, e2 = positions_[v[2]] - p0;
     const Vec3d twice = cross(e1, e2);
     const double twice_area = length(twice);
     if (!(twice_area > 0)) continue;
     const double area = 0.5 * twice_area;
     const Vec3d n = twice * (1 / twice_area);
-    unit_normal_[t] = n;
+    facing_[t] = {n, area};
 
     Quadric plane;
     plane.add_plane(n, -dot(n, p0), area);
@@ -210,18 +213,29 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
     for (std::size_t l = 0; l < layer_count(); ++l) {
       const WorkLayer& layer = work_->layers[l];
       const Index* w = &wedge_of_corner_[l][3 * t];
-      for (int c = 0; c < 3; ++c) wedges_[l][w[c]].area += area;
+      std::vector<Wedge>& wedges = wedges_[l];
+      for (int c = 0; c < 3; ++c) wedges[w[c]].area += area;
       if (!layer.steers) continue;
+      std::vector<AttributeQuadric>& quadrics = attribute_quadrics_[l];
+      if (wedges[w[0]].id == wedges[w[1]].id && wedges[w[1]].id == wedges[w[2]].id) {
+        for (int c = 0; c < 3; ++c) {
+          const Wedge& wedge = wedges[w[c]];
+          if (wedge.quadric == kNone) continue;
+          quadrics[wedge.quadric].add_constant(wedge.value, area, layer.dimension);
+        }
+        continue;
+      }
       AttributeQuadric quadric;
       quadric.own.weight = area;
       for (int j = 0; j < layer.dimension; ++j) {
-        const double s0 = wedges_[l][w[0]].value[j];
-        const double d1 = wedges_[l][w[1]].value[j] - s0, d2 = wedges_[l][w[2]].value[j] - s0;
+        const double s0 = double(wedges[w[0]].value[j]);
+        const double d1 = double(wedges[w[1]].value[j]) - s0;
+        const double d2 = double(wedges[w[2]].value[j]) - s0;
         const Vec3d gradient = thin ? Vec3d{} : toward1 * d1 + toward2 * d2;
         const double offset = thin ? s0 + (d1 + d2) / 3 : s0 - dot(gradient, p0);
         quadric.add_linear(j, gradient, offset, area);
       }
-      for (int c = 0; c < 3; ++c) attribute_quadrics_[l][w[c]].add(quadric, layer.dimension);
+      for (int c = 0; c < 3; ++c) quadrics[wedges[w[c]].quadric].add(quadric, layer.dimension);
     }
   }
 }
@@ -275,7 +289,7 @@ bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
     return vertex_of_corner_[3 * triangle + static_cast<Index>(corner_of(triangle, v) + 1) % 3] ==
            w;
   };
-  const double bend = dot(unit_normal_[t], unit_normal_[u]);
+  const double bend = dot(facing_[t].normal, facing_[u].normal);
   if (runs_to_w(t) == runs_to_w(u) ? bend > kFoldCosine : bend < -kFoldCosine) return true;
   if (!several_wedges_[v] && !several_wedges_[w]) return false;
   for (std::size_t l = 0; l < layer_count(); ++l) {
@@ -292,12 +306,12 @@ bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
 
 // The plane through edge a-b at a right angle to the triangle (Garland 1999, boundary constraints).
 void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
-  const Vec3d edge = vertices_[b].position - vertices_[a].position;
-  const Vec3d across = normalized(cross(edge, normal_of(triangle)));
-  if (dot(across, across) == 0) return;
+  const Vec3d edge = positions_[b] - positions_[a];
+  const Vec3d across = cross(edge, facing_[triangle].normal);  // as long as the edge: its weight
+  const double weight = dot(across, across);
+  if (weight == 0) return;
   Quadric plane;
-  const double weight = dot(edge, edge);
-  plane.add_plane(across, -dot(across, vertices_[a].position), weight);
+  plane.add_plane(across, -dot(across, positions_[a]), 1);
   plane.weight = weight;
   for (Index v : {a, b}) {
     if (line_of_vertex_[v] == kNone) {

@@ -12,9 +12,6 @@ namespace {
 // Among contractions that cost nothing, short edges go first: they make the better triangles.
 constexpr double kLengthShare = 1e-10;
 
-// What rounding to the grid is worth: less than this is no reason to leave an end, grid units.
-constexpr double kGridNoise = 0.5;
-
 // The optimum stays within this many pair lengths of the pair's middle.
 constexpr double kReach = 1.0;
 
@@ -23,6 +20,32 @@ constexpr double kReach = 1.0;
 double PatchSimplifier::layer_scale(std::size_t layer) const {
   const double unit = work_->layers[layer].length_per_unit;
   return unit * unit;
+}
+
+void PatchSimplifier::add_quadric(std::size_t layer, const Wedge& wedge,
+                                  AttributeQuadric& all) const {
+  const int dimension = work_->layers[layer].dimension;
+  if (wedge.quadric == kNone) {
+    all.add_constant(wedge.value, wedge.area, dimension);
+  } else {
+    all.add(attribute_quadrics_[layer][wedge.quadric], dimension);
+  }
+}
+
+// The wedge's triangles, when the corner that they share carries `value`.
+void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedge, const float* value,
+                                     Quadric& sum) const {
+  const int dimension = work_->layers[layer].dimension;
+  if (wedge.quadric != kNone) {
+    attribute_quadrics_[layer][wedge.quadric].add_fixed(sum, dimension, value, layer_scale(layer));
+    return;
+  }
+  double away2 = 0;
+  for (int j = 0; j < dimension; ++j) {
+    const double away = double(wedge.value[j]) - double(value[j]);
+    away2 += away * away;
+  }
+  sum.c += layer_scale(layer) * wedge.area * away2;
 }
 
 // Whether a triangle has both.
@@ -130,14 +153,14 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
     if (wa.count == 1 && wb.count == 1) {
       // The ordinary case: inside a smooth surface, or on a flat one.
       const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
-      if (!x.pinned && !y.pinned) {
-        AttributeQuadric::add_reduced_pair(quadrics[wa.first], quadrics[wb.first], layer.dimension,
-                                           sum, scale);
+      if (!x.pinned && !y.pinned && x.quadric != kNone && y.quadric != kNone) {
+        AttributeQuadric::add_reduced_pair(quadrics[x.quadric], quadrics[y.quadric],
+                                           layer.dimension, sum, scale);
         continue;
       }
       if (x.id == y.id) {
-        quadrics[wa.first].add_fixed(sum, layer.dimension, x.value, scale);
-        quadrics[wb.first].add_fixed(sum, layer.dimension, x.value, scale);
+        add_fixed_cost(l, x, x.value, sum);
+        add_fixed_cost(l, y, x.value, sum);
         continue;
       }
     }
@@ -146,18 +169,16 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
       const Index* members = &members_[joined.first_member];
       if (joined.fixed != kNone) {
         for (Index k = 0; k < joined.member_count; ++k) {
-          quadrics[members[k]].add_fixed(sum, layer.dimension, wedges[joined.fixed].value, scale);
+          add_fixed_cost(l, wedges[members[k]], wedges[joined.fixed].value, sum);
         }
       } else if (joined.member_count == 1) {
-        quadrics[members[0]].add_reduced(sum, layer.dimension, scale);
-      } else if (joined.member_count == 2) {
-        AttributeQuadric::add_reduced_pair(quadrics[members[0]], quadrics[members[1]],
-                                           layer.dimension, sum, scale);
-      } else {
-        AttributeQuadric all = quadrics[members[0]];
-        for (Index k = 1; k < joined.member_count; ++k) {
-          all.add(quadrics[members[k]], layer.dimension);
+        const Wedge& wedge = wedges[members[0]];
+        if (wedge.quadric != kNone) {
+          quadrics[wedge.quadric].add_reduced(sum, layer.dimension, scale);
         }
+      } else {
+        AttributeQuadric all;
+        for (Index k = 0; k < joined.member_count; ++k) add_quadric(l, wedges[members[k]], all);
         all.add_reduced(sum, layer.dimension, scale);
       }
     }
@@ -174,8 +195,7 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
       const Index* members = &members_[joined.first_member];
       const Index inherited = joined.fixed != kNone ? joined.fixed : members[0];
       for (Index k = 0; k < joined.member_count; ++k) {
-        attribute_quadrics_[l][members[k]].add_fixed(sum, layer.dimension,
-                                                     wedges_[l][inherited].value, layer_scale(l));
+        add_fixed_cost(l, wedges_[l][members[k]], wedges_[l][inherited].value, sum);
       }
     }
   }
@@ -183,7 +203,7 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
 
 CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
                                                            Quadric* cost_if_kept) {
-  const Vec3d &pa = vertices_[a].position, &pb = vertices_[b].position;
+  const Vec3d &pa = positions_[a], &pb = positions_[b];
   const Vec3d along = pb - pa;
   const double length2 = dot(along, along);
   Quadric sum = surface_[a];

@@ -28,6 +28,9 @@ struct Steering {
   bool keep_one_triangle = true;
 };
 
+// What rounding to the grid is worth: less than this is no reason to leave an end, grid units.
+inline constexpr double kGridNoise = 0.5;
+
 class PatchSimplifier {
  public:
   using Index = std::uint32_t;
@@ -48,24 +51,27 @@ class PatchSimplifier {
  private:
   // A wedge of one layer at one vertex.
   struct Wedge {
-    double value[kMaxDimension] = {};
-    double area = 0;      // of its triangles
-    Index id = kNone;     // attribute, or kLocalValue + local new value
-    bool pinned = false;  // a triangle has it at all three corners: it never changes (DB03 b)
+    float value[kMaxDimension] = {};
+    double area = 0;        // of its triangles
+    Index id = kNone;       // attribute, or kLocalValue + local new value
+    Index quadric = kNone;  // in attribute_quadrics_, or kNone: it is the same all over its
+                            // triangles, or does not steer
+    bool pinned = false;    // a triangle has it at all three corners: it never changes (DB03 b)
   };
   struct Slice {
     Index first = 0, count = 0;
   };
   struct Vertex {
-    Vec3d position;  // grid units less center_
     Index global = 0;
     Index into = kNone;  // of a removed vertex: the one it was contracted into
     Slice triangles;     // in triangle_pool_
     bool locked = false;
     bool alive = true;
     bool flat_around = true;  // all its triangles are flat or derived
-    LevelError base;          // of the bands before
-    LevelError error;         // now
+  };
+  struct Errors {
+    LevelError base;  // of the bands before
+    LevelError now;
   };
   struct Placed {
     double cost = 0;
@@ -81,6 +87,11 @@ class PatchSimplifier {
     bool operator<(const Entry& o) const {  // std heaps put the largest first
       return cost != o.cost ? cost > o.cost : a != o.a ? a > o.a : b > o.b;
     }
+  };
+  // Of a triangle, as it is.
+  struct Facing {
+    Vec3d normal;  // of unit length, or zero without area
+    double area = 0;
   };
   // One result wedge of a contraction: which wedges of a layer become one.
   struct Joined {
@@ -113,6 +124,9 @@ class PatchSimplifier {
   void add_attribute_costs(Index a, Index b, Quadric& sum);
   void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum);
   double layer_scale(std::size_t layer) const;
+  void add_quadric(std::size_t layer, const Wedge& wedge, AttributeQuadric& all) const;
+  void add_fixed_cost(std::size_t layer, const Wedge& wedge, const float* value,
+                      Quadric& sum) const;
 
   // legality.cpp
   Placed make_legal(Index a, Index b, Placed best, double bound, const Quadric* cost_if_kept);
@@ -137,8 +151,9 @@ class PatchSimplifier {
   void find_ring(Index kept, Index removed);
   void contract_layer(std::size_t layer, Index kept, Index removed, const Vec3d& target,
                       LevelError& error);
+  void combine_quadrics(std::size_t layer, std::span<const Index> members, Wedge& result);
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
-                     const Vec3d& target, double* value);
+                     const Vec3d& target, Wedge& result);
   void push(const Entry& entry);
   bool pop(Entry& entry);
   float next_cost() const;
@@ -146,15 +161,18 @@ class PatchSimplifier {
   void hold(const Entry& entry, double cost, double cost_with_ring);
   void release(Index triangle);
 
-  // Twice the area long.
-  Vec3d normal_of(Index t) const {
+  Facing facing_of(Index t) const {
     const Index* v = &vertex_of_corner_[3 * t];
-    const Vec3d& p0 = vertices_[v[0]].position;
-    return cross(vertices_[v[1]].position - p0, vertices_[v[2]].position - p0);
+    const Vec3d& p0 = positions_[v[0]];
+    const Vec3d twice = cross(positions_[v[1]] - p0, positions_[v[2]] - p0);
+    const double twice_area = length(twice);
+    if (!(twice_area > 0)) return {};
+    return {twice * (1 / twice_area), 0.5 * twice_area};
   }
+  // Twice the area long.
   Vec3d normal_if_moved(Index t, Index moved, const Vec3d& target) const {
     const Index* v = &vertex_of_corner_[3 * t];
-    const auto at = [&](Index c) { return v[c] == moved ? target : vertices_[v[c]].position; };
+    const auto at = [&](Index c) { return v[c] == moved ? target : positions_[v[c]]; };
     const Vec3d p0 = at(0);
     return cross(at(1) - p0, at(2) - p0);
   }
@@ -178,6 +196,8 @@ class PatchSimplifier {
   Vec3i center_grid_;
 
   std::vector<Vertex> vertices_;
+  std::vector<Vec3d> positions_;       // per vertex, grid units less center_
+  std::vector<Errors> errors_;         // per vertex
   std::vector<Quadric> surface_;       // per vertex
   std::vector<Quadric> line_;          // per crease or border vertex
   std::vector<Index> line_of_vertex_;  // kNone: on no line
@@ -186,6 +206,7 @@ class PatchSimplifier {
   std::vector<Index> global_triangle_;
   std::vector<Index> vertex_of_corner_;  // 3 a triangle
   std::vector<char> triangle_alive_;
+  std::vector<Facing> facing_;
   std::vector<char> flat_;  // stored normal the same at all three corners, and not derived
   std::vector<char> derived_;
   std::vector<Represented> represented_;
@@ -194,7 +215,7 @@ class PatchSimplifier {
   std::size_t live_triangles_ = 0;
 
   std::vector<std::vector<Wedge>> wedges_;                         // per layer, slices by vertex
-  std::vector<std::vector<AttributeQuadric>> attribute_quadrics_;  // by wedge; of layers that steer
+  std::vector<std::vector<AttributeQuadric>> attribute_quadrics_;  // per layer; see Wedge
   std::vector<std::vector<Slice>> wedge_slices_;                   // per layer and vertex
   std::vector<std::vector<Index>> wedge_of_corner_;
 
@@ -225,7 +246,6 @@ class PatchSimplifier {
   double blamed_cost_ = 0;
 
   // Scratch of load_edges().
-  std::vector<Vec3d> unit_normal_;
   std::vector<char> several_wedges_;
   std::vector<Edge> edges_;
   std::vector<Index> slot_;
@@ -239,7 +259,6 @@ class PatchSimplifier {
   std::size_t ring_kept_ = 0;        // so many are kept's
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
-  std::vector<AttributeQuadric> result_quadrics_;
   std::vector<Index> mark_;
   Index mark_now_ = 0;
 };

@@ -120,6 +120,16 @@ struct AttributeQuadric {
     linear[j] += w * f;
   }
 
+  // Triangles on which the attribute is `value` everywhere.
+  void add_constant(const float* value, double area, int dimension) {
+    own.weight += area;
+    for (int j = 0; j < dimension; ++j) {
+      const double wv = area * double(value[j]);
+      own.c += wv * double(value[j]);
+      linear[j][3] += wv;
+    }
+  }
+
   // weight * (the value that is best at x).
   double weighted_value(int j, const Vec3d& x) const {
     return sum_of(linear[j] * Row{x.x, x.y, x.z, 1});
@@ -133,12 +143,12 @@ struct AttributeQuadric {
   }
 
   // Adds scale * (error with the value `value`) to `sum`, as a quadric in x alone.
-  void add_fixed(Quadric& sum, int dimension, const double* value, double scale) const {
+  void add_fixed(Quadric& sum, int dimension, const float* value, double scale) const {
     sum.add_scaled(own, scale);
     for (int j = 0; j < dimension; ++j) {
-      const double v = scale * value[j];
+      const double v = scale * double(value[j]);
       for (int i = 0; i < 3; ++i) sum.row[i][3] -= v * linear[j][i];
-      sum.c += v * (own.weight * value[j] - 2 * linear[j][3]);
+      sum.c += v * (own.weight * double(value[j]) - 2 * linear[j][3]);
     }
   }
 
@@ -163,7 +173,7 @@ struct AttributeQuadric {
   }
 
   // The error at x with the value `value`.
-  double at(const Vec3d& x, int dimension, const double* value) const {
+  double at(const Vec3d& x, int dimension, const float* value) const {
     Quadric sum;
     add_fixed(sum, dimension, value, 1);
     return sum.at(x);

@@ -11,10 +11,10 @@ namespace {
 
 // How many cells away a partner is looked for. Cells hold about two vertices, so "near" is also
 // relative to how dense the vertices are.
-constexpr int kShells = 2;
+constexpr int kCells = 2;
 
 // Where vertices crowd, no more than these are looked at for each.
-constexpr int kCandidates = 200;
+constexpr std::uint32_t kCandidates = 200;
 
 // Vertices by the cell of a grid that they lie in.
 class Cells {
@@ -45,11 +45,21 @@ class Cells {
   }
   void put_backwards(const Vec3d& p, std::uint32_t v) { vertices_[--first_[cell_of(p)]] = v; }
 
-  // Empty outside of the grid.
-  std::span<const std::uint32_t> at(int x, int y, int z) const {
-    if (x < 0 || y < 0 || z < 0 || x >= count_[0] || y >= count_[1] || z >= count_[2]) return {};
-    const std::size_t cell = index(x, y, z);
-    return std::span(vertices_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+  // Calls visit(vertex) for the first `most` of those at most `reach` cells away along every axis:
+  // cells that differ in x alone lie together.
+  template <typename Visit>
+  void near(const int cell[3], int reach, std::uint32_t most, Visit visit) const {
+    const int x_begin = std::max(0, cell[0] - reach);
+    const int x_end = std::min(count_[0], cell[0] + reach + 1);
+    for (int z = std::max(0, cell[2] - reach); z < std::min(count_[2], cell[2] + reach + 1); ++z) {
+      for (int y = std::max(0, cell[1] - reach); y < std::min(count_[1], cell[1] + reach + 1);
+           ++y) {
+        const std::uint32_t begin = first_[index(x_begin, y, z)];
+        const std::uint32_t end = std::min(first_[index(x_end, y, z)], begin + most);
+        for (std::uint32_t i = begin; i != end; ++i) visit(vertices_[i]);
+        most -= end - begin;
+      }
+    }
   }
 
  private:
@@ -79,11 +89,11 @@ void PatchSimplifier::find_virtual_pairs() {
   }
   if (!several) return;
 
-  Vec3d low = vertices_[0].position, high = low;
-  for (const Vertex& v : vertices_) {
+  Vec3d low = positions_[0], high = low;
+  for (const Vec3d& p : positions_) {
     for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], v.position[i]);
-      high[i] = std::max(high[i], v.position[i]);
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
     }
   }
   const Vec3d extent = high - low;
@@ -92,38 +102,29 @@ void PatchSimplifier::find_virtual_pairs() {
   for (int i = 0; i < 3; ++i) volume *= std::max(extent[i], longest / std::sqrt(double(n)));
   const double density = std::cbrt(2 * volume / n);
   Cells cells(low, high, std::max(std::min(density, steering_.virtual_distance), longest / 1e6), n);
-  for (const Vertex& v : vertices_) cells.count(v.position);
+  for (const Vec3d& p : positions_) cells.count(p);
   cells.start();
-  for (Index v = n; v-- > 0;) cells.put_backwards(vertices_[v].position, v);
+  for (Index v = n; v-- > 0;) cells.put_backwards(positions_[v], v);
 
   const double limit2 = steering_.virtual_distance * steering_.virtual_distance;
   const std::size_t edge_count = pairs_.size();
   for (Index v = 0; v < n; ++v) {
     if (vertices_[v].locked) continue;
     int c[3];
-    for (int i = 0; i < 3; ++i) c[i] = cells.coordinate(vertices_[v].position, i);
+    for (int i = 0; i < 3; ++i) c[i] = cells.coordinate(positions_[v], i);
     Index best = kNone;
     double best2 = limit2;
-    int candidates = 0;
-    for (int shell = 0; shell <= kShells; ++shell) {
-      const double reached = (shell - 1) * cells.size();
-      if (shell > 1 && reached * reached > best2) break;
-      for (int x = -shell; x <= shell; ++x) {
-        for (int y = -shell; y <= shell; ++y) {
-          const bool inside = std::abs(x) < shell && std::abs(y) < shell;
-          for (int z = -shell; z <= shell; z += inside ? std::max(1, 2 * shell) : 1) {
-            for (Index u : cells.at(c[0] + x, c[1] + y, c[2] + z)) {
-              if (++candidates > kCandidates) break;
-              if (part[u] == part[v] || vertices_[u].locked) continue;
-              const Vec3d gap = vertices_[u].position - vertices_[v].position;
-              const double gap2 = dot(gap, gap);
-              if (gap2 > best2 || (gap2 == best2 && u > best)) continue;
-              best2 = gap2;
-              best = u;
-            }
-          }
-        }
-      }
+    for (int reach = 1; reach <= kCells; ++reach) {
+      const double searched = (reach - 1) * cells.size();
+      if (searched * searched > best2) break;
+      cells.near(c, reach, kCandidates, [&](Index u) {
+        if (part[u] == part[v] || vertices_[u].locked) return;
+        const Vec3d gap = positions_[u] - positions_[v];
+        const double gap2 = dot(gap, gap);
+        if (gap2 > best2 || (gap2 == best2 && u > best)) return;
+        best2 = gap2;
+        best = u;
+      });
     }
     if (best != kNone) pairs_.emplace_back(std::min(v, best), std::max(v, best));
   }
