@@ -168,6 +168,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   errors.base = worst(errors.base, errors_[removed].base);
   LevelError error = errors.base;
   surface_[kept].add(surface_[removed]);
+  if (!turn_.empty()) turn_[kept].add(turn_[removed]);
   if (surface_[kept].weight > 0) {
     error.surface =
         raised(error.surface, std::sqrt(surface_[kept].at(target) / surface_[kept].weight));

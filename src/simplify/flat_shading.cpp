@@ -20,6 +20,10 @@ constexpr double kDeriveMargin = 1.2e-3;
 // of a small feature dearer than the ruin of a large one.
 constexpr double kVanishShare = 0.1;
 
+double squared(double x) {
+  return x * x;
+}
+
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
@@ -51,6 +55,31 @@ void PatchSimplifier::load_represented() {
       flat_error_[t] = flat_error(t, facing_[t].normal, facing_[t].area);
     } else {
       for (Index c = 0; c < 3; ++c) vertices_[vertex_of_corner_[3 * t + c]].flat_around = false;
+    }
+  }
+}
+
+// A corner at height h over its triangle's opposite side, moved by d off the plane, turns the
+// triangle by about d / h: area * (d / h)^2 is a plane quadric, with which a pair's cost and place
+// know about what turning costs; legality.cpp knows it exactly, but only for one place at a time.
+// Thin triangles turn at a touch, and there is no more to lose than their area: where d is four
+// times what the band allows it costs that.
+void PatchSimplifier::load_turns() {
+  turn_.clear();
+  if (represented_.empty()) return;
+  turn_.assign(vertices_.size(), Quadric{});
+  const double normal_scale2 = squared(steering_.normal_scale);
+  const double turn_distance2 = squared(steering_.turn_distance);
+  for (Index t = 0; t < global_triangle_.size(); ++t) {
+    if (!(flat_[t] || derived_[t]) || !(facing_[t].area > 0)) continue;
+    const Index* v = &vertex_of_corner_[3 * t];
+    const double offset = -dot(facing_[t].normal, positions_[v[0]]);
+    const double area = facing_[t].area;
+    for (Index c = 0; c < 3; ++c) {
+      const double side2 = squared(positions_[v[(c + 1) % 3]] - positions_[v[(c + 2) % 3]]);
+      const double height2 = 4 * area * area / side2;
+      turn_[v[c]].add_plane(facing_[t].normal, offset,
+                            normal_scale2 * area / (height2 + turn_distance2));
     }
   }
 }

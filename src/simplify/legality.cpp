@@ -161,7 +161,11 @@ PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed bes
   blamed_ = kNone;
   blamed_cost_ = 0;
   find_ring(a, b);
-  const double free_cost = best.cost;
+  const double free_cost =
+      turn_.empty()
+          ? best.cost
+          : std::min(best.cost, cost_if_kept[best.position == positions_[b]].at(best.position));
+  best.cost = free_cost;
   const double fold = ring_cost(a, b, best.position, bound - free_cost);
   best.cost += fold;
   const double noise = kGridNoise * kGridNoise * (surface_[a].weight + surface_[b].weight);

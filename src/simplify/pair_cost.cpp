@@ -221,12 +221,22 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
     add_endpoint_attribute_costs(a, b, if_kept[0]);
     add_endpoint_attribute_costs(b, a, if_kept[1]);
     if (cost_if_kept) std::copy_n(if_kept, 2, cost_if_kept);
+    if (!turn_.empty()) {
+      for (Quadric& q : if_kept) {
+        q.add(turn_[a]);
+        q.add(turn_[b]);
+      }
+    }
     const double cost_a = if_kept[0].at(pa), cost_b = if_kept[1].at(pb);
     return cost_a < cost_b ? Placed{cost_a + tie, pa} : Placed{cost_b + tie, pb};
   }
 
   add_attribute_costs(a, b, sum);
   if (cost_if_kept) cost_if_kept[0] = cost_if_kept[1] = sum;
+  if (!turn_.empty()) {
+    sum.add(turn_[a]);
+    sum.add(turn_[b]);
+  }
   const double cost_a = sum.at(pa), cost_b = sum.at(pb);
   Placed best = cost_a < cost_b ? Placed{cost_a, pa} : Placed{cost_b, pb};
   const Vec3d middle = (pa + pb) * 0.5;

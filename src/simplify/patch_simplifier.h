@@ -22,6 +22,7 @@ struct Steering {
   Placement placement = Placement::Optimal;
   double cost_limit = 0;        // area * squared length, grid units
   double virtual_distance = 0;  // grid units; pairs of parts nearer than this are candidates
+  double turn_distance = 0;     // grid units; see load_turns()
   double line_weight = 1;       // of creases and borders beside surfaces
   double pull = 1e-4;           // of the optimum towards the pair's middle, see Quadric::minimum
   double normal_scale = 0;      // what a normal off by one radian is worth, grid units
@@ -117,7 +118,8 @@ class PatchSimplifier {
   void find_virtual_pairs();
 
   // pair_cost.cpp
-  // `cost_if_kept`: when given, the cost as a function of the place, for keeping a's or b's values.
+  // `cost_if_kept`: when given, the cost as a function of the place, for keeping a's or b's values,
+  // without what flat triangles cost: make_legal() knows that better.
   Placed place(Index a, Index b, Quadric* cost_if_kept = nullptr);
   bool meet(Index a, Index b) const;
   void join_wedges(std::size_t layer, Index a, Index b, std::vector<Joined>& joined);
@@ -139,6 +141,7 @@ class PatchSimplifier {
 
   // flat_shading.cpp
   void load_represented();
+  void load_turns();
   Vec3d shown_normal(Index t) const;
   double flat_error(Index t, const Vec3d& normal, double area) const;
   Index heir_of(Index vanishing) const;
@@ -199,6 +202,8 @@ class PatchSimplifier {
   std::vector<Vec3d> positions_;       // per vertex, grid units less center_
   std::vector<Errors> errors_;         // per vertex
   std::vector<Quadric> surface_;       // per vertex
+  std::vector<Quadric> turn_;          // per vertex, what its flat triangles' turning costs about;
+                                       // empty: none is flat
   std::vector<Quadric> line_;          // per crease or border vertex
   std::vector<Index> line_of_vertex_;  // kNone: on no line
   std::vector<Index> triangle_pool_;

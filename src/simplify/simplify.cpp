@@ -227,7 +227,9 @@ class Simplifier {
       const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= 3);
       if (band == 0) limit = first_limit(steering, triangle_area);
       steering.cost_limit = last ? kNoLimit : limit;
-      steering.virtual_distance = last ? kNoLimit : 2 * std::sqrt(limit / (triangle_area * 6));
+      const double step = last ? kNoLimit : std::sqrt(limit / (triangle_area * 6));
+      steering.virtual_distance = 2 * step;
+      steering.turn_distance = 4 * step;
       if (!run_band(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");
       }
