@@ -44,10 +44,20 @@ TEST_CASE("the best value of a joined wedge is the least squares one") {
   const double best = (1 * x.x + 3 * (2 - x.y)) / 4;
   CHECK(both.weighted_value(0, x) / both.own.weight == doctest::Approx(best));
   const double error = std::pow(x.x - best, 2) + 3 * std::pow(2 - x.y - best, 2);
-  CHECK(both.at(x, 1, &best) == doctest::Approx(error));
+  const float rounded_best = static_cast<float>(best);
+  CHECK(both.at(x, 1, &rounded_best) == doctest::Approx(error));
   Quadric reduced, pair;
   both.add_reduced(reduced, 1, 1);
   CHECK(reduced.at(x) == doctest::Approx(error));
   AttributeQuadric::add_reduced_pair(a, b, 1, pair, 1);
   CHECK(pair.at(x) == doctest::Approx(error));
+}
+
+TEST_CASE("an attribute that is the same all over its triangles is off by its difference") {
+  const float red[] = {0.75f, 0.25f}, blue[] = {0.25f, 0.5f};
+  AttributeQuadric constant;
+  constant.add_constant(red, 3, 2);
+  CHECK(constant.at({4, 5, 6}, 2, red) == doctest::Approx(0));
+  CHECK(constant.at({4, 5, 6}, 2, blue) == doctest::Approx(3 * (0.5 * 0.5 + 0.25 * 0.25)));
+  CHECK(constant.weighted_value(1, {4, 5, 6}) / constant.own.weight == doctest::Approx(0.25));
 }
