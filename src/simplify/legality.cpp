@@ -18,6 +18,9 @@ constexpr double kFoldCosine = 0.2;
 // by a radian.
 constexpr double kCategoryShare = 1;
 
+// What the area of a part that disappears counts: quadrics count it at each of its three corners.
+constexpr double kPartWeight = 3;
+
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
@@ -127,7 +130,7 @@ double PatchSimplifier::vanishing_cost(Index a, Index b) {
     }
     double area = 0;
     for (Index t : vanishing_) area += 0.5 * length(normal_of(t));
-    cost += area * squared(vertices_[b].position - vertices_[a].position);
+    cost += kPartWeight * area * squared(vertices_[b].position - vertices_[a].position);
   }
   if (!represented_.empty()) {
     const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
