@@ -16,6 +16,13 @@ namespace {
 // (squared chord of about two degrees).
 constexpr double kDeriveMargin = 1.2e-3;
 
+// A wrong normal counts in proportion to its chord up to this one, and to the chord's square
+// beyond. Squares alone make small errors all but free, so that they spread over whole facades.
+constexpr double kLinearChord = 0.8;
+
+// Rounding to the grid turns triangles by about this chord.
+constexpr double kRoundingChord = 1.5e-4;
+
 // How much a normal that nothing shows any more counts. In full it would make the last contractions
 // of a small feature dearer than the ruin of a large one.
 constexpr double kVanishShare = 0.1;
@@ -35,6 +42,19 @@ Vec3d to_double(const Vec3f& v) {
 // Area times squared chord between the input normals and `shown`.
 double error_of(const Represented& input, const Vec3d& shown) {
   return std::max(0.0, 2 * (double(input.area) - dot(to_double(input.sum), shown)));
+}
+
+// What showing a normal off by this squared chord counts, by area.
+double weighed(double chord2) {
+  return chord2 * std::max(1.0, kLinearChord / (std::sqrt(chord2) + kRoundingChord));
+}
+double weighed_error_of(const Represented& input, double error) {
+  return error > 0 ? double(input.area) * weighed(error / double(input.area)) : 0;
+}
+
+// Whether the geometric normal is to be shown instead of the stored one.
+bool is_better_derived(const Represented& input, double derived, double stored) {
+  return derived + kDeriveMargin * double(input.area) < stored;
 }
 
 }  // namespace
@@ -91,13 +111,20 @@ Vec3d PatchSimplifier::shown_normal(Index t) const {
   return {double(wedge.value[0]), double(wedge.value[1]), double(wedge.value[2])};
 }
 
-// With the geometric unit normal `normal`, the better of stored and derived. A triangle that turns
-// away from the normal it goes on showing is as wrong as one that shows a wrong normal.
+// What the normal counts that will be shown with the geometric unit normal `normal`. A triangle
+// that turns away from the normal it goes on showing is as wrong as one that shows a wrong normal,
+// as far as it stands for input; one that faces away is wrong all over, so that a sliver with a
+// normal of its own does not swell.
 double PatchSimplifier::flat_error(Index t, const Vec3d& normal, double area) const {
-  const double derived = error_of(represented_[t], normal);
-  if (derived_[t]) return derived;
-  const Vec3d stored = shown_normal(t);
-  return std::min(derived, error_of(represented_[t], stored) + area * squared(normal - stored));
+  const Represented& input = represented_[t];
+  const double derived = error_of(input, normal);
+  if (derived_[t]) return weighed_error_of(input, derived);
+  const Vec3d shown = shown_normal(t);
+  const double stored = error_of(input, shown);
+  if (is_better_derived(input, derived, stored)) return weighed_error_of(input, derived);
+  const double turn2 = squared(normal - shown);
+  const double turned = turn2 > 2 ? area : std::min(area, double(input.area));
+  return weighed_error_of(input, stored) + turned * weighed(turn2);
 }
 
 // Among the surviving triangles that touch the vanishing one's third vertex; see find_ring(). Of
@@ -148,8 +175,8 @@ void PatchSimplifier::derive_where_better(Index kept, LevelError& error) {
     if (!(facing_[t].area > 0)) continue;
     const Vec3d geometric = facing_[t].normal;
     const Represented& input = represented_[t];
-    if (flat_[t] && error_of(input, geometric) + kDeriveMargin * double(input.area) <
-                        error_of(input, shown_normal(t))) {
+    if (flat_[t] &&
+        is_better_derived(input, error_of(input, geometric), error_of(input, shown_normal(t)))) {
       flat_[t] = 0;
       derived_[t] = 1;
       result_.derived.push_back(TriangleId{global_triangle_[t]});

@@ -19,7 +19,7 @@ constexpr double kCoplanarCosine2 = 1 - 1e-12;
 
 // A flat triangle whose error is at most this share of its area (0.06 degrees) shows what it stands
 // for.
-constexpr double kRight = 1e-6;
+constexpr double kRight = 1e-3;
 
 // Folds that cost less than this share of the rest are no reason to look for another place.
 constexpr double kMinor = 0.01;
@@ -27,6 +27,9 @@ constexpr double kMinor = 0.01;
 // What an area that changes hands between materials or parts counts, beside one whose normal is off
 // by a radian.
 constexpr double kCategoryShare = 1;
+
+// What the area of a part that disappears counts: quadrics count it at each of its three corners.
+constexpr double kPartWeight = 3;
 
 double squared(const Vec3d& v) {
   return dot(v, v);
@@ -140,7 +143,7 @@ double PatchSimplifier::vanishing_cost(Index a, Index b) {
     }
     double area = 0;
     for (Index t : vanishing_) area += facing_[t].area;
-    cost += area * squared(positions_[b] - positions_[a]);
+    cost += kPartWeight * area * squared(positions_[b] - positions_[a]);
   }
   if (!represented_.empty()) {
     const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;

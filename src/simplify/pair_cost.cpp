@@ -12,6 +12,10 @@ namespace {
 // Among contractions that cost nothing, short edges go first: they make the better triangles.
 constexpr double kLengthShare = 1e-10;
 
+// Between lines of flat faces the optimum must be this much cheaper than the better end: ends lie
+// in the planes of their walls, and a vertex that has left them tears every later step.
+constexpr double kLeavesPlanes = 0.3;
+
 // The optimum stays within this many pair lengths of the pair's middle.
 constexpr double kReach = 1.0;
 
@@ -246,7 +250,11 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
   if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
   x = rounded(x);
   const double cost_x = sum.at(x);
-  if (cost_x < best.cost - tie - grid_noise) best = {cost_x, x};
+  const auto is_corner = [&](Index v) {
+    return vertices_[v].flat_around && line_of_vertex_[v] != kNone;
+  };
+  const double share = is_corner(a) && is_corner(b) ? kLeavesPlanes : 1;
+  if (cost_x < share * best.cost - tie - grid_noise) best = {cost_x, x};
   best.cost += tie;
   return best;
 }

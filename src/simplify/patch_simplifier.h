@@ -215,7 +215,7 @@ class PatchSimplifier {
   std::vector<char> flat_;  // stored normal the same at all three corners, and not derived
   std::vector<char> derived_;
   std::vector<Represented> represented_;
-  std::vector<double> flat_error_;  // of flat and derived triangles, as they are: area * chord^2
+  std::vector<double> flat_error_;  // of flat and derived triangles, as they are
   std::size_t normal_layer_ = 0;
   std::size_t live_triangles_ = 0;
 

@@ -28,6 +28,10 @@ constexpr std::size_t kLastBand = 64;
 // More than any contraction costs, and less than what is never done (infinity).
 constexpr double kNoLimit = 1e300;
 
+// Parts join (virtual pairs) when they have fewer triangles than this on average. To join two takes
+// no triangle away but moves both: while they have triangles to give, it only tears them.
+constexpr std::size_t kFewTriangles = 6;
+
 // Positions are rounded to the grid: this much surface error is not error, grid units.
 constexpr double kGridNoise = 0.6;
 
@@ -127,6 +131,18 @@ void find_parts(WorkMesh& work) {
   }
 }
 
+// Parts that have triangles. `part_of_vertex` leads to them at once.
+std::size_t count_live_parts(const WorkMesh& work) {
+  std::vector<char> seen(work.positions.size(), 0);
+  std::size_t count = 0;
+  for (std::uint32_t t : work.live) {
+    char& part = seen[work.part_of_vertex[work.vertex_of_corner[3 * t]]];
+    count += part == 0;
+    part = 1;
+  }
+  return count;
+}
+
 // Area of the live triangles in space and, by layer, of their texture coordinates.
 struct Extent {
   double area = 0;                    // grid units squared
@@ -216,10 +232,12 @@ class Simplifier {
       patches_ = partition_triangles(work_.positions, work_.vertex_of_corner, work_.live,
                                      options_.patch_triangles, band);
       find_owners(work_, patches_);
+      bool parts_join = false;
       if (work_.part_count > 1) {
         for (std::uint32_t v = 0; v < work_.positions.size(); ++v) {
           work_.part_of_vertex[v] = part_of(work_.part_of_vertex, v);
         }
+        parts_join = before < kFewTriangles * count_live_parts(work_);
       }
       Steering steering;
       steering.placement = options_.placement;
@@ -228,7 +246,7 @@ class Simplifier {
       if (band == 0) limit = first_limit(steering, triangle_area);
       steering.cost_limit = last ? kNoLimit : limit;
       const double step = last ? kNoLimit : std::sqrt(limit / (triangle_area * 6));
-      steering.virtual_distance = 2 * step;
+      steering.virtual_distance = last || parts_join ? 2 * step : 0;
       steering.turn_distance = 4 * step;
       if (!run_band(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");
