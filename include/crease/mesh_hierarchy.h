@@ -66,6 +66,7 @@
 #include "crease/result.h"
 #include "crease/vec.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -136,7 +137,7 @@ struct VertexHierarchy {
   std::vector<std::array<std::int16_t, 3>> deltas;  // per node that is no root: from its parent
   RankedBits is_wide;  // per node that is no root: its delta is in wide_deltas
   std::vector<Vec3i> wide_deltas;
-  std::uint32_t wedge_count = 0;
+  std::vector<WedgeId> root_wedges;  // the first one under each root, and how many there are
 
   CompactRanges triangle_ranges{2};               // first those without a split, then per split
   std::vector<std::array<WedgeId, 3>> triangles;  // leaf wedges, corners in the input's order
@@ -149,8 +150,14 @@ struct VertexHierarchy {
 
   std::size_t split_count() const { return node_of_split.size(); }
   std::size_t node_count() const { return is_split.size(); }
+  std::size_t wedge_count() const { return root_wedges.empty() ? 0 : index_of(root_wedges.back()); }
   NodeId root(std::uint32_t i) const { return NodeId{i}; }
   bool is_root(NodeId n) const { return index_of(n) < root_count; }
+  // Where a corner stands when nothing is split. Time O(log(roots)).
+  NodeId root_of(WedgeId wedge) const {
+    const auto after = std::upper_bound(root_wedges.begin(), root_wedges.end(), wedge);
+    return NodeId{static_cast<std::uint32_t>(after - root_wedges.begin()) - 1};
+  }
 
   // Down. split_of() of a leaf is kNoSplit.
   SplitId split_of(NodeId n) const {
