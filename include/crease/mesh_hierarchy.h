@@ -44,15 +44,15 @@
 // attributes by the same relative indices. The whole model is the case of one piece.
 //
 // Bytes per input vertex with one normal layer, on a smooth closed mesh of n vertices: n splits,
-// 2 n nodes, 2 n triangles, n wedges. hierarchy_bytes() reports them for any mesh.
-//   triangles   3 wedges each                        24
-//   deltas      3 x int16 a node, 12 more if wide    12.4
-//   splits      node 4, second wedge 4, bounds 14    22
-//   bits        is_split, wide, triangles, derived    1.5
-//   normals     12 a value, 2 n values               24.4  (4 an index instead where values repeat)
-//   sum                                              84.3
-// Two steps lead from there to 60: normals of 4 bytes when the build rounds them (-16), and 16-bit
-// wedges in blocks of less than 65,536 of them (-12).
+// 2 n nodes, 2 n triangles, n wedges; with the indices of 100,000 vertices, and of a block of
+// 8,000. hierarchy_bytes() reports them for any mesh; docs/hierarchy.md lists models.
+//   triangles   3 wedges each                           12.8   9.8
+//   deltas      3 numbers a node, about 18 bits         13.5   7.5
+//   splits      node 2.3, second wedge 2.1, bounds 14   18.4  17.4
+//   bits        is_split, wide, triangles, derived       1.5   1.5
+//   normals     12 a value, 2 n values                  24.4  24.4  (an index each where they
+//   repeat) sum                                                 70.6  60.6
+// Normals of 4 bytes, when the build rounds them, will take 16 off either.
 //
 // Room is left for one attribute at the children that becomes several at the parent (a bevel that
 // is better shown as a hard edge): above() takes the wedge, so runs by wedge can say it, as they do
@@ -63,6 +63,7 @@
 #include "crease/contraction.h"
 #include "crease/ids.h"
 #include "crease/mesh.h"
+#include "crease/packed_indices.h"
 #include "crease/result.h"
 #include "crease/vec.h"
 
@@ -126,23 +127,35 @@ struct TriangleRange {
   std::uint32_t size() const { return end - begin; }
 };
 
+// Three leaf wedges a triangle.
+struct TriangleWedges {
+  PackedIndices<WedgeId> of_corner;
+
+  std::array<WedgeId, 3> operator[](std::size_t t) const {
+    return {of_corner[3 * t], of_corner[3 * t + 1], of_corner[3 * t + 2]};
+  }
+  std::size_t size() const { return of_corner.size() / 3; }
+};
+
 struct VertexHierarchy {
   Grid grid;
   std::uint32_t root_count = 0;
-  RankedBits is_split;                              // per node: it has children
-  std::vector<NodeId> node_of_split;                // ascending
-  std::vector<WedgeId> second_wedge;                // per split: the first wedge under v_u
-  std::vector<SplitBounds> bounds;                  // per split
-  std::vector<Vec3i> root_positions;                // grid units
-  std::vector<std::array<std::int16_t, 3>> deltas;  // per node that is no root: from its parent
-  RankedBits is_wide;  // per node that is no root: its delta is in wide_deltas
+  RankedBits is_split;                  // per node: it has children
+  PackedIndices<NodeId> node_of_split;  // ascending
+  PackedIndices<WedgeId> second_wedge;  // per split: the first wedge under v_u
+  std::vector<SplitBounds> bounds;      // per split
+  std::vector<Vec3i> root_positions;    // grid units
+  // Per node that is no root its position less its parent's, x, y and z plus half of the range of
+  // so many bits; those that do not fit are in wide_deltas.
+  PackedIndices<> deltas;
+  RankedBits is_wide;
   std::vector<Vec3i> wide_deltas;
   std::vector<WedgeId> root_wedges;  // the first one under each root, and how many there are
 
-  CompactRanges triangle_ranges{2};               // first those without a split, then per split
-  std::vector<std::array<WedgeId, 3>> triangles;  // leaf wedges, corners in the input's order
-  std::vector<MaterialId> material_of_triangle;   // or empty, as in Mesh
-  std::vector<PartId> part_of_triangle;           // or empty
+  CompactRanges triangle_ranges{2};                // first those without a split, then per split
+  TriangleWedges triangles;                        // corners in the input's order
+  PackedIndices<MaterialId> material_of_triangle;  // or empty, as in Mesh
+  PackedIndices<PartId> part_of_triangle;          // or empty
   // A derived triangle shows its geometric normal while its deriving split is not done.
   SparseLists<TriangleId> derived_of_split;
   RankedBits is_derived;                 // per triangle; empty if none ever is
@@ -182,7 +195,11 @@ struct VertexHierarchy {
   Vec3i delta_of(NodeId n) const {
     const std::size_t i = index_of(n) - root_count;
     if (is_wide.test(i)) return wide_deltas[is_wide.rank(i)];
-    return {deltas[i][0], deltas[i][1], deltas[i][2]};
+    const std::uint32_t half = 1u << (deltas.bits() - 1);
+    const auto component = [&](std::size_t k) {
+      return static_cast<std::int32_t>(deltas[3 * i + k] - half);
+    };
+    return {component(0), component(1), component(2)};
   }
   // From the root on; a cut keeps the positions of its nodes instead. Time O(depth).
   Vec3i position_of(NodeId n) const;
@@ -202,6 +219,53 @@ struct VertexHierarchy {
   }
 };
 
+// A list per split, most of them empty; kRemoved takes no bits of its own.
+class ParentMaps {
+ public:
+  class Map {
+   public:
+    RelativeAttribute operator[](std::size_t i) const {  // 0 stands for kRemoved
+      return static_cast<RelativeAttribute>((*packed_)[first_ + i] - 1);
+    }
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    Map subspan(std::size_t first, std::size_t size) const {
+      return Map(packed_, first_ + first, size);
+    }
+
+   private:
+    friend class ParentMaps;
+    Map(const PackedIndices<>* packed, std::size_t first, std::size_t size)
+        : packed_(packed), first_(first), size_(size) {}
+    const PackedIndices<>* packed_;
+    std::size_t first_, size_;
+  };
+
+  ParentMaps() = default;
+  // No node has more attributes than said.
+  explicit ParentMaps(std::uint32_t most_attributes) : parents_(bits_for(most_attributes + 1)) {}
+
+  void push_back(std::span<const RelativeAttribute> parents) {
+    ranges_.push_back(static_cast<std::uint32_t>(parents.size()));
+    for (RelativeAttribute p : parents) {
+      parents_.push_back(static_cast<RelativeAttribute>(p + 1));
+    }
+    map_count_ += parents.empty() ? 0 : 1;
+  }
+  Map of(std::size_t split) const {
+    const std::uint32_t count = ranges_.count(split);
+    return Map(&parents_, count == 0 ? 0 : ranges_.begin(split), count);
+  }
+  std::size_t size() const { return ranges_.size(); }
+  std::size_t list_count() const { return map_count_; }
+  std::size_t bytes() const { return ranges_.bytes() + parents_.bytes(); }
+
+ private:
+  CompactRanges ranges_{0};
+  PackedIndices<> parents_;
+  std::size_t map_count_ = 0;
+};
+
 // At the corners of the wedges first_wedge and up to the next run's, the attribute at the child.
 struct BranchRun {
   WedgeId first_wedge{};
@@ -216,15 +280,15 @@ struct AttributeHierarchy {
   Interpolation interpolation = Interpolation::Linear;
   std::uint32_t dimension = 1;
 
-  CompactRanges attribute_ranges{1};              // per node: its attributes
-  std::vector<float> values;                      // dimension each
-  std::vector<std::uint32_t> value_of_attribute;  // or empty: attribute i has value i
-  std::vector<RelativeAttribute> leaf_attribute;  // per wedge, at its leaf; or empty: all are 0
+  CompactRanges attribute_ranges{1};                // per node: its attributes
+  std::vector<float> values;                        // dimension each
+  PackedIndices<> value_of_attribute;               // or empty: attribute i has value i
+  PackedIndices<RelativeAttribute> leaf_attribute;  // per wedge, at its leaf; or empty: all are 0
 
   // Per split the relative index at v_s of each attribute of v_t, then of each one of v_u (the
   // parent maps of G03 3.6). Empty where neither has more than one and all become attribute 0, and
   // where v_s has none: then all are removed.
-  SparseLists<RelativeAttribute> parents_of_split;
+  ParentMaps parents_of_split;
   // Per split, where several attributes of v_t, or of v_u, became one: which one each wedge that
   // can stand there had (the branch codes of G03 3.6; a file needs ceil(log2 m) bits a run),
   // ascending.

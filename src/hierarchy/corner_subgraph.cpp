@@ -63,9 +63,12 @@ CornerSubgraph corner_subgraph(const MeshHierarchy& hierarchy, std::size_t layer
   const AttributeHierarchy& attributes = hierarchy.layers[layer];
   const std::uint32_t at_t = attributes.attribute_count(v.first_child(s));
   const std::uint32_t at_u = attributes.attribute_count(v.second_child(s));
-  const std::span<const RelativeAttribute> parents = attributes.parents_of_split.of(index_of(s));
+  const ParentMaps::Map parents = attributes.parents_of_split.of(index_of(s));
   if (!parents.empty()) {
-    return {{parents.begin(), parents.begin() + at_t}, {parents.begin() + at_t, parents.end()}};
+    CornerSubgraph graph;
+    for (std::size_t i = 0; i < at_t; ++i) graph.parents_of_first.push_back(parents[i]);
+    for (std::size_t i = at_t; i < at_t + at_u; ++i) graph.parents_of_second.push_back(parents[i]);
+    return graph;
   }
   const bool none = attributes.attribute_count(v.node_of_split[index_of(s)]) == 0;
   const RelativeAttribute all = none ? kRemoved : RelativeAttribute{0};

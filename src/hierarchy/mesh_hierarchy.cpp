@@ -80,7 +80,7 @@ Vec3i VertexHierarchy::position_of(NodeId n) const {
 RelativeAttribute MeshHierarchy::above(std::size_t layer, SplitId s, bool second,
                                        RelativeAttribute a, WedgeId) const {
   const AttributeHierarchy& attributes = layers[layer];
-  const std::span<const RelativeAttribute> parents = attributes.parents_of_split.of(index_of(s));
+  const ParentMaps::Map parents = attributes.parents_of_split.of(index_of(s));
   if (parents.empty()) return 0;
   return parents[second ? attributes.attribute_count(vertices.first_child(s)) + a : a];
 }
@@ -88,19 +88,22 @@ RelativeAttribute MeshHierarchy::above(std::size_t layer, SplitId s, bool second
 RelativeAttribute MeshHierarchy::below(std::size_t layer, SplitId s, bool second,
                                        RelativeAttribute a, WedgeId wedge) const {
   const AttributeHierarchy& attributes = layers[layer];
-  std::span<const RelativeAttribute> parents = attributes.parents_of_split.of(index_of(s));
-  if (parents.empty()) return 0;
+  const ParentMaps::Map all = attributes.parents_of_split.of(index_of(s));
+  if (all.empty()) return 0;
   const std::uint32_t of_first = attributes.attribute_count(vertices.first_child(s));
-  parents = second ? parents.subspan(of_first) : parents.first(of_first);
-  const auto found = std::find(parents.begin(), parents.end(), a);
-  if (found == parents.end()) return 0;  // no corner with it stands there
-  if (std::find(found + 1, parents.end(), a) == parents.end()) {
-    return static_cast<RelativeAttribute>(found - parents.begin());
-  }
+  const ParentMaps::Map parents =
+      second ? all.subspan(of_first, all.size() - of_first) : all.subspan(0, of_first);
+  const auto next = [&](std::size_t from) {
+    while (from < parents.size() && parents[from] != a) ++from;
+    return from;
+  };
+  const std::size_t found = next(0);
+  if (found == parents.size()) return 0;  // no corner with it stands there
+  if (next(found + 1) == parents.size()) return static_cast<RelativeAttribute>(found);
   const std::span<const BranchRun> runs = attributes.branches_of_split.of(index_of(s));
-  const auto after = std::upper_bound(
-      runs.begin(), runs.end(), wedge,
-      [](WedgeId w, const BranchRun& run) { return w < run.first_wedge; });
+  const auto after =
+      std::upper_bound(runs.begin(), runs.end(), wedge,
+                       [](WedgeId w, const BranchRun& run) { return w < run.first_wedge; });
   return after == runs.begin() ? RelativeAttribute{0} : (after - 1)->at_child;
 }
 
@@ -127,18 +130,21 @@ template <typename T>
 std::size_t bytes_of(const std::vector<T>& items) {
   return sizeof(T) * items.size();
 }
+template <typename Index>
+std::size_t bytes_of(const PackedIndices<Index>& items) {
+  return items.bytes();
+}
 
 }  // namespace
 
 HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy) {
   const VertexHierarchy& v = hierarchy.vertices;
   HierarchyBytes bytes;
-  bytes.triangles = bytes_of(v.triangles) + v.triangle_ranges.bytes() +
+  bytes.triangles = bytes_of(v.triangles.of_corner) + v.triangle_ranges.bytes() +
                     bytes_of(v.material_of_triangle) + bytes_of(v.part_of_triangle) +
-                    v.derived_of_split.bytes() + v.is_derived.bytes() +
-                    bytes_of(v.deriving_splits);
-  bytes.positions = bytes_of(v.root_positions) + bytes_of(v.deltas) + v.is_wide.bytes() +
-                    bytes_of(v.wide_deltas);
+                    v.derived_of_split.bytes() + v.is_derived.bytes() + bytes_of(v.deriving_splits);
+  bytes.positions =
+      bytes_of(v.root_positions) + bytes_of(v.deltas) + v.is_wide.bytes() + bytes_of(v.wide_deltas);
   bytes.splits = v.is_split.bytes() + bytes_of(v.node_of_split) + bytes_of(v.second_wedge) +
                  bytes_of(v.bounds);
   for (const AttributeHierarchy& layer : hierarchy.layers) {
