@@ -26,9 +26,9 @@
 // each active corner keeps. An attribute is at a node iff it is live there (DESIGN 6.4): some
 // triangle has exactly one corner under the node and that corner has the attribute; this is exact,
 // so what a cut can show is there (G03 figure 8) and nothing else is. Relative indices ascend with
-// the smooth region (G03 3.5.1), so that corner subgraphs hardly ever cross. A layer tells
-// how indices change up (parent maps) and down (their inverse, and a code where several attributes
-// of one child became one). Nearly all nodes have one attribute: those need neither map nor code.
+// the smooth region (G03 3.5.1), so that few corner subgraphs cross. A layer tells how indices
+// change up (parent maps) and down (their inverse, and a code where several attributes of one child
+// became one). Nodes with one attribute, nearly all of a smooth mesh, need neither map nor code.
 //
 // The level that has the contractions 0 .. n-1 merged shows on every corner the value that
 // apply_contractions() shows. Where the simplifier does otherwise than G03, its record decides: it
@@ -37,21 +37,21 @@
 //
 // A block (DESIGN 1) has these arrays too: roots are the vertices at its band's coarse end, leaves
 // those at the fine end, the first triangles those that stand at the coarse end; all ids are local.
-// A decoder fills them front to back: a flag a node appends to is_split, deltas_ and attributes in
-// the order of splits, which is its own. What it decodes last, the wedges (leaf order needs the
-// whole tree), it renumbers in one pass. A block may then be dropped or come in any order that
-// respects the DAG: the block below names this one's leaves as its roots, in leaf order, and their
-// attributes by the same relative indices. The whole model is the case of one piece.
+// A decoder fills them front to back: it appends a flag per node, and per split two deltas, the
+// introduced triangles and the attributes, breadth first as it decodes. Only wedges wait for the
+// end of the block, since their numbers follow the leaves. Blocks then come and go in any order
+// that respects the DAG: the roots of a block are leaves of coarser ones, with the same relative
+// indices of attributes. The whole model is the case of one piece.
 //
 // Bytes per input vertex with one normal layer, on a smooth closed mesh of n vertices: n splits,
-// 2 n nodes, 2 n triangles, n wedges; with the indices of 100,000 vertices, and of a block of
-// 8,000. hierarchy_bytes() reports them for any mesh; docs/hierarchy.md lists models.
+// 2 n nodes, 2 n triangles, n wedges. Left with the indices of 100,000 vertices, right with those
+// of a block of 8,000. hierarchy_bytes() reports them for any mesh; docs/hierarchy.md has models.
 //   triangles   3 wedges each                           12.8   9.8
-//   deltas      3 numbers a node, about 18 bits         13.5   7.5
+//   deltas      3 numbers a node, 18 and 10 bits        13.5   7.5
 //   splits      node 2.3, second wedge 2.1, bounds 14   18.4  17.4
 //   bits        is_split, wide, triangles, derived       1.5   1.5
-//   normals     12 a value, 2 n values                  24.4  24.4  (an index each where they
-//   repeat) sum                                                 70.6  60.6
+//   normals     12 a value, 2 n values, or an index     24.4  24.4
+//   sum                                                 70.6  60.6
 // Normals of 4 bytes, when the build rounds them, will take 16 off either.
 //
 // Room is left for one attribute at the children that becomes several at the parent (a bevel that
@@ -64,7 +64,9 @@
 #include "crease/ids.h"
 #include "crease/mesh.h"
 #include "crease/packed_indices.h"
+#include "crease/parent_maps.h"
 #include "crease/result.h"
+#include "crease/split_bounds.h"
 #include "crease/vec.h"
 
 #include <algorithm>
@@ -83,43 +85,6 @@ enum class WedgeId : std::uint32_t {};
 
 inline constexpr NodeId kNoNode{kNone};
 inline constexpr SplitId kNoSplit{kNone};
-
-// An attribute among those of its node and layer.
-using RelativeAttribute = std::uint16_t;
-inline constexpr RelativeAttribute kRemoved = 0xffff;  // as a parent: R of G03 3.5.2
-
-// A float of no sign in 16 bits, rounded up: 8 bits of exponent and 8 of mantissa, so at most
-// 0.4 % more. Rounding is monotone, so what grows up the tree still does.
-struct RoundedUp {
-  std::uint16_t bits = 0;
-
-  static RoundedUp from(float value);
-  float value() const;
-  bool operator==(const RoundedUp&) const = default;
-};
-
-// All normals in it are within half_angle of the axis.
-struct NormalCone {
-  Vec3f axis;
-  float half_angle_rad = 0;  // pi: any direction
-};
-
-// What decides whether a vertex is split. 14 bytes; everything is rounded to the safe side.
-struct SplitBounds {
-  RoundedUp surface, line, degrees, texture;  // LevelError of v_s: its displacement if it stays
-  // About v_s, model units: holds the spheres of v_t and v_u, and for a leaf its input triangles.
-  RoundedUp radius;
-  // Of the geometric normals of all input triangles at leaves below, and of all normals that the
-  // attribute hierarchy has below or here.
-  std::array<std::int8_t, 2> cone_axis{};  // octahedral
-  std::uint8_t cone_angle = 255;           // of pi
-
-  LevelError error() const {
-    return {surface.value(), line.value(), degrees.value(), texture.value()};
-  }
-  NormalCone cone() const;
-  void set_cone(const NormalCone& cone);
-};
 
 // begin <= t < end.
 struct TriangleRange {
@@ -217,53 +182,6 @@ struct VertexHierarchy {
   TriangleRange triangles_in(std::size_t key) const {
     return {triangle_ranges.begin(key), triangle_ranges.end(key)};
   }
-};
-
-// A list per split, most of them empty; kRemoved takes no bits of its own.
-class ParentMaps {
- public:
-  class Map {
-   public:
-    RelativeAttribute operator[](std::size_t i) const {  // 0 stands for kRemoved
-      return static_cast<RelativeAttribute>((*packed_)[first_ + i] - 1);
-    }
-    std::size_t size() const { return size_; }
-    bool empty() const { return size_ == 0; }
-    Map subspan(std::size_t first, std::size_t size) const {
-      return Map(packed_, first_ + first, size);
-    }
-
-   private:
-    friend class ParentMaps;
-    Map(const PackedIndices<>* packed, std::size_t first, std::size_t size)
-        : packed_(packed), first_(first), size_(size) {}
-    const PackedIndices<>* packed_;
-    std::size_t first_, size_;
-  };
-
-  ParentMaps() = default;
-  // No node has more attributes than said.
-  explicit ParentMaps(std::uint32_t most_attributes) : parents_(bits_for(most_attributes + 1)) {}
-
-  void push_back(std::span<const RelativeAttribute> parents) {
-    ranges_.push_back(static_cast<std::uint32_t>(parents.size()));
-    for (RelativeAttribute p : parents) {
-      parents_.push_back(static_cast<RelativeAttribute>(p + 1));
-    }
-    map_count_ += parents.empty() ? 0 : 1;
-  }
-  Map of(std::size_t split) const {
-    const std::uint32_t count = ranges_.count(split);
-    return Map(&parents_, count == 0 ? 0 : ranges_.begin(split), count);
-  }
-  std::size_t size() const { return ranges_.size(); }
-  std::size_t list_count() const { return map_count_; }
-  std::size_t bytes() const { return ranges_.bytes() + parents_.bytes(); }
-
- private:
-  CompactRanges ranges_{0};
-  PackedIndices<> parents_;
-  std::size_t map_count_ = 0;
 };
 
 // At the corners of the wedges first_wedge and up to the next run's, the attribute at the child.
