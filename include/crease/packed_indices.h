@@ -13,7 +13,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 #include <vector>
 
 namespace crease {
@@ -23,35 +22,49 @@ constexpr unsigned bits_for(std::size_t limit) {
   return limit <= 1 ? 0 : static_cast<unsigned>(std::bit_width(limit - 1));
 }
 
+// Bits one after the other.
+class BitArray {
+ public:
+  // `value` must have no more bits than said, at most 32.
+  void append(std::uint32_t value, unsigned bits) {
+    words_.resize((size_ + bits) / 64 + 2);  // reads look one word further
+    words_[size_ / 64] |= std::uint64_t(value) << (size_ % 64);
+    if (size_ % 64 != 0) words_[size_ / 64 + 1] |= std::uint64_t(value) >> (64 - size_ % 64);
+    size_ += bits;
+  }
+  std::uint32_t read(std::size_t bit, unsigned bits) const {
+    const std::uint64_t low = words_[bit / 64] >> (bit % 64);
+    const std::uint64_t high = words_[bit / 64 + 1] << 1 << (63 - bit % 64);
+    return static_cast<std::uint32_t>((low | high) & ((std::uint64_t(1) << bits) - 1));
+  }
+  std::size_t size() const { return size_; }
+  std::size_t bytes() const { return 8 * words_.size(); }
+
+ private:
+  std::vector<std::uint64_t> words_;
+  std::size_t size_ = 0;
+};
+
 template <typename Index = std::uint32_t>
 class PackedIndices {
  public:
   PackedIndices() = default;
   explicit PackedIndices(unsigned bits) : bits_(bits) {}  // at most 32
 
-  // `index` must have no more bits than said.
   void push_back(Index index) {
-    const std::size_t bit = size_ * bits_;
-    words_.resize((bit + bits_) / 64 + 2);  // reads look one word further
-    const auto value = static_cast<std::uint64_t>(static_cast<std::uint32_t>(index));
-    words_[bit / 64] |= value << (bit % 64);
-    if (bit % 64 != 0) words_[bit / 64 + 1] |= value >> (64 - bit % 64);
+    packed_.append(static_cast<std::uint32_t>(index), bits_);
     ++size_;
   }
   Index operator[](std::size_t i) const {
-    const std::size_t bit = i * bits_;
-    const std::uint64_t low = words_[bit / 64] >> (bit % 64);
-    const std::uint64_t high = words_[bit / 64 + 1] << 1 << (63 - bit % 64);
-    return static_cast<Index>((low | high) & ((std::uint64_t(1) << bits_) - 1));
+    return static_cast<Index>(packed_.read(i * bits_, bits_));
   }
-  Index back() const { return (*this)[size_ - 1]; }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   unsigned bits() const { return bits_; }
-  std::size_t bytes() const { return 8 * words_.size(); }
+  std::size_t bytes() const { return packed_.bytes(); }
 
  private:
-  std::vector<std::uint64_t> words_;
+  BitArray packed_;
   std::size_t size_ = 0;
   unsigned bits_ = 0;
 };

@@ -63,16 +63,13 @@ AttributeHierarchy number_attributes(const AttributeInput& input, std::size_t la
   result.dimension = source.dimension;
 
   std::vector<AttributeId> ids;
-  std::uint32_t most = 0;
   for (std::uint32_t birth : input.forest.birth_of_node) {
     const Slice slice = grown.at_birth[birth];
     result.attribute_ranges.push_back(slice.count);
-    most = std::max(most, slice.count);
     for (std::uint32_t k = 0; k < slice.count; ++k)
       ids.push_back(grown.at_node[slice.first + k].id);
   }
   store_values(ids, values, result);
-  result.parents_of_split = ParentMaps(most);
   for (std::uint32_t i : input.forest.contraction_of_split) {
     const auto slice_of = [i](const auto& items, const std::vector<std::uint32_t>& end) {
       const std::uint32_t first = i == 0 ? 0 : end[i - 1];
