@@ -37,7 +37,7 @@ class AttributeForest {
 
   Result<AttributeHierarchy> run() {
     stand_at_leaves();
-    for (std::uint32_t i = 0; i < in_.forest.contraction_count(); ++i) contract(i);
+    for (std::uint32_t contraction : in_.forest.from_left_to_right) contract(contraction);
     for (const Slice& slice : grown_.at_birth) {
       if (slice.count >= kRemoved) {
         return fail(Error::NotSupported, "layer '" + values_.source().name + "': a vertex has " +
@@ -50,9 +50,12 @@ class AttributeForest {
 
  private:
   void stand_at_leaves() {
+    grown_.at_birth.resize(in_.forest.node_of_birth.size());
+    grown_.parents_at.resize(in_.forest.contraction_count());
+    grown_.branches_at.resize(in_.forest.contraction_count());
     for (std::uint32_t v = 0; v < in_.forest.leaf_count; ++v) {
       const std::uint32_t first = leaves_.first_of_vertex[v];
-      grown_.at_birth.push_back({first, leaves_.first_of_vertex[v + 1] - first});
+      grown_.at_birth[v] = {first, leaves_.first_of_vertex[v + 1] - first};
       for (std::uint32_t a = first; a < leaves_.first_of_vertex[v + 1]; ++a) {
         const LeafAttributes::Attribute& leaf = leaves_.attributes[a];
         grown_.at_node.push_back({a, leaf.id});
@@ -92,11 +95,13 @@ class AttributeForest {
         rules_.apply(candidates_, links_, in_.sequence.changes_of(in_.sequence.contractions[time]),
                      layer_, values_);
     order_results(results);
-    note_parents(at_t, at_u);
+    note_parents(time, at_t, at_u);
+    const auto first_branch = static_cast<std::uint32_t>(grown_.branches.size());
     note_branches(time, 0, at_t.count);
     note_branches(time, at_t.count, at_u.count);
-    grown_.branches_end.push_back(static_cast<std::uint32_t>(grown_.branches.size()));
-    stand_at_parent();
+    grown_.branches_at[time] = {first_branch,
+                                static_cast<std::uint32_t>(grown_.branches.size()) - first_branch};
+    stand_at_parent(time);
   }
 
   // Candidates, those of v_t first, and what the introduced triangles link.
@@ -162,14 +167,14 @@ class AttributeForest {
     }
   }
 
-  void note_parents(Slice at_t, Slice at_u) {
+  void note_parents(std::uint32_t time, Slice at_t, Slice at_u) {
     const bool ordinary = at_t.count <= 1 && at_u.count <= 1 &&
                           std::count(parent_.begin(), parent_.end(), 0u) ==
                               static_cast<std::ptrdiff_t>(parent_.size());
-    if (!ordinary && result_count_ > 0) {
-      for (std::uint32_t p : parent_) grown_.parents.push_back(static_cast<RelativeAttribute>(p));
-    }
-    grown_.parents_end.push_back(static_cast<std::uint32_t>(grown_.parents.size()));
+    if (ordinary || result_count_ == 0) return;
+    grown_.parents_at[time] = {static_cast<std::uint32_t>(grown_.parents.size()),
+                               static_cast<std::uint32_t>(parent_.size())};
+    for (std::uint32_t p : parent_) grown_.parents.push_back(static_cast<RelativeAttribute>(p));
   }
 
   // Where several of one child became one, the wedges tell which is which. Wedges that no cut shows
@@ -207,9 +212,9 @@ class AttributeForest {
     }
   }
 
-  void stand_at_parent() {
+  void stand_at_parent(std::uint32_t time) {
     const auto first = static_cast<std::uint32_t>(grown_.at_node.size());
-    grown_.at_birth.push_back({first, result_count_});
+    grown_.at_birth[in_.forest.leaf_count + time] = {first, result_count_};
     std::uint32_t previous = kNone;
     for (const Group& group : groups_) {
       const std::uint32_t relative = parent_[group.member];

@@ -61,7 +61,8 @@ void bound_splits(const Mesh& snapped, const std::vector<Vec3i>& leaf_positions,
       add_normals(*normals, forest.node_of_birth[v], extents[v].cone);
     }
   }
-  for (std::size_t i = 0; i < forest.contraction_count(); ++i) {
+  extents.resize(forest.node_of_birth.size());
+  for (std::uint32_t i : forest.from_left_to_right) {
     const SplitId s = forest.split_of_contraction[i];
     Extent all;
     for (bool second : {false, true}) {
@@ -77,7 +78,7 @@ void bound_splits(const Mesh& snapped, const std::vector<Vec3i>& leaf_positions,
                      static_cast<float>(all.cone.half_angle)});
     // Upwards goes what was stored, so that spheres hold spheres.
     all.radius = double(bounds.radius.value()) / h.grid.step * kSlack;
-    extents.push_back(all);
+    extents[forest.leaf_count + i] = all;
   }
 }
 

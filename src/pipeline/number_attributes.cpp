@@ -71,12 +71,11 @@ AttributeHierarchy number_attributes(const AttributeInput& input, std::size_t la
   }
   store_values(ids, values, result);
   for (std::uint32_t i : input.forest.contraction_of_split) {
-    const auto slice_of = [i](const auto& items, const std::vector<std::uint32_t>& end) {
-      const std::uint32_t first = i == 0 ? 0 : end[i - 1];
-      return std::span(items).subspan(first, end[i] - first);
+    const auto part = [](const auto& items, Slice s) {
+      return std::span(items).subspan(s.first, s.count);
     };
-    result.parents_of_split.push_back(slice_of(grown.parents, grown.parents_end));
-    result.branches_of_split.push_back(slice_of(grown.branches, grown.branches_end));
+    result.parents_of_split.push_back(part(grown.parents, grown.parents_at[i]));
+    result.branches_of_split.push_back(part(grown.branches, grown.branches_at[i]));
   }
   store_leaves(input.wedges.layers[layer], result);
   return result;

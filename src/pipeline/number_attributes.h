@@ -23,10 +23,11 @@ struct GrownAttributes {
   };
   std::vector<Slice> at_birth;  // in at_node
   std::vector<AtNode> at_node;
-  std::vector<RelativeAttribute> parents;  // by contraction, as in AttributeHierarchy
-  std::vector<std::uint32_t> parents_end;  // per contraction
-  std::vector<BranchRun> branches;         // likewise
-  std::vector<std::uint32_t> branches_end;
+  // As in AttributeHierarchy; per contraction where its own are.
+  std::vector<RelativeAttribute> parents;
+  std::vector<Slice> parents_at;
+  std::vector<BranchRun> branches;
+  std::vector<Slice> branches_at;
 };
 
 // From births to nodes, from contractions to splits, from ids to values.

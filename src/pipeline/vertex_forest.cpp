@@ -8,6 +8,25 @@
 
 namespace crease {
 
+namespace {
+
+// Parents before children and right before left; turned round.
+std::vector<std::uint32_t> left_to_right(const VertexForest& forest) {
+  std::vector<std::uint32_t> order,
+      waiting(forest.birth_of_node.begin(), forest.birth_of_node.begin() + forest.root_count);
+  while (!waiting.empty()) {
+    const std::uint32_t birth = waiting.back();
+    waiting.pop_back();
+    if (forest.is_leaf(birth)) continue;
+    order.push_back(birth - forest.leaf_count);
+    for (std::uint32_t child : forest.children[order.back()]) waiting.push_back(child);
+  }
+  std::reverse(order.begin(), order.end());
+  return order;
+}
+
+}  // namespace
+
 VertexForest make_forest(std::size_t vertex_count, const std::vector<Contraction>& contractions) {
   VertexForest forest;
   forest.leaf_count = static_cast<std::uint32_t>(vertex_count);
@@ -43,6 +62,7 @@ VertexForest make_forest(std::size_t vertex_count, const std::vector<Contraction
   for (std::uint32_t node = 0; node < forest.birth_of_node.size(); ++node) {
     forest.node_of_birth[forest.birth_of_node[node]] = NodeId{node};
   }
+  forest.from_left_to_right = left_to_right(forest);
   return forest;
 }
 

