@@ -20,13 +20,14 @@ set(CREASE_LAYER_render    base mesh runtime)
 # Which folder a public header belongs to.
 set(CREASE_HEADERS_base      vec.h ids.h result.h progress.h)
 set(CREASE_HEADERS_mesh      mesh.h shading.h)
-set(CREASE_HEADERS_hierarchy contraction.h progressive_arrays.h)
+set(CREASE_HEADERS_hierarchy contraction.h progressive_arrays.h compact_ranges.h packed_indices.h
+    parent_maps.h split_bounds.h mesh_hierarchy.h)
 set(CREASE_HEADERS_io        import.h export.h)
 set(CREASE_HEADERS_generate  generate.h)
 set(CREASE_HEADERS_measure   compare.h)
 set(CREASE_HEADERS_simplify  simplify.h)
 set(CREASE_HEADERS_codec     file.h)
-set(CREASE_HEADERS_pipeline  build.h)
+set(CREASE_HEADERS_pipeline  build.h build_hierarchy.h)
 set(CREASE_HEADERS_runtime   draw_list.h progressive_mesh.h)
 set(CREASE_HEADERS_render    render.h)
 

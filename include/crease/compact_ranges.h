@@ -1,0 +1,119 @@
+// Per key a range of items, for keys that nearly all have the ordinary number of them.
+//
+//   RankedBits bits(flags);                 bits.rank(i): how many are set before i
+//   CompactRanges around(counts, 2);        around.begin(k), around.count(k): 2 items is ordinary
+//   SparseLists<float> lists;               lists.push_back(items), then lists.of(k): most are
+//   empty
+//
+// A key that is ordinary costs 1.5 bits, another one 4 bytes on top. Everything is O(1).
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease {
+
+// std::popcount() calls a function where the processor may lack the instruction.
+constexpr std::uint32_t popcount_inline(std::uint64_t bits) {
+#if defined(__POPCNT__) || !defined(__x86_64__)
+  return static_cast<std::uint32_t>(std::popcount(bits));
+#else
+  bits -= bits >> 1 & 0x5555555555555555u;
+  bits = (bits & 0x3333333333333333u) + (bits >> 2 & 0x3333333333333333u);
+  bits = (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  return static_cast<std::uint32_t>(bits * 0x0101010101010101u >> 56);
+#endif
+}
+
+// A bit per key, and how many of them are set before it.
+class RankedBits {
+ public:
+  void push_back(bool bit) {
+    if (size_ % 64 == 0) {
+      rank_of_word_.push_back(set_count_);
+      words_.push_back(0);
+    }
+    words_.back() |= std::uint64_t(bit) << (size_ % 64);
+    set_count_ += bit ? 1 : 0;
+    ++size_;
+  }
+  bool test(std::size_t key) const { return (words_[key / 64] >> (key % 64) & 1) != 0; }
+  std::uint32_t rank(std::size_t key) const {
+    const std::uint64_t before = words_[key / 64] & ((std::uint64_t(1) << (key % 64)) - 1);
+    return rank_of_word_[key / 64] + popcount_inline(before);
+  }
+  std::size_t size() const { return size_; }
+  std::size_t set_count() const { return set_count_; }
+  std::size_t bytes() const { return 8 * words_.size() + 4 * rank_of_word_.size(); }
+
+ private:
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> rank_of_word_;
+  std::size_t size_ = 0;
+  std::uint32_t set_count_ = 0;
+};
+
+// The ranges of all keys, one after the other. A key's begin is `usual` times the key, plus what
+// the unusual keys before it have in excess (modulo 2^32).
+class CompactRanges {
+ public:
+  explicit CompactRanges(std::uint32_t usual = 1) : usual_(usual) {}
+
+  void push_back(std::uint32_t count) {
+    is_unusual_.push_back(count != usual_);
+    if (count != usual_) excess_.push_back(excess_.back() + (count - usual_));
+  }
+  std::uint32_t begin(std::size_t key) const {
+    return static_cast<std::uint32_t>(key) * usual_ + excess_[is_unusual_.rank(key)];
+  }
+  std::uint32_t count(std::size_t key) const {
+    if (!is_unusual_.test(key)) return usual_;
+    const std::uint32_t rank = is_unusual_.rank(key);
+    return usual_ + (excess_[rank + 1] - excess_[rank]);
+  }
+  std::uint32_t end(std::size_t key) const { return begin(key) + count(key); }
+  std::uint32_t total() const {
+    return static_cast<std::uint32_t>(size()) * usual_ + excess_.back();
+  }
+  std::size_t size() const { return is_unusual_.size(); }
+  std::size_t bytes() const { return is_unusual_.bytes() + 4 * excess_.size(); }
+
+ private:
+  std::uint32_t usual_;
+  RankedBits is_unusual_;
+  std::vector<std::uint32_t> excess_{
+      0};  // before the first unusual key, after it, after the second
+};
+
+// A list of items per key. An empty one costs 1.5 bits.
+template <typename Item>
+class SparseLists {
+ public:
+  void push_back(std::span<const Item> items) {
+    has_items_.push_back(!items.empty());
+    if (items.empty()) return;
+    items_.insert(items_.end(), items.begin(), items.end());
+    end_.push_back(static_cast<std::uint32_t>(items_.size()));
+  }
+  std::span<const Item> of(std::size_t key) const {
+    if (!has_items_.test(key)) return {};
+    const std::uint32_t rank = has_items_.rank(key);
+    return std::span<const Item>(items_).subspan(end_[rank], end_[rank + 1] - end_[rank]);
+  }
+  std::size_t size() const { return has_items_.size(); }
+  std::size_t list_count() const { return has_items_.set_count(); }
+  std::size_t item_count() const { return items_.size(); }
+  std::size_t bytes() const {
+    return has_items_.bytes() + 4 * end_.size() + sizeof(Item) * items_.size();
+  }
+
+ private:
+  RankedBits has_items_;
+  std::vector<std::uint32_t> end_{0};
+  std::vector<Item> items_;
+};
+
+}  // namespace crease

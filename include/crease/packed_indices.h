@@ -1,0 +1,72 @@
+// Numbers of as many bits as the largest one needs.
+//
+//   PackedIndices<WedgeId> wedges(bits_for(wedge_count));
+//   wedges.push_back(w);
+//   wedges[i]
+//
+// A read is two loads and three shifts. Arrays of a block, or of a small model, get narrow by
+// themselves: 50,000 wedges take 16 bits each, a million 20.
+#pragma once
+
+#include "crease/ids.h"
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace crease {
+
+// Bits for numbers below `limit`.
+constexpr unsigned bits_for(std::size_t limit) {
+  return limit <= 1 ? 0 : static_cast<unsigned>(std::bit_width(limit - 1));
+}
+
+// Bits one after the other.
+class BitArray {
+ public:
+  // `value` must have no more bits than said, at most 32.
+  void append(std::uint32_t value, unsigned bits) {
+    words_.resize((size_ + bits) / 64 + 2);  // reads look one word further
+    words_[size_ / 64] |= std::uint64_t(value) << (size_ % 64);
+    if (size_ % 64 != 0) words_[size_ / 64 + 1] |= std::uint64_t(value) >> (64 - size_ % 64);
+    size_ += bits;
+  }
+  std::uint32_t read(std::size_t bit, unsigned bits) const {
+    const std::uint64_t low = words_[bit / 64] >> (bit % 64);
+    const std::uint64_t high = words_[bit / 64 + 1] << 1 << (63 - bit % 64);
+    return static_cast<std::uint32_t>((low | high) & ((std::uint64_t(1) << bits) - 1));
+  }
+  std::size_t size() const { return size_; }
+  std::size_t bytes() const { return 8 * words_.size(); }
+
+ private:
+  std::vector<std::uint64_t> words_;
+  std::size_t size_ = 0;
+};
+
+template <typename Index = std::uint32_t>
+class PackedIndices {
+ public:
+  PackedIndices() = default;
+  explicit PackedIndices(unsigned bits) : bits_(bits) {}  // at most 32
+
+  void push_back(Index index) {
+    packed_.append(static_cast<std::uint32_t>(index), bits_);
+    ++size_;
+  }
+  Index operator[](std::size_t i) const {
+    return static_cast<Index>(packed_.read(i * bits_, bits_));
+  }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  unsigned bits() const { return bits_; }
+  std::size_t bytes() const { return packed_.bytes(); }
+
+ private:
+  BitArray packed_;
+  std::size_t size_ = 0;
+  unsigned bits_ = 0;
+};
+
+}  // namespace crease

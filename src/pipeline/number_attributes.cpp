@@ -1,0 +1,84 @@
+#include "pipeline/number_attributes.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace crease {
+
+namespace {
+
+// An index an attribute where values repeat, or a value each, whichever is smaller.
+void store_values(const std::vector<AttributeId>& ids, const LayerValues& values,
+                  AttributeHierarchy& result) {
+  std::uint32_t id_count = 0;
+  for (AttributeId id : ids) {
+    id_count = std::max(id_count, static_cast<std::uint32_t>(index_of(id)) + 1);
+  }
+  std::vector<std::uint32_t> value_of_id(id_count, kNone);  // in the order of first use
+  std::uint32_t used = 0;
+  for (AttributeId id : ids) {
+    if (value_of_id[index_of(id)] == kNone) value_of_id[index_of(id)] = used++;
+  }
+  const std::size_t words = result.dimension;
+  const bool indexed = ids.size() + used * words < ids.size() * words;
+  result.values.reserve((indexed ? used : ids.size()) * words);
+  if (indexed) result.value_of_attribute = PackedIndices<>(bits_for(used));
+  std::uint32_t stored = 0;
+  for (AttributeId id : ids) {
+    const std::uint32_t value = value_of_id[index_of(id)];
+    if (indexed) result.value_of_attribute.push_back(value);
+    if (indexed && value != stored) continue;
+    const std::span<const float> floats = values.value(id);
+    result.values.insert(result.values.end(), floats.begin(), floats.end());
+    ++stored;
+  }
+}
+
+void store_leaves(const LeafAttributes& leaves, AttributeHierarchy& result) {
+  std::vector<RelativeAttribute> relative;
+  for (std::size_t v = 0; v + 1 < leaves.first_of_vertex.size(); ++v) {
+    const std::uint32_t first = leaves.first_of_vertex[v], end = leaves.first_of_vertex[v + 1];
+    for (std::uint32_t a = first; a < end; ++a) {
+      relative.push_back(static_cast<RelativeAttribute>(a - first));
+    }
+  }
+  const auto most = std::max_element(relative.begin(), relative.end());
+  if (most == relative.end() || *most == 0) return;
+  result.leaf_attribute = PackedIndices<RelativeAttribute>(bits_for(*most + std::size_t(1)));
+  for (std::uint32_t attribute : leaves.of_wedge) {
+    result.leaf_attribute.push_back(relative[attribute]);
+  }
+}
+
+}  // namespace
+
+AttributeHierarchy number_attributes(const AttributeInput& input, std::size_t layer,
+                                     const LayerValues& values, const GrownAttributes& grown) {
+  AttributeHierarchy result;
+  const AttributeLayer& source = values.source();
+  result.name = source.name;
+  result.role = source.role;
+  result.interpolation = source.interpolation;
+  result.dimension = source.dimension;
+
+  std::vector<AttributeId> ids;
+  for (std::uint32_t birth : input.forest.birth_of_node) {
+    const Slice slice = grown.at_birth[birth];
+    result.attribute_ranges.push_back(slice.count);
+    for (std::uint32_t k = 0; k < slice.count; ++k)
+      ids.push_back(grown.at_node[slice.first + k].id);
+  }
+  store_values(ids, values, result);
+  for (std::uint32_t i : input.forest.contraction_of_split) {
+    const auto part = [](const auto& items, Slice s) {
+      return std::span(items).subspan(s.first, s.count);
+    };
+    result.parents_of_split.push_back(part(grown.parents, grown.parents_at[i]));
+    result.branches_of_split.push_back(part(grown.branches, grown.branches_at[i]));
+  }
+  store_leaves(input.wedges.layers[layer], result);
+  return result;
+}
+
+}  // namespace crease

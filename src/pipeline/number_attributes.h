@@ -1,0 +1,37 @@
+// A layer's attributes as they were grown, by births and contractions; and their place in the
+// arrays.
+#pragma once
+
+#include "crease/ids.h"
+#include "crease/mesh_hierarchy.h"
+#include "pipeline/attribute_forest.h"
+#include "pipeline/attribute_rules.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace crease {
+
+struct Slice {
+  std::uint32_t first = 0, count = 0;
+};
+
+struct GrownAttributes {
+  struct AtNode {
+    std::uint32_t set;  // a leaf attribute of it
+    AttributeId id;     // what it is at this node
+  };
+  std::vector<Slice> at_birth;  // in at_node
+  std::vector<AtNode> at_node;
+  // As in AttributeHierarchy; per contraction where its own are.
+  std::vector<RelativeAttribute> parents;
+  std::vector<Slice> parents_at;
+  std::vector<BranchRun> branches;
+  std::vector<Slice> branches_at;
+};
+
+// From births to nodes, from contractions to splits, from ids to values.
+AttributeHierarchy number_attributes(const AttributeInput& input, std::size_t layer,
+                                     const LayerValues& values, const GrownAttributes& grown);
+
+}  // namespace crease
