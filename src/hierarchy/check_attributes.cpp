@@ -112,12 +112,12 @@ class CornerWalk {
 
  private:
   Broken walk(WedgeId wedge, NodeId node, NodeId end) {
-    RelativeAttribute a =
-        layer_.leaf_attribute.empty() ? RelativeAttribute{0} : layer_.leaf_attribute[index_of(wedge)];
+    RelativeAttribute a = layer_.leaf_attribute.empty() ? RelativeAttribute{0}
+                                                        : layer_.leaf_attribute[index_of(wedge)];
     while (true) {
       if (a >= layer_.attribute_count(node)) {
-        return broken_layer(layer_, "an attribute is missing at node " +
-                                        std::to_string(index_of(node)));
+        return broken_layer(layer_,
+                            "an attribute is missing at node " + std::to_string(index_of(node)));
       }
       is_used_[layer_.attribute_ranges.begin(index_of(node)) + a] = true;
       if (h_.is_root(node) || h_.parent(node) == end) return std::nullopt;

@@ -14,8 +14,8 @@ namespace crease {
 std::optional<Failure> check_attribute_sizes(const MeshHierarchy& hierarchy);
 
 // Follows every corner from its leaf up as far as a cut can show it: it has an attribute everywhere
-// and finds back down, and every attribute of every node is had by some corner. The vertex hierarchy
-// and the sizes must hold. Time O(corners * depth).
+// and finds back down, and every attribute of every node is had by some corner. The vertex
+// hierarchy and the sizes must hold. Time O(corners * depth).
 std::optional<Failure> check_attributes(const MeshHierarchy& hierarchy, std::size_t layer,
                                         const std::vector<NodeId>& leaf_of_wedge);
 

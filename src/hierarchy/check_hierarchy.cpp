@@ -81,7 +81,8 @@ class VertexChecker {
   Broken check_numbers() const {
     for (std::uint32_t s = 0; s < h_.split_count(); ++s) {
       const NodeId n = h_.node_of_split[s];
-      if (n >= h_.first_child(SplitId{s})) return broken_split(s, "its node is not above its children");
+      if (n >= h_.first_child(SplitId{s}))
+        return broken_split(s, "its node is not above its children");
       if (h_.split_of(n) != SplitId{s}) return broken_split(s, "its node has another split");
     }
     if (!std::is_sorted(h_.root_wedges.begin(), h_.root_wedges.end()) ||
@@ -135,8 +136,7 @@ class VertexChecker {
           // Of two nodes on one way up, the one below has the greater number.
           if (deepest == kNoNode || both > deepest) deepest = both;
         }
-        const bool right = key == 0 ? deepest == kNoNode
-                                    : deepest == h_.node_of_split[key - 1];
+        const bool right = key == 0 ? deepest == kNoNode : deepest == h_.node_of_split[key - 1];
         if (!right) return broken_triangle(t, "not introduced where it collapses");
       }
     }

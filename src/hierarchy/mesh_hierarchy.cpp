@@ -98,9 +98,9 @@ RelativeAttribute MeshHierarchy::below(std::size_t layer, SplitId s, bool second
     return static_cast<RelativeAttribute>(found - parents.begin());
   }
   const std::span<const BranchRun> runs = attributes.branches_of_split.of(index_of(s));
-  const auto after = std::upper_bound(
-      runs.begin(), runs.end(), wedge,
-      [](WedgeId w, const BranchRun& run) { return w < run.first_wedge; });
+  const auto after =
+      std::upper_bound(runs.begin(), runs.end(), wedge,
+                       [](WedgeId w, const BranchRun& run) { return w < run.first_wedge; });
   return after == runs.begin() ? RelativeAttribute{0} : (after - 1)->at_child;
 }
 
@@ -135,10 +135,9 @@ HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy) {
   HierarchyBytes bytes;
   bytes.triangles = bytes_of(v.triangles) + v.triangle_ranges.bytes() +
                     bytes_of(v.material_of_triangle) + bytes_of(v.part_of_triangle) +
-                    v.derived_of_split.bytes() + v.is_derived.bytes() +
-                    bytes_of(v.deriving_splits);
-  bytes.positions = bytes_of(v.root_positions) + bytes_of(v.deltas) + v.is_wide.bytes() +
-                    bytes_of(v.wide_deltas);
+                    v.derived_of_split.bytes() + v.is_derived.bytes() + bytes_of(v.deriving_splits);
+  bytes.positions =
+      bytes_of(v.root_positions) + bytes_of(v.deltas) + v.is_wide.bytes() + bytes_of(v.wide_deltas);
   bytes.splits = v.is_split.bytes() + bytes_of(v.node_of_split) + bytes_of(v.second_wedge) +
                  bytes_of(v.bounds);
   for (const AttributeHierarchy& layer : hierarchy.layers) {

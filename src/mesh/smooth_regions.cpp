@@ -36,7 +36,8 @@ std::vector<std::uint32_t> smooth_regions(const Mesh& mesh, const CornersAround&
       for (std::uint32_t step : {1u, 2u}) {
         const std::uint32_t other = 3 * t + (corner % 3 + step) % 3;
         const VertexId w = mesh.triangles[t][other % 3];
-        if (w > VertexId{v}) sides.push_back({w, layer.of_corner[corner], layer.of_corner[other], t});
+        if (w > VertexId{v})
+          sides.push_back({w, layer.of_corner[corner], layer.of_corner[other], t});
       }
     }
     std::sort(sides.begin(), sides.end());

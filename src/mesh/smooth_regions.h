@@ -1,9 +1,9 @@
 // Smooth regions: maximal sets of triangles connected across smooth edges (G03 3.5.1).
 //
 // An edge is smooth between two triangles that have the same attributes of the layer at both of its
-// ends. G03 asks as well that no two triangles of a region meet in an edge that is not smooth; where
-// a crease ends inside the surface, or a Moebius strip has one, no partition does that. Regions here
-// are what is connected.
+// ends. G03 asks as well that no two triangles of a region meet in an edge that is not smooth;
+// where a crease ends inside the surface, or a Moebius strip has one, no partition does that.
+// Regions here are what is connected.
 #pragma once
 
 #include "crease/mesh.h"

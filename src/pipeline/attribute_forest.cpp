@@ -40,9 +40,9 @@ class AttributeForest {
     for (std::uint32_t i = 0; i < in_.forest.contraction_count(); ++i) contract(i);
     for (const Slice& slice : grown_.at_birth) {
       if (slice.count >= kRemoved) {
-        return fail(Error::NotSupported,
-                    "layer '" + values_.source().name + "': a vertex has " +
-                        std::to_string(slice.count) + " attributes, 65,534 are possible");
+        return fail(Error::NotSupported, "layer '" + values_.source().name + "': a vertex has " +
+                                             std::to_string(slice.count) +
+                                             " attributes, 65,534 are possible");
       }
     }
     return number_attributes(in_, layer_, values_, grown_);
@@ -108,8 +108,7 @@ class AttributeForest {
         const std::uint32_t set = sets_.find(grown_.at_node[slice.first + k].set);
         const Standing& s = standing_[set];
         members_.push_back(set);
-        candidates_.push_back(
-            {s.id, s.live_until > time, s.shown_until > time, s.is_face_value});
+        candidates_.push_back({s.id, s.live_until > time, s.shown_until > time, s.is_face_value});
       }
     }
     links_.clear();
@@ -125,8 +124,7 @@ class AttributeForest {
     for (WedgeId wedge : in_.vertices.triangles[triangle]) {
       const std::uint32_t set = sets_.find(leaves_.of_wedge[index_of(wedge)]);
       const std::uint32_t relative = standing_[set].relative;
-      const bool second =
-          in_.vertices.goes_to_second(in_.forest.split_of_contraction[time], wedge);
+      const bool second = in_.vertices.goes_to_second(in_.forest.split_of_contraction[time], wedge);
       const std::uint32_t member = relative + (second ? first_of_u : 0);
       const std::uint32_t count = second ? static_cast<std::uint32_t>(members_.size()) : first_of_u;
       if (member < count && members_[member] == set) ends[second ? 1 : 0] = member;
@@ -191,9 +189,8 @@ class AttributeForest {
         runs_.push_back({WedgeId{w}, static_cast<RelativeAttribute>(k)});
       }
     }
-    std::sort(runs_.begin(), runs_.end(), [](const BranchRun& a, const BranchRun& b) {
-      return a.first_wedge < b.first_wedge;
-    });
+    std::sort(runs_.begin(), runs_.end(),
+              [](const BranchRun& a, const BranchRun& b) { return a.first_wedge < b.first_wedge; });
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       if (r == 0 || runs_[r].at_child != runs_[r - 1].at_child) grown_.branches.push_back(runs_[r]);
     }
@@ -237,8 +234,8 @@ class AttributeForest {
     const Standing& other = standing_[b];
     all.live_until = std::max(all.live_until, other.live_until);
     all.shown_until = std::max(all.shown_until, other.shown_until);
-    std::tie(all.region, all.corner) = std::min(std::tuple(all.region, all.corner),
-                                                std::tuple(other.region, other.corner));
+    std::tie(all.region, all.corner) =
+        std::min(std::tuple(all.region, all.corner), std::tuple(other.region, other.corner));
     all.is_face_value = all.is_face_value || other.is_face_value;
     append_wedges(all, other.first_wedge, other.last_wedge);
     return a;
@@ -254,9 +251,9 @@ class AttributeForest {
   const std::size_t layer_;
   const LeafAttributes& leaves_;
   LayerValues values_;
-  DisjointSets sets_;                        // of leaf attributes
-  std::vector<Standing> standing_;           // per leaf attribute, valid at the smallest of a set
-  std::vector<std::uint32_t> next_wedge_;    // per wedge
+  DisjointSets sets_;                      // of leaf attributes
+  std::vector<Standing> standing_;         // per leaf attribute, valid at the smallest of a set
+  std::vector<std::uint32_t> next_wedge_;  // per wedge
   GrownAttributes grown_;
 
   // Of one contraction.

@@ -54,9 +54,8 @@ void AttributeRules::link(std::uint32_t a, std::uint32_t b) {
 }
 
 void AttributeRules::link_equal_ids(std::span<const Candidate> candidates) {
-  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return candidates[a].id < candidates[b].id;
-  });
+  std::sort(order_.begin(), order_.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return candidates[a].id < candidates[b].id; });
   for (std::size_t i = 1; i < order_.size(); ++i) {
     if (candidates[order_[i]].id == candidates[order_[i - 1]].id) link(order_[i], order_[i - 1]);
   }

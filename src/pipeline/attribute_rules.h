@@ -26,7 +26,7 @@ namespace crease {
 // An attribute at v_t or v_u.
 struct Candidate {
   AttributeId id{};
-  bool is_live = false;  // at v_s: some cut shows it there
+  bool is_live = false;   // at v_s: some cut shows it there
   bool is_shown = false;  // some linear level shows it at v_s, right after the contraction
   bool is_face_value = false;
 };

@@ -32,8 +32,8 @@ Result<MeshHierarchy> build_hierarchy(const Mesh& snapped, const ContractionSequ
   std::vector<TriangleId> new_of_triangle =
       arrange_triangles(snapped, forest, wedges.of_corner, times, hierarchy.vertices);
   for (std::size_t l = 0; l < snapped.layers.size(); ++l) {
-    Result<AttributeHierarchy> layer = grow_attributes(
-        {snapped, sequence, forest, wedges, times, hierarchy.vertices}, l);
+    Result<AttributeHierarchy> layer =
+        grow_attributes({snapped, sequence, forest, wedges, times, hierarchy.vertices}, l);
     if (!layer.ok()) return layer.failure();
     hierarchy.layers.push_back(*std::move(layer));
   }

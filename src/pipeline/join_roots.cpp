@@ -36,9 +36,8 @@ LevelError joined_error(const Root& a, const Root& b, double step) {
     square += d * d;
   }
   const auto away = static_cast<float>(std::sqrt(square));
-  return {std::max({a.error.surface, b.error.surface, away}),
-          std::max(a.error.line, b.error.line), std::max(a.error.degrees, b.error.degrees),
-          std::max(a.error.texture, b.error.texture)};
+  return {std::max({a.error.surface, b.error.surface, away}), std::max(a.error.line, b.error.line),
+          std::max(a.error.degrees, b.error.degrees), std::max(a.error.texture, b.error.texture)};
 }
 
 std::vector<Root> roots_of(const Mesh& snapped, const ContractionSequence& sequence) {

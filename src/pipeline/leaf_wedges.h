@@ -15,9 +15,9 @@ namespace crease {
 // first_of_vertex[v] on, in the order of their relative indices, which is that of their regions.
 struct LeafAttributes {
   struct Attribute {
-    AttributeId id{};           // in the input
-    std::uint32_t region = 0;   // the smallest smooth region of its triangles
-    std::uint32_t corner = 0;   // its first one: tells apart attributes of one region
+    AttributeId id{};            // in the input
+    std::uint32_t region = 0;    // the smallest smooth region of its triangles
+    std::uint32_t corner = 0;    // its first one: tells apart attributes of one region
     bool is_face_value = false;  // some triangle has it at all three corners
   };
   std::vector<std::uint32_t> first_of_vertex;  // vertex_count + 1

@@ -65,7 +65,8 @@ AttributeHierarchy number_attributes(const AttributeInput& input, std::size_t la
   for (std::uint32_t birth : input.forest.birth_of_node) {
     const Slice slice = grown.at_birth[birth];
     result.attribute_ranges.push_back(slice.count);
-    for (std::uint32_t k = 0; k < slice.count; ++k) ids.push_back(grown.at_node[slice.first + k].id);
+    for (std::uint32_t k = 0; k < slice.count; ++k)
+      ids.push_back(grown.at_node[slice.first + k].id);
   }
   store_values(ids, values, result);
   for (std::uint32_t i : input.forest.contraction_of_split) {

@@ -1,4 +1,5 @@
-// A layer's attributes as they were grown, by births and contractions; and their place in the arrays.
+// A layer's attributes as they were grown, by births and contractions; and their place in the
+// arrays.
 #pragma once
 
 #include "crease/ids.h"

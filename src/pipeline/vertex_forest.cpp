@@ -27,7 +27,8 @@ VertexForest make_forest(std::size_t vertex_count, const std::vector<Contraction
   forest.root_count = static_cast<std::uint32_t>(forest.birth_of_node.size());
   forest.birth_of_node.reserve(has_parent.size());
   forest.split_of_contraction.resize(contractions.size());
-  for (std::uint32_t node = 0; node < forest.birth_of_node.size(); ++node) {  // grows: breadth first
+  for (std::uint32_t node = 0; node < forest.birth_of_node.size();
+       ++node) {  // grows: breadth first
     const std::uint32_t birth = forest.birth_of_node[node];
     if (forest.is_leaf(birth)) continue;
     const std::uint32_t contraction = birth - forest.leaf_count;

@@ -33,7 +33,8 @@ VertexForest make_forest(std::size_t vertex_count, const std::vector<Contraction
 VertexHierarchy number_nodes(const VertexForest& forest, const std::vector<Vec3i>& leaf_positions,
                              const ContractionSequence& sequence);
 
-// The first wedge under every leaf, for so many wedges of each leaf; fills root_wedges and second_wedge.
+// The first wedge under every leaf, for so many wedges of each leaf; fills root_wedges and
+// second_wedge.
 std::vector<std::uint32_t> number_wedges(const VertexForest& forest,
                                          const std::vector<std::uint32_t>& wedge_count_of_leaf,
                                          VertexHierarchy& hierarchy);

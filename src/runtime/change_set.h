@@ -22,6 +22,11 @@ class ChangeSet {
     active_ = count;
   }
 
+  // Room for `count` elements; what is marked stays marked.
+  void grow(std::size_t count) {
+    if (words_.size() * 64 < count) words_.resize((count + 63) / 64, 0);
+  }
+
   void mark(std::size_t i) {
     std::uint64_t& word = words_[i / 64];
     if (word == 0) touched_.push_back(static_cast<std::uint32_t>(i / 64));

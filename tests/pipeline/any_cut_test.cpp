@@ -41,12 +41,11 @@ TEST_CASE("any cut of a random complex is that of the plain definition") {
   for (std::uint64_t seed = 0; seed < (kSanitized ? 20 : 200); ++seed) {
     CAPTURE(seed);
     const Placement placement = seed % 2 == 0 ? Placement::Endpoint : Placement::Optimal;
-    const HierarchyCase c =
-        random_case(random_complex(seed, 5 + seed % 20, 4 + (seed * 7) % 60),
-                    {.seed = seed,
-                     .placement = placement,
-                     .virtual_share = double(seed % 5) / 4,
-                     .change_share = double(seed % 3) / 2});
+    const HierarchyCase c = random_case(random_complex(seed, 5 + seed % 20, 4 + (seed * 7) % 60),
+                                        {.seed = seed,
+                                         .placement = placement,
+                                         .virtual_share = double(seed % 5) / 4,
+                                         .change_share = double(seed % 3) / 2});
     if (!passes(c)) return;
     check_levels(c, std::max<std::size_t>(1, c.sequence.contractions.size()));
     check_cuts(c, 50, seed);
@@ -58,9 +57,8 @@ TEST_CASE("any cut of a zoo mesh is that of the plain definition, however it was
     if (kSanitized && z.mesh.triangle_count() > 400) continue;
     CAPTURE(z.name);
     for (Placement placement : {Placement::Endpoint, Placement::Optimal}) {
-      for (const HierarchyCase& c :
-           {random_case(z.mesh, {.seed = 11, .placement = placement}),
-            simplified_case(z.mesh, placement)}) {
+      for (const HierarchyCase& c : {random_case(z.mesh, {.seed = 11, .placement = placement}),
+                                     simplified_case(z.mesh, placement)}) {
         if (!passes(c)) return;
         check_levels(c, 12);
         check_cuts(c, 20, 5);

@@ -198,8 +198,8 @@ std::string difference_at_level(const HierarchyCase& c, std::size_t applied) {
         if (derived && c.mesh.layers[l].role == AttributeRole::Normal) continue;
         const AttributeHierarchy& layer = c.hierarchy.layers[l];
         const auto got = layer.value(node, c.hierarchy.attribute_at(l, node, wedge));
-        const auto expected = attribute_value(c.mesh.layers[l], c.sequence, l,
-                                              level.of_corner[l][3 * t + k]);
+        const auto expected =
+            attribute_value(c.mesh.layers[l], c.sequence, l, level.of_corner[l][3 * t + k]);
         if (std::memcmp(got.data(), expected.data(), got.size_bytes()) != 0) {
           return c.mesh.layers[l].name + at;
         }
