@@ -37,7 +37,6 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
     const std::uint32_t slot = take_slot();
     vertices_[slot].begin = h_.root_wedges[r];
     vertices_[slot].end = h_.root_wedges[r + 1];
-    vertices_[slot].corners = lists_.make();
     map_.set(h_.root_wedges[r], slot);
     stand(slot, h_.root(r), h_.root_positions[r]);
   }
@@ -69,6 +68,7 @@ std::uint32_t ActiveCut::take_slot() {
 void ActiveCut::stand(std::uint32_t slot, NodeId node, const Vec3i& position) {
   ActiveVertex& v = vertices_[slot];
   v.node = node;
+  v.split = h_.split_of(node);
   v.position = position;
   v.one_normal =
       normal_layer_ != kNone && hierarchy_.layers[normal_layer_].attribute_count(node) <= 1;
@@ -90,16 +90,17 @@ ActiveCut::Children ActiveCut::children(SplitId s) const {
 }
 
 std::uint32_t ActiveCut::split(std::uint32_t slot) {
-  const ActiveVertex old = vertices_[slot];
-  const SplitId s = h_.split_of(old.node);
+  const SplitId s = vertices_[slot].split;
+  const WedgeId begin = vertices_[slot].begin, end = vertices_[slot].end;
+  const Vec3i position = vertices_[slot].position;
   CREASE_ASSERT(s != kNoSplit);
   set_done(s, true);
   const WedgeId middle = h_.second_wedge[index_of(s)];
   const NodeId first = h_.first_child(s), second = h_.second_child(s);
-  if (middle == old.begin || middle == old.end) {
-    const bool is_second = middle == old.begin;
+  if (middle == begin || middle == end) {
+    const bool is_second = middle == begin;
     stand(slot, is_second ? second : first,
-          grid_sum(old.position, h_.delta_of(is_second ? second : first)));
+          grid_sum(position, h_.delta_of(is_second ? second : first)));
     pass_down(s, slot, is_second);
     touch_derived(s);
     return kNoSlot;
@@ -107,10 +108,10 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
   const std::uint32_t other = take_slot();
   vertices_[slot].end = middle;
   vertices_[other].begin = middle;
-  vertices_[other].end = old.end;
+  vertices_[other].end = end;
   map_.set(middle, other);
-  stand(slot, first, grid_sum(old.position, h_.delta_of(first)));
-  stand(other, second, grid_sum(old.position, h_.delta_of(second)));
+  stand(slot, first, grid_sum(position, h_.delta_of(first)));
+  stand(other, second, grid_sum(position, h_.delta_of(second)));
   give_corners(slot, other, middle);
   pass_down(s, slot, false);
   pass_down(s, other, true);
@@ -120,9 +121,9 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
     std::array<std::uint32_t, 3> slots;
     for (std::size_t k = 0; k < 3; ++k) {
       const WedgeId wedge = h_.triangles[t][k];
-      slots[k] = wedge < old.begin || wedge >= old.end ? map_.slot_at(wedge)
-                 : wedge < middle                      ? slot
-                                                       : other;
+      slots[k] = wedge < begin || wedge >= end ? map_.slot_at(wedge)
+                 : wedge < middle              ? slot
+                                               : other;
     }
     activate(TriangleId{t}, slots);
   }
@@ -130,29 +131,28 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
   return other;
 }
 
-// Those from `middle` on.
+// Those from `middle` on. Which way a corner goes is a coin toss, so both ways are written and one
+// counts.
 void ActiveCut::give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle) {
-  leaving_.clear();
-  CornerList& staying = vertices_[from].corners;
-  const std::span<CornerAt> all = lists_.of(staying);
-  std::uint32_t stay = 0;
-  for (const CornerAt& at : all) {
-    if (at.wedge < middle) {
-      all[stay++] = at;
-    } else {
-      leaving_.push_back(at);
-    }
+  CornerList& list = vertices_[from].corners;
+  const std::span<CornerAt> all = lists_.of(list);
+  leaving_.resize(all.size());
+  std::size_t stay = 0, leave = 0;
+  for (const CornerAt at : all) {
+    const bool leaves = at.wedge >= middle;
+    leaving_[leave] = at;
+    all[stay] = at;
+    leave += leaves ? 1 : 0;
+    stay += leaves ? 0 : 1;
   }
-  staying.count = stay;
-  // Nearly every split brings two triangles, each with a corner here.
-  CornerList list = lists_.make(leaving_.size() + 2);
-  list.count = static_cast<std::uint32_t>(leaving_.size());
-  std::copy(leaving_.begin(), leaving_.end(), lists_.of(list).begin());
-  vertices_[to].corners = list;
-  lists_.trim(vertices_[from].corners);
-  for (const CornerAt& at : leaving_) {
-    slots_of(at.corner)[at.corner.corner()] = to;
-    parts_[at.corner.part()].moved.mark(at.corner.triangle());
+  lists_.resize(list, stay);
+  CornerList& other = vertices_[to].corners;
+  lists_.resize(other, leave);
+  std::copy_n(leaving_.begin(), leave, lists_.of(other).begin());
+  for (std::size_t i = 0; i < leave; ++i) {
+    const CornerRef corner = leaving_[i].corner;
+    slots_of(corner)[corner.corner()] = to;
+    parts_[corner.part()].moved.mark(corner.triangle());
   }
 }
 
@@ -182,9 +182,8 @@ void ActiveCut::merge(SplitId s) {
   take_corners(slots.second, slots.first);
   stand(slots.first, node, position);
   touch_corners(slots.first);
-  lists_.free(second.corners);
+  lists_.clear(second.corners);
   second.node = kNoNode;
-  second.corners = {};
   free_slots_.push_back(slots.second);
   touch_derived(s);
 }
@@ -214,12 +213,11 @@ void ActiveCut::take_corners(std::uint32_t from, std::uint32_t to) {
                  : std::find(collapsed_.begin(), collapsed_.end(), key) != collapsed_.end();
     };
     const std::span<CornerAt> all = lists_.of(list);
-    list.count = static_cast<std::uint32_t>(
-        std::remove_if(all.begin(), all.end(), is_collapsed) - all.begin());
+    const auto last = std::remove_if(all.begin(), all.end(), is_collapsed);
+    list.count = static_cast<std::uint32_t>(last - all.begin());
   }
   const std::size_t staying = list.count;
-  lists_.reserve(list, staying + leaving_.size());
-  list.count += static_cast<std::uint32_t>(leaving_.size());
+  lists_.resize(list, staying + leaving_.size());
   std::copy(leaving_.begin(), leaving_.end(), lists_.of(list).begin() + std::ptrdiff_t(staying));
 }
 

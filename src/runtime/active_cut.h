@@ -12,8 +12,8 @@
 // A vertex without triangles has no wedges and no slot; its splits and merges are never needed. So
 // a split one of whose children has no triangles only renames the slot.
 //
-// Memory: a slot 40, its corners 64 (valence up to 8), its position and normal 24; a triangle as in
-// active_triangles.h. Whatever is active: a bit a split, 4.2 bytes a wedge.
+// Memory: a vertex and the corners at it 128, its position and normal to be drawn 24; a triangle as
+// in active_triangles.h. Whatever is active: a bit a split, 4.2 bytes a wedge.
 #pragma once
 
 #include "crease/mesh_hierarchy.h"
@@ -32,13 +32,16 @@ namespace crease {
 
 inline constexpr std::uint32_t kNoSlot = kNone;
 
-struct ActiveVertex {
-  NodeId node = kNoNode;  // kNoNode: the slot is free
+// All that a move reads and writes of a vertex, in two cache lines side by side.
+struct alignas(128) ActiveVertex {
+  NodeId node = kNoNode;     // kNoNode: the slot is free
+  SplitId split = kNoSplit;  // of the node
   WedgeId begin{}, end{};
-  Vec3i position;         // grid units
-  CornerList corners;
+  Vec3i position;                // grid units
   std::uint32_t one_normal = 0;  // all its corners have the same (SN of DB03)
+  CornerList corners;
 };
+static_assert(sizeof(ActiveVertex) == 128);
 
 class ActiveCut {
  public:
@@ -52,9 +55,7 @@ class ActiveCut {
   const std::array<ActiveTriangles, kPartCount>& parts() const { return parts_; }
   ChangeSet& vertex_changes() { return vertex_changes_; }
 
-  bool is_done(SplitId s) const {
-    return (done_[index_of(s) / 64] >> (index_of(s) % 64) & 1) != 0;
-  }
+  bool is_done(SplitId s) const { return (done_[index_of(s) / 64] >> (index_of(s) % 64) & 1) != 0; }
   // A child of a done split that is not split itself.
   bool is_cut_leaf(NodeId n) const {
     const SplitId s = h_.split_of(n);
@@ -136,19 +137,19 @@ class ActiveCut {
   const MeshHierarchy& hierarchy_;
   const VertexHierarchy& h_;
   std::uint32_t normal_layer_ = kNone, color_layer_ = kNone;
-  std::vector<std::uint32_t> tracked_;           // layers that have nodes of several attributes
-  std::vector<std::uint32_t> place_of_layer_;    // in tracked_, or kNone
-  bool touches_triangles_ = false;               // some triangle is, or may become, other than SN
-  std::vector<std::uint64_t> done_;              // a bit a split
+  std::vector<std::uint32_t> tracked_;         // layers that have nodes of several attributes
+  std::vector<std::uint32_t> place_of_layer_;  // in tracked_, or kNone
+  bool touches_triangles_ = false;             // some triangle is, or may become, other than SN
+  std::vector<std::uint64_t> done_;            // a bit a split
   WedgeMap map_;
   std::vector<ActiveVertex> vertices_;
   std::vector<std::uint32_t> free_slots_;
   CornerLists lists_;
   std::array<ActiveTriangles, kPartCount> parts_;
   ChangeSet vertex_changes_;
-  std::vector<CornerAt> leaving_;                // scratch of one move
-  std::vector<RelativeAttribute> arriving_;      // scratch of one triangle
-  std::vector<std::uint32_t> collapsed_;         // scratch of one merge: triangle keys
+  std::vector<CornerAt> leaving_;            // scratch of one move
+  std::vector<RelativeAttribute> arriving_;  // scratch of one triangle
+  std::vector<std::uint32_t> collapsed_;     // scratch of one merge: triangle keys
 };
 
 }  // namespace crease

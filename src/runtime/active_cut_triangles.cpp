@@ -21,9 +21,8 @@ Part ActiveCut::kind_of(TriangleId t, std::span<const std::uint32_t, 3> slots,
   if (normal_layer_ == kNone) return kFnPart;
   const bool derived = is_derived(t);
   if (derived) {
-    const Vec3f n =
-        geometric_normal(vertices_[slots[0]].position, vertices_[slots[1]].position,
-                         vertices_[slots[2]].position);
+    const Vec3f n = geometric_normal(vertices_[slots[0]].position, vertices_[slots[1]].position,
+                                     vertices_[slots[2]].position);
     if (n != Vec3f{}) return kFnPart;
   }
   const auto has_one = [&](std::uint32_t slot) { return vertices_[slot].one_normal != 0; };

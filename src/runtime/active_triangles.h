@@ -23,19 +23,19 @@ enum Part : std::uint32_t { kSnPart, kFnPart, kNsnPart, kPartCount };
 inline constexpr TriangleId kNoTriangle{kNone};
 
 struct ActiveTriangles {
-  std::vector<TriangleId> ids;                  // kNoTriangle: a hole
-  std::vector<std::uint32_t> slots;             // 3 a triangle: the active vertices
-  std::vector<RelativeAttribute> relative;      // per corner one for each tracked layer
-  std::vector<std::uint32_t> holes;             // may name triangles beyond the end
-  std::size_t hole_count = 0;                   // in front of the end
-  ChangeSet moved;                              // slots changed
-  ChangeSet touched;                            // kind, normals or colours may have changed
-  ChangeSet shaded;                             // normals or colours did
+  std::vector<TriangleId> ids;              // kNoTriangle: a hole
+  std::vector<std::uint32_t> slots;         // 3 a triangle: the active vertices
+  std::vector<RelativeAttribute> relative;  // per corner one for each tracked layer
+  std::vector<std::uint32_t> holes;         // may name triangles beyond the end
+  std::size_t hole_count = 0;               // in front of the end
+  ChangeSet moved;                          // slots changed
+  ChangeSet touched;                        // kind, normals or colours may have changed
+  ChangeSet shaded;                         // normals or colours did
 
   // What is drawn beside the slots; CutDrawing keeps it.
-  std::vector<Vec3f> normals;                   // FN: 1 a triangle, NSN: 3
-  std::vector<std::array<float, 4>> colors;     // 3 a triangle, or empty
-  std::vector<std::uint32_t> materials;         // or empty
+  std::vector<Vec3f> normals;                // FN: 1 a triangle, NSN: 3
+  std::vector<std::array<float, 4>> colors;  // 3 a triangle, or empty
+  std::vector<std::uint32_t> materials;      // or empty
 
   std::size_t size() const { return ids.size(); }
   std::size_t count() const { return ids.size() - hole_count; }

@@ -1,12 +1,12 @@
-// The corners that stand at each active vertex, as arrays in one pool.
+// The corners that stand at an active vertex.
 //
-//   CornerList list;                      // one a vertex, 12 bytes
+//   CornerList list;                      // one a vertex
 //   lists.push_back(list, {corner, wedge});
 //   for (CornerAt& at : lists.of(list)) ...
 //
 // A corner comes with its wedge, so that a split reads one run of memory and no triangle to tell
-// which corners go to v_u. Blocks of 8, 16, 32, ... corners; the freed ones are used again. 64 bytes
-// a vertex for valences up to 8.
+// which corners go to v_u. Up to 11 stand in the list itself, beside what else a move needs of the
+// vertex; more of them in a block of 16, 32, 64, ... corners in a pool that all lists share.
 #pragma once
 
 #include "crease/mesh_hierarchy.h"
@@ -44,40 +44,32 @@ struct CornerAt {
 };
 
 struct CornerList {
-  std::uint32_t first = 0;  // block in the pool, in units of the smallest one
+  static constexpr std::uint32_t kOwn = 11;
+
   std::uint32_t count = 0;
-  std::uint32_t capacity_log = 0;  // 8 << capacity_log
+  std::uint32_t block = kNone;  // in the pool, or kNone: in `own`
+  std::array<CornerAt, kOwn> own;
 };
 
 class CornerLists {
  public:
-  CornerList make(std::size_t count = 0) {
-    CornerList list;
-    list.capacity_log = log_for(count);
-    list.first = take_block(list.capacity_log);
-    return list;
-  }
-  void free(const CornerList& list) { free_[list.capacity_log].push_back(list.first); }
-
-  std::span<CornerAt> of(const CornerList& list) {
-    return {pool_.data() + std::size_t(list.first) * kUnit, list.count};
+  std::span<CornerAt> of(CornerList& list) {
+    return {list.block == kNone ? list.own.data() : pool_.data() + std::size_t(list.block) * kUnit,
+            list.count};
   }
   std::span<const CornerAt> of(const CornerList& list) const {
-    return {pool_.data() + std::size_t(list.first) * kUnit, list.count};
+    return {list.block == kNone ? list.own.data() : pool_.data() + std::size_t(list.block) * kUnit,
+            list.count};
   }
 
+  // New ones at the end are to be written.
+  void resize(CornerList& list, std::size_t count) {
+    if (list.block != kNone || count > CornerList::kOwn) change_block(list, count);
+    list.count = static_cast<std::uint32_t>(count);
+  }
   void push_back(CornerList& list, const CornerAt& at) {
-    reserve(list, list.count + 1);
-    pool_[std::size_t(list.first) * kUnit + list.count++] = at;
-  }
-  void reserve(CornerList& list, std::size_t count) {
-    if (count > capacity(list)) move_to(list, log_for(count));
-  }
-  // After corners were taken away: what is much too large is given back.
-  void trim(CornerList& list) {
-    if (list.capacity_log > 0 && list.count <= capacity(list) / 4) {
-      move_to(list, log_for(2 * std::size_t(list.count)));
-    }
+    resize(list, list.count + 1);
+    of(list).back() = at;
   }
   // The order is of no consequence.
   void erase(CornerList& list, CornerRef corner) {
@@ -85,10 +77,11 @@ class CornerLists {
     for (CornerAt& at : all) {
       if (!(at.corner == corner)) continue;
       at = all.back();
-      --list.count;
+      resize(list, list.count - 1);
       return;
     }
   }
+  void clear(CornerList& list) { resize(list, 0); }
 
   std::size_t bytes() const {
     std::size_t sum = sizeof(CornerAt) * pool_.capacity();
@@ -98,33 +91,55 @@ class CornerLists {
 
  private:
   static constexpr std::size_t kUnit = 8;
+  static constexpr std::uint32_t kSmallest = 1;  // log: blocks of 16
 
-  static std::size_t capacity(const CornerList& list) { return kUnit << list.capacity_log; }
+  // Blocks are kUnit << log. A list keeps its block until a quarter of it would do, so that no move
+  // to and fro copies it each time.
   static std::uint32_t log_for(std::size_t count) {
-    return count <= kUnit ? 0 : static_cast<std::uint32_t>(std::bit_width((count - 1) / kUnit));
+    const auto log = static_cast<std::uint32_t>(std::bit_width((count - 1) / kUnit));
+    return std::max(kSmallest, log);
   }
+
+  // `list.count` corners are there, `count` must have room.
+  void change_block(CornerList& list, std::size_t count) {
+    if (list.block == kNone) {
+      const std::uint32_t block = take_block(log_for(count));
+      std::copy_n(list.own.begin(), list.count, at(block));
+      list.block = block;
+      return;
+    }
+    const std::uint32_t log = log_of_block(list.block);
+    const std::uint32_t kept = static_cast<std::uint32_t>(std::min<std::size_t>(list.count, count));
+    if (count > (kUnit << log)) {
+      const std::uint32_t block = take_block(log_for(count));
+      std::copy_n(at(list.block), kept, at(block));
+      free_[log].push_back(list.block);
+      list.block = block;
+    } else if (count <= CornerList::kOwn / 2) {
+      std::copy_n(at(list.block), kept, list.own.begin());
+      free_[log].push_back(list.block);
+      list.block = kNone;
+    }
+  }
+  std::vector<CornerAt>::iterator at(std::uint32_t block) {
+    return pool_.begin() + static_cast<std::ptrdiff_t>(std::size_t(block) * kUnit);
+  }
+  std::uint32_t log_of_block(std::uint32_t block) const { return log_of_unit_[block]; }
   std::uint32_t take_block(std::uint32_t log) {
     if (!free_[log].empty()) {
-      const std::uint32_t first = free_[log].back();
+      const std::uint32_t block = free_[log].back();
       free_[log].pop_back();
-      return first;
+      return block;
     }
-    const std::size_t first = pool_.size() / kUnit;
+    const auto block = static_cast<std::uint32_t>(pool_.size() / kUnit);
     pool_.resize(pool_.size() + (kUnit << log));
-    return static_cast<std::uint32_t>(first);
-  }
-  void move_to(CornerList& list, std::uint32_t log) {
-    const CornerList old = list;
-    list.first = take_block(log);
-    list.capacity_log = log;
-    std::copy_n(pool_.begin() + static_cast<std::ptrdiff_t>(std::size_t(old.first) * kUnit),
-                old.count,
-                pool_.begin() + static_cast<std::ptrdiff_t>(std::size_t(list.first) * kUnit));
-    free(old);
+    log_of_unit_.resize(pool_.size() / kUnit, static_cast<std::uint8_t>(log));
+    return block;
   }
 
   std::vector<CornerAt> pool_;
-  std::array<std::vector<std::uint32_t>, 32> free_;  // by capacity_log
+  std::vector<std::uint8_t> log_of_unit_;
+  std::array<std::vector<std::uint32_t>, 32> free_;  // by log
 };
 
 }  // namespace crease
