@@ -64,9 +64,11 @@ class ActiveCut {
   bool can_merge(SplitId s) const {
     return is_done(s) && is_cut_leaf(h_.first_child(s)) && is_cut_leaf(h_.second_child(s));
   }
+  // The split that activated a triangle, or kNoSplit. Time O(log(splits)).
+  SplitId introducing_split(TriangleId t) const;
   // The slot that stands for a wedge.
   std::uint32_t slot_at(WedgeId wedge) const { return map_.slot_at(wedge); }
-  // A slot of a child of s that can be merged, or kNoSlot if both have no triangles.
+  // The slots of both children of s; kNoSlot if one is split or has no triangles.
   struct Children {
     std::uint32_t first = kNoSlot, second = kNoSlot;
   };

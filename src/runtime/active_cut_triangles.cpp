@@ -54,6 +54,15 @@ std::size_t ActiveCut::value_index(const ActiveTriangles& part, std::uint32_t co
   return value_of(hierarchy_.layers[layer], vertices_[part.slots[corner_index]].node, a);
 }
 
+SplitId ActiveCut::introducing_split(TriangleId t) const {
+  std::size_t low = 0, high = h_.triangle_ranges.size();  // begin(low) <= t < begin(high)
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (h_.triangle_ranges.begin(middle) <= index_of(t) ? low : high) = middle;
+  }
+  return low == 0 ? kNoSplit : SplitId{static_cast<std::uint32_t>(low - 1)};
+}
+
 void ActiveCut::replace_corner(CornerRef from, CornerRef to) {
   const std::uint32_t slot = parts_[from.part()].slots[from.index()];
   for (CornerAt& at : lists_.of(vertices_[slot].corners)) {

@@ -6,7 +6,7 @@
 // Time of take(): O(marks since the last one + elements that became active / 64).
 #pragma once
 
-#include "crease/progressive_mesh.h"
+#include "crease/draw_changes.h"
 
 #include <algorithm>
 #include <bit>
