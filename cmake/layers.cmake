@@ -20,7 +20,8 @@ set(CREASE_LAYER_render    base mesh runtime)
 # Which folder a public header belongs to.
 set(CREASE_HEADERS_base      vec.h ids.h result.h progress.h)
 set(CREASE_HEADERS_mesh      mesh.h shading.h)
-set(CREASE_HEADERS_hierarchy contraction.h progressive_arrays.h compact_ranges.h mesh_hierarchy.h)
+set(CREASE_HEADERS_hierarchy contraction.h progressive_arrays.h compact_ranges.h packed_indices.h
+    parent_maps.h split_bounds.h mesh_hierarchy.h)
 set(CREASE_HEADERS_io        import.h export.h)
 set(CREASE_HEADERS_generate  generate.h)
 set(CREASE_HEADERS_measure   compare.h)

@@ -16,6 +16,18 @@
 
 namespace crease {
 
+// std::popcount() calls a function where the processor may lack the instruction.
+constexpr std::uint32_t popcount_inline(std::uint64_t bits) {
+#if defined(__POPCNT__) || !defined(__x86_64__)
+  return static_cast<std::uint32_t>(std::popcount(bits));
+#else
+  bits -= bits >> 1 & 0x5555555555555555u;
+  bits = (bits & 0x3333333333333333u) + (bits >> 2 & 0x3333333333333333u);
+  bits = (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  return static_cast<std::uint32_t>(bits * 0x0101010101010101u >> 56);
+#endif
+}
+
 // A bit per key, and how many of them are set before it.
 class RankedBits {
  public:
@@ -31,7 +43,7 @@ class RankedBits {
   bool test(std::size_t key) const { return (words_[key / 64] >> (key % 64) & 1) != 0; }
   std::uint32_t rank(std::size_t key) const {
     const std::uint64_t before = words_[key / 64] & ((std::uint64_t(1) << (key % 64)) - 1);
-    return rank_of_word_[key / 64] + static_cast<std::uint32_t>(std::popcount(before));
+    return rank_of_word_[key / 64] + popcount_inline(before);
   }
   std::size_t size() const { return size_; }
   std::size_t set_count() const { return set_count_; }

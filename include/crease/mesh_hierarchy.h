@@ -26,9 +26,9 @@
 // each active corner keeps. An attribute is at a node iff it is live there (DESIGN 6.4): some
 // triangle has exactly one corner under the node and that corner has the attribute; this is exact,
 // so what a cut can show is there (G03 figure 8) and nothing else is. Relative indices ascend with
-// the smooth region (G03 3.5.1), so that corner subgraphs hardly ever cross. A layer tells
-// how indices change up (parent maps) and down (their inverse, and a code where several attributes
-// of one child became one). Nearly all nodes have one attribute: those need neither map nor code.
+// the smooth region (G03 3.5.1), so that few corner subgraphs cross. A layer tells how indices
+// change up (parent maps) and down (their inverse, and a code where several attributes of one child
+// became one). Nodes with one attribute, nearly all of a smooth mesh, need neither map nor code.
 //
 // The level that has the contractions 0 .. n-1 merged shows on every corner the value that
 // apply_contractions() shows. Where the simplifier does otherwise than G03, its record decides: it
@@ -37,22 +37,22 @@
 //
 // A block (DESIGN 1) has these arrays too: roots are the vertices at its band's coarse end, leaves
 // those at the fine end, the first triangles those that stand at the coarse end; all ids are local.
-// A decoder fills them front to back: a flag a node appends to is_split, deltas_ and attributes in
-// the order of splits, which is its own. What it decodes last, the wedges (leaf order needs the
-// whole tree), it renumbers in one pass. A block may then be dropped or come in any order that
-// respects the DAG: the block below names this one's leaves as its roots, in leaf order, and their
-// attributes by the same relative indices. The whole model is the case of one piece.
+// A decoder fills them front to back: it appends a flag per node, and per split two deltas, the
+// introduced triangles and the attributes, breadth first as it decodes. Only wedges wait for the
+// end of the block, since their numbers follow the leaves. Blocks then come and go in any order
+// that respects the DAG: the roots of a block are leaves of coarser ones, with the same relative
+// indices of attributes. The whole model is the case of one piece.
 //
 // Bytes per input vertex with one normal layer, on a smooth closed mesh of n vertices: n splits,
-// 2 n nodes, 2 n triangles, n wedges. hierarchy_bytes() reports them for any mesh.
-//   triangles   3 wedges each                        24
-//   deltas      3 x int16 a node, 12 more if wide    12.4
-//   splits      node 4, second wedge 4, bounds 14    22
-//   bits        is_split, wide, triangles, derived    1.5
-//   normals     12 a value, 2 n values               24.4  (4 an index instead where values repeat)
-//   sum                                              84.3
-// Two steps lead from there to 60: normals of 4 bytes when the build rounds them (-16), and 16-bit
-// wedges in blocks of less than 65,536 of them (-12).
+// 2 n nodes, 2 n triangles, n wedges. Left with the indices of 100,000 vertices, right with those
+// of a block of 8,000. hierarchy_bytes() reports them for any mesh; docs/hierarchy.md has models.
+//   triangles   3 wedges each                           12.8   9.8
+//   deltas      3 numbers a node, 18 and 10 bits        13.5   7.5
+//   splits      node 2.3, second wedge 2.1, bounds 14   18.4  17.4
+//   bits        is_split, wide, triangles, derived       1.5   1.5
+//   normals     12 a value, 2 n values, or an index     24.4  24.4
+//   sum                                                 70.6  60.6
+// Normals of 4 bytes, when the build rounds them, will take 16 off either.
 //
 // Room is left for one attribute at the children that becomes several at the parent (a bevel that
 // is better shown as a hard edge): above() takes the wedge, so runs by wedge can say it, as they do
@@ -63,7 +63,10 @@
 #include "crease/contraction.h"
 #include "crease/ids.h"
 #include "crease/mesh.h"
+#include "crease/packed_indices.h"
+#include "crease/parent_maps.h"
 #include "crease/result.h"
+#include "crease/split_bounds.h"
 #include "crease/vec.h"
 
 #include <algorithm>
@@ -83,66 +86,41 @@ enum class WedgeId : std::uint32_t {};
 inline constexpr NodeId kNoNode{kNone};
 inline constexpr SplitId kNoSplit{kNone};
 
-// An attribute among those of its node and layer.
-using RelativeAttribute = std::uint16_t;
-inline constexpr RelativeAttribute kRemoved = 0xffff;  // as a parent: R of G03 3.5.2
-
-// A float of no sign in 16 bits, rounded up: 8 bits of exponent and 8 of mantissa, so at most
-// 0.4 % more. Rounding is monotone, so what grows up the tree still does.
-struct RoundedUp {
-  std::uint16_t bits = 0;
-
-  static RoundedUp from(float value);
-  float value() const;
-  bool operator==(const RoundedUp&) const = default;
-};
-
-// All normals in it are within half_angle of the axis.
-struct NormalCone {
-  Vec3f axis;
-  float half_angle_rad = 0;  // pi: any direction
-};
-
-// What decides whether a vertex is split. 14 bytes; everything is rounded to the safe side.
-struct SplitBounds {
-  RoundedUp surface, line, degrees, texture;  // LevelError of v_s: its displacement if it stays
-  // About v_s, model units: holds the spheres of v_t and v_u, and for a leaf its input triangles.
-  RoundedUp radius;
-  // Of the geometric normals of all input triangles at leaves below, and of all normals that the
-  // attribute hierarchy has below or here.
-  std::array<std::int8_t, 2> cone_axis{};  // octahedral
-  std::uint8_t cone_angle = 255;           // of pi
-
-  LevelError error() const {
-    return {surface.value(), line.value(), degrees.value(), texture.value()};
-  }
-  NormalCone cone() const;
-  void set_cone(const NormalCone& cone);
-};
-
 // begin <= t < end.
 struct TriangleRange {
   std::uint32_t begin = 0, end = 0;
   std::uint32_t size() const { return end - begin; }
 };
 
+// Three leaf wedges a triangle.
+struct TriangleWedges {
+  PackedIndices<WedgeId> of_corner;
+
+  std::array<WedgeId, 3> operator[](std::size_t t) const {
+    return {of_corner[3 * t], of_corner[3 * t + 1], of_corner[3 * t + 2]};
+  }
+  std::size_t size() const { return of_corner.size() / 3; }
+};
+
 struct VertexHierarchy {
   Grid grid;
   std::uint32_t root_count = 0;
-  RankedBits is_split;                              // per node: it has children
-  std::vector<NodeId> node_of_split;                // ascending
-  std::vector<WedgeId> second_wedge;                // per split: the first wedge under v_u
-  std::vector<SplitBounds> bounds;                  // per split
-  std::vector<Vec3i> root_positions;                // grid units
-  std::vector<std::array<std::int16_t, 3>> deltas;  // per node that is no root: from its parent
-  RankedBits is_wide;  // per node that is no root: its delta is in wide_deltas
+  RankedBits is_split;                  // per node: it has children
+  PackedIndices<NodeId> node_of_split;  // ascending
+  PackedIndices<WedgeId> second_wedge;  // per split: the first wedge under v_u
+  std::vector<SplitBounds> bounds;      // per split
+  std::vector<Vec3i> root_positions;    // grid units
+  // Per node that is no root its position less its parent's, x, y and z plus half of the range of
+  // so many bits; those that do not fit are in wide_deltas.
+  PackedIndices<> deltas;
+  RankedBits is_wide;
   std::vector<Vec3i> wide_deltas;
   std::vector<WedgeId> root_wedges;  // the first one under each root, and how many there are
 
-  CompactRanges triangle_ranges{2};               // first those without a split, then per split
-  std::vector<std::array<WedgeId, 3>> triangles;  // leaf wedges, corners in the input's order
-  std::vector<MaterialId> material_of_triangle;   // or empty, as in Mesh
-  std::vector<PartId> part_of_triangle;           // or empty
+  CompactRanges triangle_ranges{2};                // first those without a split, then per split
+  TriangleWedges triangles;                        // corners in the input's order
+  PackedIndices<MaterialId> material_of_triangle;  // or empty, as in Mesh
+  PackedIndices<PartId> part_of_triangle;          // or empty
   // A derived triangle shows its geometric normal while its deriving split is not done.
   SparseLists<TriangleId> derived_of_split;
   RankedBits is_derived;                 // per triangle; empty if none ever is
@@ -182,7 +160,11 @@ struct VertexHierarchy {
   Vec3i delta_of(NodeId n) const {
     const std::size_t i = index_of(n) - root_count;
     if (is_wide.test(i)) return wide_deltas[is_wide.rank(i)];
-    return {deltas[i][0], deltas[i][1], deltas[i][2]};
+    const std::uint32_t half = 1u << (deltas.bits() - 1);
+    const auto component = [&](std::size_t k) {
+      return static_cast<std::int32_t>(deltas[3 * i + k] - half);
+    };
+    return {component(0), component(1), component(2)};
   }
   // From the root on; a cut keeps the positions of its nodes instead. Time O(depth).
   Vec3i position_of(NodeId n) const;
@@ -216,15 +198,15 @@ struct AttributeHierarchy {
   Interpolation interpolation = Interpolation::Linear;
   std::uint32_t dimension = 1;
 
-  CompactRanges attribute_ranges{1};              // per node: its attributes
-  std::vector<float> values;                      // dimension each
-  std::vector<std::uint32_t> value_of_attribute;  // or empty: attribute i has value i
-  std::vector<RelativeAttribute> leaf_attribute;  // per wedge, at its leaf; or empty: all are 0
+  CompactRanges attribute_ranges{1};                // per node: its attributes
+  std::vector<float> values;                        // dimension each
+  PackedIndices<> value_of_attribute;               // or empty: attribute i has value i
+  PackedIndices<RelativeAttribute> leaf_attribute;  // per wedge, at its leaf; or empty: all are 0
 
   // Per split the relative index at v_s of each attribute of v_t, then of each one of v_u (the
   // parent maps of G03 3.6). Empty where neither has more than one and all become attribute 0, and
   // where v_s has none: then all are removed.
-  SparseLists<RelativeAttribute> parents_of_split;
+  ParentMaps parents_of_split;
   // Per split, where several attributes of v_t, or of v_u, became one: which one each wedge that
   // can stand there had (the branch codes of G03 3.6; a file needs ceil(log2 m) bits a run),
   // ascending.

@@ -40,8 +40,8 @@ Broken check_layer_sizes(const VertexHierarchy& vertices, const AttributeHierarc
   if (indexed ? layer.value_of_attribute.size() != attributes : values != attributes) {
     return broken_layer(layer, "an attribute lacks its value");
   }
-  for (std::uint32_t v : layer.value_of_attribute) {
-    if (v >= values) return broken_layer(layer, "value out of range");
+  for (std::size_t i = 0; i < layer.value_of_attribute.size(); ++i) {
+    if (layer.value_of_attribute[i] >= values) return broken_layer(layer, "value out of range");
   }
   if (!layer.leaf_attribute.empty() && layer.leaf_attribute.size() != vertices.wedge_count()) {
     return broken_layer(layer, "a wedge lacks its attribute");
@@ -54,18 +54,18 @@ Broken check_maps(const VertexHierarchy& vertices, const AttributeHierarchy& lay
     const std::uint32_t at_s = layer.attribute_count(vertices.node_of_split[s]);
     const std::uint32_t at_t = layer.attribute_count(vertices.first_child(SplitId{s}));
     const std::uint32_t at_u = layer.attribute_count(vertices.second_child(SplitId{s}));
-    const std::span<const RelativeAttribute> parents = layer.parents_of_split.of(s);
+    const ParentMaps::Map parents = layer.parents_of_split.of(s);
     if (parents.empty()) {
       if (at_s > 1 || (at_s == 1 && (at_t > 1 || at_u > 1))) {
         return broken_layer(layer, "no parent map" + at_split(s));
       }
       continue;
     }
-    if (parents.size() != at_t + at_u ||
-        std::any_of(parents.begin(), parents.end(),
-                    [at_s](RelativeAttribute p) { return p != kRemoved && p >= at_s; })) {
-      return broken_layer(layer, "a wrong parent map" + at_split(s));
+    bool fits = parents.size() == at_t + at_u;
+    for (std::size_t i = 0; fits && i < parents.size(); ++i) {
+      fits = parents[i] == kRemoved || parents[i] < at_s;
     }
+    if (!fits) return broken_layer(layer, "a wrong parent map" + at_split(s));
     const std::span<const BranchRun> runs = layer.branches_of_split.of(s);
     for (std::size_t r = 0; r < runs.size(); ++r) {
       const bool second = vertices.goes_to_second(SplitId{s}, runs[r].first_wedge);
@@ -90,7 +90,8 @@ class CornerWalk {
         is_used_(layer_.attribute_ranges.total(), false) {}
 
   Broken run() {
-    for (const std::array<WedgeId, 3>& t : h_.triangles) {
+    for (std::size_t n = 0; n < h_.triangles.size(); ++n) {
+      const std::array<WedgeId, 3> t = h_.triangles[n];
       NodeId leaf[3], both[3];
       for (std::size_t c = 0; c < 3; ++c) leaf[c] = leaf_of_wedge_[index_of(t[c])];
       for (std::size_t c = 0; c < 3; ++c) {

@@ -65,7 +65,8 @@ class VertexChecker {
         h_.derived_of_split.size() != splits || h_.triangle_ranges.size() != splits + 1) {
       return broken_hierarchy("an array of splits has another size");
     }
-    if (h_.deltas.size() != 2 * splits || h_.is_wide.size() != 2 * splits ||
+    if (h_.deltas.size() != 6 * splits || (splits > 0 && h_.deltas.bits() == 0) ||
+        h_.triangles.of_corner.size() % 3 != 0 || h_.is_wide.size() != 2 * splits ||
         h_.is_wide.set_count() != h_.wide_deltas.size()) {
       return broken_hierarchy("a node lacks its position");
     }
@@ -97,13 +98,15 @@ class VertexChecker {
         return broken_split(s, "the wedges of v_u are not among those of v_s");
       }
     }
-    for (MaterialId m : h_.material_of_triangle) {
-      if (index_of(m) >= hierarchy_.materials.size()) {
+    for (std::size_t t = 0; t < h_.material_of_triangle.size(); ++t) {
+      if (index_of(h_.material_of_triangle[t]) >= hierarchy_.materials.size()) {
         return broken_hierarchy("material out of range");
       }
     }
-    for (PartId p : h_.part_of_triangle) {
-      if (index_of(p) >= hierarchy_.parts.size()) return broken_hierarchy("part out of range");
+    for (std::size_t t = 0; t < h_.part_of_triangle.size(); ++t) {
+      if (index_of(h_.part_of_triangle[t]) >= hierarchy_.parts.size()) {
+        return broken_hierarchy("part out of range");
+      }
     }
     return std::nullopt;
   }
@@ -166,7 +169,8 @@ class VertexChecker {
 
   Broken check_spheres() const {
     std::vector<double> leaf_radius(h_.node_count(), 0);  // grid units
-    for (const std::array<WedgeId, 3>& t : h_.triangles) {
+    for (std::size_t n = 0; n < h_.triangles.size(); ++n) {
+      const std::array<WedgeId, 3> t = h_.triangles[n];
       for (std::size_t c = 0; c < 3; ++c) {
         const std::size_t a = index_of(leaf_of_wedge_[index_of(t[c])]);
         const std::size_t b = index_of(leaf_of_wedge_[index_of(t[(c + 1) % 3])]);
@@ -219,7 +223,8 @@ class VertexChecker {
       constexpr float kRounding = 2e-6f;
       cones_.push_back({cone.axis, all ? -2 : std::cos(cone.half_angle_rad) - kRounding});
     }
-    for (const std::array<WedgeId, 3>& t : h_.triangles) {
+    for (std::size_t i = 0; i < h_.triangles.size(); ++i) {
+      const std::array<WedgeId, 3> t = h_.triangles[i];
       NodeId leaf[3];
       for (std::size_t c = 0; c < 3; ++c) leaf[c] = leaf_of_wedge_[index_of(t[c])];
       const Vec3f n = geometric_normal(positions_[index_of(leaf[0])], positions_[index_of(leaf[1])],

@@ -78,10 +78,14 @@ std::vector<TriangleId> arrange_triangles(const Mesh& snapped, const VertexFores
     new_of_old[t] = TriangleId{first[group_of(t)]++};
     old_of_new[index_of(new_of_old[t])] = TriangleId{t};
   }
+  hierarchy.triangles.of_corner = PackedIndices<WedgeId>(bits_for(hierarchy.wedge_count()));
+  hierarchy.material_of_triangle = PackedIndices<MaterialId>(bits_for(snapped.materials.size()));
+  hierarchy.part_of_triangle = PackedIndices<PartId>(bits_for(snapped.parts.size()));
   for (TriangleId old : old_of_new) {
     const std::size_t t = index_of(old);
-    hierarchy.triangles.push_back(
-        {wedge_of_corner[3 * t], wedge_of_corner[3 * t + 1], wedge_of_corner[3 * t + 2]});
+    for (std::size_t c = 0; c < 3; ++c) {
+      hierarchy.triangles.of_corner.push_back(wedge_of_corner[3 * t + c]);
+    }
     if (!snapped.material_of_triangle.empty()) {
       hierarchy.material_of_triangle.push_back(snapped.material_of_triangle[t]);
     }

@@ -1,5 +1,6 @@
 #include "pipeline/leaf_wedges.h"
 
+#include "mesh/disjoint_sets.h"
 #include "mesh/smooth_regions.h"
 
 #include <algorithm>
@@ -8,6 +9,24 @@
 namespace crease {
 
 namespace {
+
+// Smooth regions, joined where they have an attribute in common anywhere: what has equal indices is
+// one when it meets, so it needs one place in the order. With G03's regions alone 3 % of the parent
+// maps of berlin_52k cross, and 10 % of fzk_haus; so none.
+std::vector<std::uint32_t> ordering_regions(const Mesh& mesh, const CornersAround& around,
+                                            const AttributeLayer& layer) {
+  const std::vector<std::uint32_t> smooth = smooth_regions(mesh, around, layer);
+  DisjointSets joined(mesh.triangle_count());
+  std::vector<std::uint32_t> region_of_id(layer.value_count(), kNone);
+  for (std::size_t c = 0; c < layer.of_corner.size(); ++c) {
+    std::uint32_t& region = region_of_id[index_of(layer.of_corner[c])];
+    if (region == kNone) region = smooth[c / 3];
+    joined.unite(region, smooth[c / 3]);
+  }
+  std::vector<std::uint32_t> regions;
+  for (std::uint32_t region : smooth) regions.push_back(joined.find(region));
+  return regions;
+}
 
 bool is_face_value(const AttributeLayer& layer, std::uint32_t corner) {
   const AttributeId* id = &layer.of_corner[corner - corner % 3];
@@ -75,7 +94,7 @@ class WedgeFinder {
     found_.layers.resize(mesh_.layers.size());
     for (std::size_t l = 0; l < mesh_.layers.size(); ++l) {
       found_.layers[l].first_of_vertex.push_back(0);
-      regions_.push_back(smooth_regions(mesh_, around_, mesh_.layers[l]));
+      regions_.push_back(ordering_regions(mesh_, around_, mesh_.layers[l]));
       at_corner_.emplace_back(3 * mesh_.triangle_count());
     }
   }

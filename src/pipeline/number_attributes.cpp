@@ -23,6 +23,7 @@ void store_values(const std::vector<AttributeId>& ids, const LayerValues& values
   const std::size_t words = result.dimension;
   const bool indexed = ids.size() + used * words < ids.size() * words;
   result.values.reserve((indexed ? used : ids.size()) * words);
+  if (indexed) result.value_of_attribute = PackedIndices<>(bits_for(used));
   std::uint32_t stored = 0;
   for (AttributeId id : ids) {
     const std::uint32_t value = value_of_id[index_of(id)];
@@ -42,9 +43,9 @@ void store_leaves(const LeafAttributes& leaves, AttributeHierarchy& result) {
       relative.push_back(static_cast<RelativeAttribute>(a - first));
     }
   }
-  if (std::all_of(relative.begin(), relative.end(), [](RelativeAttribute r) { return r == 0; })) {
-    return;
-  }
+  const auto most = std::max_element(relative.begin(), relative.end());
+  if (most == relative.end() || *most == 0) return;
+  result.leaf_attribute = PackedIndices<RelativeAttribute>(bits_for(*most + std::size_t(1)));
   for (std::uint32_t attribute : leaves.of_wedge) {
     result.leaf_attribute.push_back(relative[attribute]);
   }
@@ -62,13 +63,16 @@ AttributeHierarchy number_attributes(const AttributeInput& input, std::size_t la
   result.dimension = source.dimension;
 
   std::vector<AttributeId> ids;
+  std::uint32_t most = 0;
   for (std::uint32_t birth : input.forest.birth_of_node) {
     const Slice slice = grown.at_birth[birth];
     result.attribute_ranges.push_back(slice.count);
+    most = std::max(most, slice.count);
     for (std::uint32_t k = 0; k < slice.count; ++k)
       ids.push_back(grown.at_node[slice.first + k].id);
   }
   store_values(ids, values, result);
+  result.parents_of_split = ParentMaps(most);
   for (std::uint32_t i : input.forest.contraction_of_split) {
     const auto slice_of = [i](const auto& items, const std::vector<std::uint32_t>& end) {
       const std::uint32_t first = i == 0 ? 0 : end[i - 1];

@@ -2,7 +2,9 @@
 
 #include "hierarchy/grid_sum.h"
 
-#include <limits>
+#include <algorithm>
+#include <array>
+#include <bit>
 
 namespace crease {
 
@@ -46,13 +48,44 @@ VertexForest make_forest(std::size_t vertex_count, const std::vector<Contraction
 
 namespace {
 
-bool fits_16_bits(const Vec3i& d) {
-  constexpr int kLow = std::numeric_limits<std::int16_t>::min();
-  constexpr int kHigh = std::numeric_limits<std::int16_t>::max();
-  for (int i = 0; i < 3; ++i) {
-    if (d[i] < kLow || d[i] > kHigh) return false;
+// Bits that a number takes beside its sign, with which it lies in -2^(b-1) .. 2^(b-1) - 1.
+unsigned signed_bits(std::int32_t i) {
+  return static_cast<unsigned>(std::bit_width(static_cast<std::uint32_t>(i < 0 ? ~i : i))) + 1;
+}
+
+unsigned signed_bits(const Vec3i& d) {
+  return std::max({signed_bits(d.x), signed_bits(d.y), signed_bits(d.z)});
+}
+
+// The width that takes the fewest bytes, with 12 for each delta that is wider.
+unsigned best_bits(const std::vector<Vec3i>& deltas) {
+  std::array<std::size_t, 33> count_of_bits{};
+  for (const Vec3i& d : deltas) ++count_of_bits[signed_bits(d)];
+  unsigned best = 32;
+  std::size_t wider = 0, least = 3 * 32 * deltas.size();  // in bits
+  for (unsigned bits = 31; bits >= 1; --bits) {
+    wider += count_of_bits[bits + 1];
+    const std::size_t size = 3 * bits * deltas.size() + 96 * wider;
+    if (size < least) {
+      least = size;
+      best = bits;
+    }
   }
-  return true;
+  return best;
+}
+
+void store_deltas(const std::vector<Vec3i>& deltas, VertexHierarchy& h) {
+  const unsigned bits = best_bits(deltas);
+  h.deltas = PackedIndices<>(bits);
+  for (const Vec3i& d : deltas) {
+    const bool wide = signed_bits(d) > bits;
+    h.is_wide.push_back(wide);
+    if (wide) h.wide_deltas.push_back(d);
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t narrow = static_cast<std::uint32_t>(d[i]) + (1u << (bits - 1));
+      h.deltas.push_back(wide ? 0 : narrow);
+    }
+  }
 }
 
 }  // namespace
@@ -66,8 +99,9 @@ VertexHierarchy number_nodes(const VertexForest& forest, const std::vector<Vec3i
   VertexHierarchy h;
   h.grid = sequence.grid;
   h.root_count = forest.root_count;
-  h.node_of_split.reserve(forest.contraction_count());
+  h.node_of_split = PackedIndices<NodeId>(bits_for(forest.birth_of_node.size()));
   h.bounds.resize(forest.contraction_count());
+  std::vector<Vec3i> deltas;
   for (std::uint32_t node = 0; node < forest.birth_of_node.size(); ++node) {
     const std::uint32_t birth = forest.birth_of_node[node];
     h.is_split.push_back(!forest.is_leaf(birth));
@@ -77,13 +111,9 @@ VertexHierarchy number_nodes(const VertexForest& forest, const std::vector<Vec3i
       continue;
     }
     const std::uint32_t parent = forest.birth_of_node[index_of(h.parent(NodeId{node}))];
-    const Vec3i delta = grid_difference(position(birth), position(parent));
-    const bool wide = !fits_16_bits(delta);
-    h.is_wide.push_back(wide);
-    if (wide) h.wide_deltas.push_back(delta);
-    const auto narrow = [&](std::int32_t d) { return static_cast<std::int16_t>(wide ? 0 : d); };
-    h.deltas.push_back({narrow(delta.x), narrow(delta.y), narrow(delta.z)});
+    deltas.push_back(grid_difference(position(birth), position(parent)));
   }
+  store_deltas(deltas, h);
   for (std::size_t s = 0; s < h.split_count(); ++s) {
     const LevelError& error = sequence.contractions[forest.contraction_of_split[s]].error;
     h.bounds[s].surface = RoundedUp::from(error.surface);
@@ -108,12 +138,14 @@ std::vector<std::uint32_t> number_wedges(const VertexForest& forest,
     total += count[forest.birth_of_node[root]];
   }
   hierarchy.root_wedges.push_back(WedgeId{total});
-  hierarchy.second_wedge.resize(forest.contraction_count());
   for (std::size_t i = forest.contraction_count(); i-- > 0;) {
     const auto& [t, u] = forest.children[i];
     first[t] = first[forest.leaf_count + i];
     first[u] = first[t] + count[t];
-    hierarchy.second_wedge[index_of(forest.split_of_contraction[i])] = WedgeId{first[u]};
+  }
+  hierarchy.second_wedge = PackedIndices<WedgeId>(bits_for(std::size_t(total) + 1));
+  for (std::uint32_t i : forest.contraction_of_split) {
+    hierarchy.second_wedge.push_back(WedgeId{first[forest.children[i][1]]});
   }
   first.resize(forest.leaf_count);
   return first;
