@@ -184,6 +184,7 @@ void ActiveCut::merge(SplitId s) {
   touch_corners(slots.first);
   lists_.clear(second.corners);
   second.node = kNoNode;
+  second.split = kNoSplit;
   free_slots_.push_back(slots.second);
   touch_derived(s);
 }

@@ -50,9 +50,8 @@ void CutDrawing::sort_touched(ActiveCut& cut) {
   for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
     touched_.clear();
     ActiveTriangles& part = cut.parts()[p];
-    part.touched.take(part.size(), ranges_, [this](std::size_t i) {
-      touched_.push_back(static_cast<std::uint32_t>(i));
-    });
+    part.touched.take(part.size(), ranges_,
+                      [this](std::size_t i) { touched_.push_back(static_cast<std::uint32_t>(i)); });
     for (const std::uint32_t t : touched_) {
       if (part.ids[t] == kNoTriangle) continue;
       const Part now = cut.kind_of(part, t);
@@ -107,7 +106,7 @@ void CutDrawing::refresh_part(ActiveCut& cut, Part p) {
                                                &changes_.nsn_normals};
   std::vector<Range>* const color_ranges[] = {&changes_.sn_colors, &changes_.fn_colors,
                                               &changes_.nsn_colors};
-  const std::vector<MaterialId>& materials = hierarchy.vertices.material_of_triangle;
+  const auto& materials = hierarchy.vertices.material_of_triangle;
   if (!materials.empty()) part.materials.resize(part.size());
   part.moved.take(part.size(), *index_ranges[p], [&](std::size_t t) {
     if (materials.empty()) return;

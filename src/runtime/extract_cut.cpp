@@ -43,7 +43,8 @@ void extract_vertices(const ActiveCut& cut, const std::vector<ActiveTriangle>& t
   }
   for (const ActiveTriangle& t : triangles) {
     const std::uint32_t* const slots = &cut.parts()[t.part].slots[3 * std::size_t(t.place)];
-    mesh.triangles.push_back({VertexId{vertex_of_slot[slots[0]]}, VertexId{vertex_of_slot[slots[1]]},
+    mesh.triangles.push_back({VertexId{vertex_of_slot[slots[0]]},
+                              VertexId{vertex_of_slot[slots[1]]},
                               VertexId{vertex_of_slot[slots[2]]}});
   }
 }

@@ -24,7 +24,7 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
                                    : view.clock(view.clock_context) + view.max_seconds;
   moves_until_clock_ = 0;
   if (cut.triangle_count() > view_.max_triangles) {
-    keep_to_budget(cut, std::numeric_limits<float>::infinity(), 0);
+    keep_to_budget(cut, {std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot}, 0);
   }
   do_merges(cut);
   do_splits(cut);
@@ -95,7 +95,7 @@ void Refiner::do_splits(ActiveCut& cut) {
     if (cut.vertices()[wish.slot].split == wish.split) {
       const std::size_t gain = h.triangles_of(wish.split).size();
       if (cut.triangle_count() + gain > view_.max_triangles) {
-        keep_to_budget(cut, wish.excess, gain);
+        keep_to_budget(cut, wish, gain);
         if (cut.triangle_count() + gain > view_.max_triangles) {
           if (report_.complete) splits_.clear();  // nothing is less visible: this is it
           return;
@@ -110,25 +110,32 @@ void Refiner::do_splits(ActiveCut& cut) {
   }
 }
 
-// Merges what is less visible than `below_excess`, least visible first, until there is room.
-void Refiner::keep_to_budget(ActiveCut& cut, float below_excess, std::size_t room) {
+// Merges what is less visible than `wish`, least visible first, until there is room.
+void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t room) {
+  const VertexHierarchy& h = cut.hierarchy().vertices;
   if (!counts_all_merges_) {
     counts_all_merges_ = true;
     merges_.clear();
-    const VertexHierarchy& h = cut.hierarchy().vertices;
     for (const ActiveVertex& v : cut.vertices()) {
       if (v.node == kNoNode || h.is_root(v.node)) continue;
       evaluate_merge(cut, v, h.split_above(v.node));
     }
   }
+  // Rounding may find a vertex less visible than its child; to merge it would not help the child.
+  SplitId above = kNoSplit;
+  if (wanted.split != kNoSplit) {
+    const NodeId node = h.node_of_split[index_of(wanted.split)];
+    if (!h.is_root(node)) above = h.split_above(node);
+  }
   while (!merges_.empty() && cut.triangle_count() + room > view_.max_triangles) {
     const Wish wish = merges_.front();
-    const bool is_least = static_cast<double>(wish.excess) * view_.hysteresis <
-                          static_cast<double>(below_excess);
+    const bool is_least =
+        static_cast<double>(wish.excess) * view_.hysteresis < static_cast<double>(wanted.excess);
     if (!is_least || out_of_time()) return;
     std::pop_heap(merges_.begin(), merges_.end(),
                   [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
     merges_.pop_back();
+    if (wish.split == above) continue;
     if (cut.can_merge(wish.split) && !is_needed(cut, wish.split)) merge(cut, wish.split);
   }
 }

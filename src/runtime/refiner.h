@@ -3,8 +3,8 @@
 // Each active vertex is evaluated once and then again only when the camera may have changed the
 // answer: evaluation also finds a leeway, by which the camera may move without changing it, and a
 // date on an odometer that turns so much for each length travelled and each radian turned. A frame
-// compares the dates of all active vertices (4 bytes each, in a row) with the odometer and evaluates
-// those that are due. Queues: splits by what is most visible, merges by what is least.
+// compares the dates of all active vertices (4 bytes each, in a row) with the odometer and
+// evaluates those that are due. Queues: splits by what is most visible, merges by what is least.
 #pragma once
 
 #include "crease/adaptive_mesh.h"
@@ -26,7 +26,7 @@ class Refiner {
 
  private:
   struct Wish {
-    float excess;     // of what is to be split, or merged
+    float excess;  // of what is to be split, or merged
     SplitId split;
     std::uint32_t slot;  // of its vertex, for splits
   };
@@ -41,7 +41,7 @@ class Refiner {
   bool out_of_time();
   void do_merges(ActiveCut& cut);
   void do_splits(ActiveCut& cut);
-  void keep_to_budget(ActiveCut& cut, float below_excess, std::size_t room);
+  void keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t room);
   void split(ActiveCut& cut, std::uint32_t slot);
   void split_consistently(ActiveCut& cut, std::uint32_t slot);
   void merge(ActiveCut& cut, SplitId s);
@@ -53,7 +53,7 @@ class Refiner {
   bool has_view_ = false;
   float merge_below_ = 1;
   double odometer_ = 0, radians_per_length_ = 1;
-  std::vector<float> due_;  // per slot, on the odometer
+  std::vector<float> due_;             // per slot, on the odometer
   std::vector<Wish> splits_, merges_;  // heaps: most visible first, least visible first
   bool counts_all_merges_ = false;     // merges_ has every possible one (a triangle budget binds)
   std::vector<std::uint32_t> pending_;

@@ -1,6 +1,8 @@
 // What is due.
 #include "runtime/refiner.h"
 
+#include "hierarchy/grid_sum.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -48,7 +50,8 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
     for (const Vec3i& p : h.root_positions) {
       size = std::max(size, h.grid.step * length(Vec3d{double(p.x), double(p.y), double(p.z)}));
     }
-    for (const SplitBounds& b : std::span(h.bounds).first(std::min<std::size_t>(1, h.bounds.size()))) {
+    for (const SplitBounds& b :
+         std::span(h.bounds).first(std::min<std::size_t>(1, h.bounds.size()))) {
       size = std::max(size, double(b.radius.value()));
     }
     radians_per_length_ = 4 / std::max(size, 1e-30);
@@ -106,7 +109,7 @@ float Refiner::evaluate_merge(const ActiveCut& cut, const ActiveVertex& v, Split
   if (h.is_second(v.node) && cut.children(above).first != kNoSlot) return kNever;  // v_t's matter
   ++report_.evaluated;
   const SplitBounds& bounds = h.bounds[index_of(above)];
-  const Vec3f position = error_.position(v.position) - error_.position(h.delta_of(v.node));
+  const Vec3f position = error_.position(grid_difference(v.position, h.delta_of(v.node)));
   const float excess = error_.of(bounds, position);
   if (excess < merge_below_ || counts_all_merges_) {
     merges_.push_back({excess, above, kNoSlot});
@@ -123,7 +126,8 @@ float Refiner::evaluate_merge(const ActiveCut& cut, const ActiveVertex& v, Split
   return 0;
 }
 
-// A camera that travels x and turns by a moves a point at that distance by x + a * distance at most.
+// A camera that travels x and turns by a moves a point at that distance by x + a * distance at
+// most.
 float Refiner::turn_for(float share, float distance) const {
   return share * distance / (1 + 1.01f * static_cast<float>(radians_per_length_) * distance);
 }

@@ -28,8 +28,7 @@ ViewError::ViewError(const ViewParameters& view, const Grid& grid)
   const Vec3d up = cross(right, forward);
   planes_ = {as_float(forward), as_float(normalized(forward * wide + right)),
              as_float(normalized(forward * wide - right)),
-             as_float(normalized(forward * half + up)),
-             as_float(normalized(forward * half - up))};
+             as_float(normalized(forward * half + up)), as_float(normalized(forward * half - up))};
 }
 
 float ViewError::weight_of_facing(const SplitBounds& bounds, const Vec3f& to, float distance,

@@ -33,10 +33,10 @@ class ViewError {
       }
     }
     const float distance = length(to);
-    const float nearest = std::max(distance - radius, 1e-6f * distance + 1e-30f);
+    const float nearest = std::max(distance - radius, 1e-20f);
     const float error = std::max(bounds.surface.value(), bounds.line.value());
     const float scale = pixels_per_radian_ / nearest;
-    float excess = error > 0 ? error * scale * per_pixel_ : 0;
+    float excess = error > 0 ? std::min(error * scale * per_pixel_, kMost) : 0;
     if (per_degree_ > 0) {
       const float size = std::min(1.0f, 2 * true_radius * scale / kFullSizePixels);
       excess = std::max(excess, bounds.degrees.value() * per_degree_ * size);
@@ -53,6 +53,7 @@ class ViewError {
 
  private:
   static constexpr float kFullSizePixels = 16;
+  static constexpr float kMost = 1e30f;  // where the camera is inside the sphere
 
   // 0 if all of it faces away, more than 1 if it faces both ways.
   float weight_of_facing(const SplitBounds& bounds, const Vec3f& to, float distance,
