@@ -7,6 +7,7 @@
 #pragma once
 
 #include "crease/contraction.h"
+#include "crease/draw_changes.h"
 #include "crease/draw_list.h"
 #include "crease/mesh.h"
 #include "crease/progressive_arrays.h"
@@ -16,22 +17,6 @@
 #include <vector>
 
 namespace crease {
-
-struct Range {  // [first, first + count), in elements
-  std::uint32_t first = 0, count = 0;
-};
-
-// What a renderer that keeps copies of the DrawList arrays has to fetch again after a switch of
-// level: sorted, disjoint, in elements of the arrays as they are now. Copies are taken whole at
-// full resolution, before the first switch; then the ranges of every switch keep the active part of
-// them right. Triangles that come back are in a range only if they changed meanwhile; the new
-// counts need no upload.
-struct DrawChanges {
-  std::vector<Range> positions, vertex_normals;
-  std::vector<Range> sn_indices, fn_indices, nsn_indices;  // in triangles
-  std::vector<Range> fn_normals, nsn_normals;              // in triangles
-  std::vector<Range> sn_colors, fn_colors, nsn_colors;     // in triangles
-};
 
 class ProgressiveMesh {
  public:

@@ -6,6 +6,7 @@
 //   write_png(*image, "levels.png");
 #pragma once
 
+#include "crease/camera.h"
 #include "crease/draw_list.h"
 #include "crease/result.h"
 #include "crease/vec.h"
@@ -19,15 +20,6 @@
 #include <vector>
 
 namespace crease {
-
-// DESIGN 9: {"position":[x,y,z],"target":[x,y,z],"up":[x,y,z],"vertical_fov":45,
-//            "viewport":[1920,1080],"pixels":1}
-struct Camera {
-  Vec3d position{0, 0, 1}, target, up{0, 0, 1};
-  double vertical_fov_deg = 45;
-  int width_px = 1920, height_px = 1080;
-  double pixels = 1;  // error allowed on screen
-};
 
 // Reads the JSON of DESIGN 9. position and target are required, the rest has the defaults above.
 // A message names the field and what is wrong with it, or where the text stops being JSON.

@@ -6,7 +6,7 @@
 // Time of take(): O(marks since the last one + elements that became active / 64).
 #pragma once
 
-#include "crease/progressive_mesh.h"
+#include "crease/draw_changes.h"
 
 #include <algorithm>
 #include <bit>
@@ -20,6 +20,11 @@ class ChangeSet {
   void resize(std::size_t count) {
     words_.assign((count + 63) / 64, 0);
     active_ = count;
+  }
+
+  // Room for `count` elements; what is marked stays marked.
+  void grow(std::size_t count) {
+    if (words_.size() * 64 < count) words_.resize((count + 63) / 64, 0);
   }
 
   void mark(std::size_t i) {

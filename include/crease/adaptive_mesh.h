@@ -1,0 +1,97 @@
+// A mesh that is fine where the camera looks and coarse elsewhere: a cut through a MeshHierarchy
+// that moves by splits and merges, vertex by vertex (G03; DESIGN 8).
+//
+//   AdaptiveMesh mesh(hierarchy);                  // starts at the coarsest cut
+//   mesh.update({.camera = camera});               // every frame; camera.pixels: error on screen
+//   for (Range r : mesh.changes().positions) upload(r);
+//   draw(mesh.draw_list());
+//
+// A vertex is split if what it stands for is seen to be wrong: its surface or line error is more
+// than camera.pixels on the screen, or its shading is off by more than `degrees`. The errors are
+// bounds of the hierarchy, so what is left unsplit is at most that wrong. No split needs another
+// one: the mesh has no crack, whatever is split (DESIGN 6.1).
+//
+// Cost: that of the splits and merges done, of evaluating the vertices for which the camera has
+// moved far enough to change the answer, and of comparing one number per active vertex. A camera
+// that has not moved costs nothing.
+#pragma once
+
+#include "crease/camera.h"
+#include "crease/draw_changes.h"
+#include "crease/draw_list.h"
+#include "crease/mesh.h"
+#include "crease/mesh_hierarchy.h"
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+
+namespace crease {
+
+struct ViewParameters {
+  Camera camera;       // camera.pixels: error of surfaces and lines allowed on the screen
+  double degrees = 0;  // of shading allowed where it covers 16 pixels and more; 0: any
+  // The most visible errors first, until so many triangles.
+  std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
+  // Per update(), by the caller's clock in seconds; what is left is done by the next ones. Null:
+  // all at once. The run time has no clock of its own.
+  double max_seconds = std::numeric_limits<double>::infinity();
+  double (*clock)(void* context) = nullptr;
+  void* clock_context = nullptr;
+  // A merge needs an error this much smaller than a split, so that no vertex flickers. >= 1.
+  double hysteresis = 1.25;
+  bool coarse_outside = true;  // what is outside the view frustum need not be right
+  // Nor what faces away: for closed surfaces, since others show their back.
+  bool coarse_backfaces = false;
+  double silhouette_weight = 1;  // errors count so much more where the surface turns away. >= 1
+  // Before a vertex is split, so are the third vertices of the triangles that appear, if their error
+  // is larger; and it is merged after them. So neighbourhoods are those the simplifier saw.
+  bool consistent = false;
+
+  bool operator==(const ViewParameters&) const = default;
+};
+
+struct UpdateReport {
+  std::size_t splits = 0, merges = 0;
+  std::size_t evaluated = 0;  // vertices whose error on the screen was computed
+  bool complete = true;       // else time ran out
+};
+
+class AdaptiveMesh {
+ public:
+  explicit AdaptiveMesh(std::shared_ptr<const MeshHierarchy> hierarchy);
+  ~AdaptiveMesh();
+  AdaptiveMesh(AdaptiveMesh&&) noexcept;
+
+  UpdateReport update(const ViewParameters& view);
+
+  // The same error everywhere: splits exactly the vertices with a larger surface or line error,
+  // model units. Negative: all, which restores the snapped input. Time O(active vertices + moves).
+  UpdateReport set_error(float error);
+
+  std::size_t triangle_count() const;
+  std::size_t vertex_count() const;  // active ones that triangles of the input use
+  // Largest error of the active vertices: what is on show differs by at most this from the input.
+  LevelError error() const;  // time O(active vertices)
+
+  // `positions` and `vertex_normals` may have elements in between that no triangle uses.
+  DrawList draw_list() const;
+  const DrawChanges& changes() const;  // of the last update() or set_error()
+
+  // Per position of the draw list its surface or line error, whichever is larger: for pictures.
+  std::vector<float> error_of_position() const;
+
+  // What is active as a mesh of its own, all attribute layers, materials and parts; triangles in the
+  // hierarchy's order. Time O(active).
+  Mesh extract() const;
+
+  const MeshHierarchy& hierarchy() const;
+  // Of the cut and of the arrays for drawing, without the hierarchy (hierarchy_bytes()).
+  std::size_t active_bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace crease

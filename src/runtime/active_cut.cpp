@@ -1,0 +1,301 @@
+// The moves.
+#include "runtime/active_cut.h"
+
+#include "base/assert.h"
+#include "hierarchy/grid_sum.h"
+
+#include <algorithm>
+
+namespace crease {
+
+namespace {
+
+bool has_choices(const AttributeHierarchy& layer) {
+  return !layer.leaf_attribute.empty() || layer.parents_of_split.list_count() > 0;
+}
+
+}  // namespace
+
+ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
+    : hierarchy_(hierarchy),
+      h_(hierarchy.vertices),
+      place_of_layer_(hierarchy.layers.size(), kNone),
+      done_((h_.split_count() + 63) / 64, 0),
+      map_(h_.wedge_count()) {
+  for (std::uint32_t l = 0; l < hierarchy_.layers.size(); ++l) {
+    const AttributeHierarchy& layer = hierarchy_.layers[l];
+    if (layer.role == AttributeRole::Normal) normal_layer_ = l;
+    if (layer.role == AttributeRole::Color && color_layer_ == kNone) color_layer_ = l;
+    if (!has_choices(layer)) continue;
+    place_of_layer_[l] = static_cast<std::uint32_t>(tracked_.size());
+    tracked_.push_back(l);
+  }
+  touches_triangles_ = normal_layer_ == kNone || color_layer_ != kNone ||
+                       place_of_layer_[normal_layer_] != kNone || !h_.deriving_splits.empty();
+  for (std::uint32_t r = 0; r < h_.root_count; ++r) {
+    if (h_.root_wedges[r] == h_.root_wedges[r + 1]) continue;
+    const std::uint32_t slot = take_slot();
+    vertices_[slot].begin = h_.root_wedges[r];
+    vertices_[slot].end = h_.root_wedges[r + 1];
+    map_.set(h_.root_wedges[r], slot);
+    stand(slot, h_.root(r), h_.root_positions[r]);
+  }
+  const TriangleRange coarse = h_.coarse_triangles();
+  for (std::uint32_t t = coarse.begin; t < coarse.end; ++t) {
+    std::array<std::uint32_t, 3> slots;
+    for (std::size_t k = 0; k < 3; ++k) slots[k] = map_.slot_at(h_.triangles[t][k]);
+    activate(TriangleId{t}, slots);
+  }
+}
+
+std::size_t ActiveCut::triangle_count() const {
+  std::size_t sum = 0;
+  for (const ActiveTriangles& part : parts_) sum += part.count();
+  return sum;
+}
+
+std::uint32_t ActiveCut::take_slot() {
+  if (!free_slots_.empty()) {
+    const std::uint32_t slot = free_slots_.back();
+    free_slots_.pop_back();
+    return slot;
+  }
+  vertices_.emplace_back();
+  vertex_changes_.grow(vertices_.size());
+  return static_cast<std::uint32_t>(vertices_.size() - 1);
+}
+
+void ActiveCut::stand(std::uint32_t slot, NodeId node, const Vec3i& position) {
+  ActiveVertex& v = vertices_[slot];
+  v.node = node;
+  v.split = h_.split_of(node);
+  v.position = position;
+  v.one_normal =
+      normal_layer_ != kNone && hierarchy_.layers[normal_layer_].attribute_count(node) <= 1;
+  vertex_changes_.mark(slot);
+}
+
+ActiveCut::Children ActiveCut::children(SplitId s) const {
+  const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
+  Children found;
+  if (middle < h_.wedge_count()) {
+    const std::uint32_t slot = map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle)});
+    if (vertices_[slot].node == h_.second_child(s)) found.second = slot;
+  }
+  if (middle > 0) {
+    const std::uint32_t slot = map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle - 1)});
+    if (vertices_[slot].node == h_.first_child(s)) found.first = slot;
+  }
+  return found;
+}
+
+std::uint32_t ActiveCut::split(std::uint32_t slot) {
+  const SplitId s = vertices_[slot].split;
+  const WedgeId begin = vertices_[slot].begin, end = vertices_[slot].end;
+  const Vec3i position = vertices_[slot].position;
+  CREASE_ASSERT(s != kNoSplit);
+  set_done(s, true);
+  const WedgeId middle = h_.second_wedge[index_of(s)];
+  const NodeId first = h_.first_child(s), second = h_.second_child(s);
+  if (middle == begin || middle == end) {
+    const bool is_second = middle == begin;
+    stand(slot, is_second ? second : first,
+          grid_sum(position, h_.delta_of(is_second ? second : first)));
+    pass_down(s, slot, is_second);
+    touch_derived(s);
+    return kNoSlot;
+  }
+  const std::uint32_t other = take_slot();
+  vertices_[slot].end = middle;
+  vertices_[other].begin = middle;
+  vertices_[other].end = end;
+  map_.set(middle, other);
+  stand(slot, first, grid_sum(position, h_.delta_of(first)));
+  stand(other, second, grid_sum(position, h_.delta_of(second)));
+  give_corners(slot, other, middle);
+  pass_down(s, slot, false);
+  pass_down(s, other, true);
+
+  const TriangleRange born = h_.triangles_of(s);
+  for (std::uint32_t t = born.begin; t < born.end; ++t) {
+    std::array<std::uint32_t, 3> slots;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const WedgeId wedge = h_.triangles[t][k];
+      slots[k] = wedge < begin || wedge >= end ? map_.slot_at(wedge)
+                 : wedge < middle              ? slot
+                                               : other;
+    }
+    activate(TriangleId{t}, slots);
+  }
+  touch_derived(s);
+  return other;
+}
+
+// Those from `middle` on. Which way a corner goes is a coin toss, so both ways are written and one
+// counts.
+void ActiveCut::give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle) {
+  CornerList& list = vertices_[from].corners;
+  const std::span<CornerAt> all = lists_.of(list);
+  leaving_.resize(all.size());
+  std::size_t stay = 0, leave = 0;
+  for (const CornerAt at : all) {
+    const bool leaves = at.wedge >= middle;
+    leaving_[leave] = at;
+    all[stay] = at;
+    leave += leaves ? 1 : 0;
+    stay += leaves ? 0 : 1;
+  }
+  lists_.resize(list, stay);
+  CornerList& other = vertices_[to].corners;
+  lists_.resize(other, leave);
+  std::copy_n(leaving_.begin(), leave, lists_.of(other).begin());
+  for (std::size_t i = 0; i < leave; ++i) {
+    const CornerRef corner = leaving_[i].corner;
+    slots_of(corner)[corner.corner()] = to;
+    parts_[corner.part()].moved.mark(corner.triangle());
+  }
+}
+
+void ActiveCut::merge(SplitId s) {
+  CREASE_ASSERT(can_merge(s));
+  const Children slots = children(s);
+  const NodeId node = h_.node_of_split[index_of(s)];
+  set_done(s, false);
+  if (slots.first == kNoSlot || slots.second == kNoSlot) {
+    const bool is_second = slots.first == kNoSlot;
+    const std::uint32_t slot = is_second ? slots.second : slots.first;
+    if (slot == kNoSlot) return;
+    const Vec3i delta = h_.delta_of(vertices_[slot].node);
+    pass_up(s, slot, is_second);
+    stand(slot, node, grid_difference(vertices_[slot].position, delta));
+    touch_corners(slot);
+    touch_derived(s);
+    return;
+  }
+  ActiveVertex& first = vertices_[slots.first];
+  ActiveVertex& second = vertices_[slots.second];
+  const Vec3i position = grid_difference(first.position, h_.delta_of(first.node));
+  pass_up(s, slots.first, false);
+  pass_up(s, slots.second, true);
+  map_.clear(second.begin);
+  first.end = second.end;
+  take_corners(slots.second, slots.first);
+  stand(slots.first, node, position);
+  touch_corners(slots.first);
+  lists_.clear(second.corners);
+  second.node = kNoNode;
+  second.split = kNoSplit;
+  free_slots_.push_back(slots.second);
+  touch_derived(s);
+}
+
+// All of them, but for those of triangles that have a corner at either.
+void ActiveCut::take_corners(std::uint32_t from, std::uint32_t to) {
+  leaving_.clear();
+  collapsed_.clear();
+  for (const CornerAt& at : lists_.of(vertices_[from].corners)) {
+    std::uint32_t* const slots = slots_of(at.corner);
+    if (slots[0] == to || slots[1] == to || slots[2] == to) {
+      collapsed_.push_back(at.corner.triangle_key());
+      deactivate(at.corner, from, to);
+    } else {
+      slots[at.corner.corner()] = to;
+      parts_[at.corner.part()].moved.mark(at.corner.triangle());
+      leaving_.push_back(at);
+    }
+  }
+  CornerList& list = vertices_[to].corners;
+  if (!collapsed_.empty()) {
+    if (collapsed_.size() > 8) std::sort(collapsed_.begin(), collapsed_.end());
+    const auto is_collapsed = [this](const CornerAt& at) {
+      const std::uint32_t key = at.corner.triangle_key();
+      return collapsed_.size() > 8
+                 ? std::binary_search(collapsed_.begin(), collapsed_.end(), key)
+                 : std::find(collapsed_.begin(), collapsed_.end(), key) != collapsed_.end();
+    };
+    const std::span<CornerAt> all = lists_.of(list);
+    const auto last = std::remove_if(all.begin(), all.end(), is_collapsed);
+    list.count = static_cast<std::uint32_t>(last - all.begin());
+  }
+  const std::size_t staying = list.count;
+  lists_.resize(list, staying + leaving_.size());
+  std::copy(leaving_.begin(), leaving_.end(), lists_.of(list).begin() + std::ptrdiff_t(staying));
+}
+
+void ActiveCut::activate(TriangleId t, const std::array<std::uint32_t, 3>& slots) {
+  const std::array<WedgeId, 3>& wedges = h_.triangles[index_of(t)];
+  arriving_.clear();
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::uint32_t l : tracked_) {
+      arriving_.push_back(hierarchy_.attribute_at(l, vertices_[slots[k]].node, wedges[k]));
+    }
+  }
+  const Part kind = touches_triangles_ ? kind_of(t, slots, arriving_) : kSnPart;
+  ActiveTriangles& part = parts_[kind];
+  const std::uint32_t place = part.add(t, arriving_.size());
+  std::copy(arriving_.begin(), arriving_.end(),
+            part.relative.begin() + std::ptrdiff_t(arriving_.size() * place));
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    part.slots[3 * std::size_t(place) + k] = slots[k];
+    lists_.push_back(vertices_[slots[k]].corners, {CornerRef(kind, place, k), wedges[k]});
+  }
+  part.moved.mark(place);
+  if (kind != kSnPart || color_layer_ != kNone) part.touched.mark(place);
+}
+
+// Which has corners at `from` and at `to`; the lists of these two are left as they are.
+void ActiveCut::deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to) {
+  const std::uint32_t* const slots = slots_of(corner);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if (slots[k] == from || slots[k] == to) continue;
+    lists_.erase(vertices_[slots[k]].corners, CornerRef(corner.part(), corner.triangle(), k));
+  }
+  parts_[corner.part()].remove(corner.triangle());
+}
+
+void ActiveCut::touch_corners(std::uint32_t slot) {
+  if (!touches_triangles_) return;
+  for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
+    touch(at, vertices_[slot].one_normal != 0);
+  }
+}
+
+// The corners at the child of s in `slot` had their attributes at v_s.
+void ActiveCut::pass_down(SplitId s, std::uint32_t slot, bool second) {
+  touch_corners(slot);
+  for (std::size_t i = 0; i < tracked_.size(); ++i) {
+    const std::uint32_t l = tracked_[i];
+    if (hierarchy_.layers[l].parents_of_split.of(index_of(s)).empty()) continue;  // 0 remains
+    for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
+      RelativeAttribute& a =
+          parts_[at.corner.part()].relative[tracked_.size() * at.corner.index() + i];
+      a = hierarchy_.below(l, s, second, a, at.wedge);
+    }
+  }
+}
+
+void ActiveCut::pass_up(SplitId s, std::uint32_t slot, bool second) {
+  for (std::size_t i = 0; i < tracked_.size(); ++i) {
+    const std::uint32_t l = tracked_[i];
+    if (hierarchy_.layers[l].parents_of_split.of(index_of(s)).empty()) continue;
+    for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
+      RelativeAttribute& a =
+          parts_[at.corner.part()].relative[tracked_.size() * at.corner.index() + i];
+      a = hierarchy_.above(l, s, second, a, at.wedge);
+    }
+  }
+}
+
+// Triangles that show their geometric normal while s is not done.
+void ActiveCut::touch_derived(SplitId s) {
+  if (h_.deriving_splits.empty() || normal_layer_ == kNone) return;
+  for (TriangleId t : h_.derived_of_split.of(index_of(s))) {
+    const WedgeId wedge = h_.triangles[index_of(t)][0];
+    for (const CornerAt& at : lists_.of(vertices_[map_.slot_at(wedge)].corners)) {
+      ActiveTriangles& part = parts_[at.corner.part()];
+      if (part.ids[at.corner.triangle()] == t) part.touched.mark(at.corner.triangle());
+    }
+  }
+}
+
+}  // namespace crease

@@ -1,0 +1,157 @@
+// A cut through a hierarchy that moves by splits and merges: the active vertices, the corners that
+// stand at each, the active triangles with their slots and relative attribute indices.
+//
+//   ActiveCut cut(hierarchy);             // nothing is split
+//   cut.split(cut.slot_of(root));         // v_t keeps the slot, v_u gets one
+//   cut.merge(s);                         // the exact inverse
+//
+// A split costs: one look-up per introduced triangle (its third vertex, WedgeMap), one comparison
+// per corner at v_s, one write per corner that goes to v_u. Nothing depends on the model's size.
+// Normals, colours and kinds are not computed here: what may have changed is marked.
+//
+// A vertex without triangles has no wedges and no slot; its splits and merges are never needed. So
+// a split one of whose children has no triangles only renames the slot.
+//
+// Memory: a vertex and the corners at it 128, its position and normal to be drawn 24; a triangle as
+// in active_triangles.h. Whatever is active: a bit a split, 4.2 bytes a wedge.
+#pragma once
+
+#include "crease/mesh_hierarchy.h"
+#include "runtime/active_triangles.h"
+#include "runtime/change_set.h"
+#include "runtime/corner_lists.h"
+#include "runtime/wedge_map.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease {
+
+inline constexpr std::uint32_t kNoSlot = kNone;
+
+// All that a move reads and writes of a vertex, in two cache lines side by side.
+struct alignas(128) ActiveVertex {
+  NodeId node = kNoNode;     // kNoNode: the slot is free
+  SplitId split = kNoSplit;  // of the node
+  WedgeId begin{}, end{};
+  Vec3i position;                // grid units
+  std::uint32_t one_normal = 0;  // all its corners have the same (SN of DB03)
+  CornerList corners;
+};
+static_assert(sizeof(ActiveVertex) == 128);
+
+class ActiveCut {
+ public:
+  explicit ActiveCut(const MeshHierarchy& hierarchy);
+
+  const MeshHierarchy& hierarchy() const { return hierarchy_; }
+  std::span<const ActiveVertex> vertices() const { return vertices_; }  // by slot, free ones too
+  std::size_t vertex_count() const { return vertices_.size() - free_slots_.size(); }
+  std::size_t triangle_count() const;
+  std::array<ActiveTriangles, kPartCount>& parts() { return parts_; }
+  const std::array<ActiveTriangles, kPartCount>& parts() const { return parts_; }
+  ChangeSet& vertex_changes() { return vertex_changes_; }
+
+  bool is_done(SplitId s) const { return (done_[index_of(s) / 64] >> (index_of(s) % 64) & 1) != 0; }
+  // A child of a done split that is not split itself.
+  bool is_cut_leaf(NodeId n) const {
+    const SplitId s = h_.split_of(n);
+    return s == kNoSplit || !is_done(s);
+  }
+  bool can_merge(SplitId s) const {
+    return is_done(s) && is_cut_leaf(h_.first_child(s)) && is_cut_leaf(h_.second_child(s));
+  }
+  // The split that activated a triangle, or kNoSplit. Time O(log(splits)).
+  SplitId introducing_split(TriangleId t) const;
+  // The slot that stands for a wedge.
+  std::uint32_t slot_at(WedgeId wedge) const { return map_.slot_at(wedge); }
+  // The slots of both children of s; kNoSlot if one is split or has no triangles.
+  struct Children {
+    std::uint32_t first = kNoSlot, second = kNoSlot;
+  };
+  Children children(SplitId s) const;
+
+  // The vertex in `slot` must not be a leaf. Returns the slot of v_u, or kNoSlot if one of the
+  // children has no triangles.
+  std::uint32_t split(std::uint32_t slot);
+  void merge(SplitId s);  // can_merge(s)
+
+  std::span<const CornerAt> corners_of(std::uint32_t slot) const {
+    return lists_.of(vertices_[slot].corners);
+  }
+
+  // Which of its normals a derived triangle shows.
+  bool is_derived(TriangleId t) const {
+    if (normal_layer_ == kNone) return true;
+    const SplitId s = h_.deriving_split(t);
+    return s != kNoSplit && !is_done(s);
+  }
+  std::uint32_t normal_layer() const { return normal_layer_; }  // kNone: there is none
+  std::uint32_t color_layer() const { return color_layer_; }
+  std::size_t tracked_count() const { return tracked_.size(); }
+  std::span<const std::uint32_t> tracked_layers() const { return tracked_; }
+
+  // By DB03, of what the corners have now.
+  Part kind_of(const ActiveTriangles& part, std::uint32_t triangle) const;
+  // The value that a corner shows, if its triangle shows stored ones: its index in the layer.
+  std::size_t value_index(const ActiveTriangles& part, std::uint32_t corner_index,
+                          std::size_t layer) const;
+  // Takes the triangle out of one part and into another one; nothing but its place changes.
+  void move_triangle(Part from, std::uint32_t triangle, Part to);
+  // No part has holes afterwards.
+  void fill_holes();
+
+  std::size_t bytes() const;  // of the state, the hierarchy apart
+
+ private:
+  std::uint32_t take_slot();
+  void stand(std::uint32_t slot, NodeId node, const Vec3i& position);
+  // `relative`: per corner one for each tracked layer.
+  Part kind_of(TriangleId t, std::span<const std::uint32_t, 3> slots,
+               std::span<const RelativeAttribute> relative) const;
+  void touch(const CornerAt& at, bool one_normal) {
+    if (at.corner.part() != kSnPart || !one_normal || color_layer_ != kNone) {
+      parts_[at.corner.part()].touched.mark(at.corner.triangle());
+    }
+  }
+  void pass_down(SplitId s, std::uint32_t slot, bool second);
+  void pass_up(SplitId s, std::uint32_t slot, bool second);
+  void touch_corners(std::uint32_t slot);
+  void give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle);
+  void take_corners(std::uint32_t from, std::uint32_t to);
+  void activate(TriangleId t, const std::array<std::uint32_t, 3>& slots);
+  void deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to);
+  void touch_derived(SplitId s);
+  void replace_corner(CornerRef from, CornerRef to);
+  void copy_triangle(Part from, std::uint32_t source, Part to, std::uint32_t target);
+  std::uint32_t* slots_of(CornerRef corner) {
+    return &parts_[corner.part()].slots[3 * std::size_t(corner.triangle())];
+  }
+  void set_done(SplitId s, bool done) {
+    const std::uint64_t bit = std::uint64_t(1) << (index_of(s) % 64);
+    std::uint64_t& word = done_[index_of(s) / 64];
+    word = done ? word | bit : word & ~bit;
+  }
+
+  const MeshHierarchy& hierarchy_;
+  const VertexHierarchy& h_;
+  std::uint32_t normal_layer_ = kNone, color_layer_ = kNone;
+  std::vector<std::uint32_t> tracked_;         // layers that have nodes of several attributes
+  std::vector<std::uint32_t> place_of_layer_;  // in tracked_, or kNone
+  bool touches_triangles_ = false;             // some triangle is, or may become, other than SN
+  std::vector<std::uint64_t> done_;            // a bit a split
+  WedgeMap map_;
+  std::vector<ActiveVertex> vertices_;
+  std::vector<std::uint32_t> free_slots_;
+  CornerLists lists_;
+  std::array<ActiveTriangles, kPartCount> parts_;
+  ChangeSet vertex_changes_;
+  std::vector<CornerAt> leaving_;            // scratch of one move
+  std::vector<RelativeAttribute> arriving_;  // scratch of one triangle
+  std::vector<std::uint32_t> collapsed_;     // scratch of one merge: triangle keys
+};
+
+}  // namespace crease

@@ -1,0 +1,134 @@
+// What kind active triangles are, and where they are kept.
+#include "base/assert.h"
+#include "hierarchy/geometric_normal.h"
+#include "runtime/active_cut.h"
+
+#include <algorithm>
+
+namespace crease {
+
+namespace {
+
+std::size_t value_of(const AttributeHierarchy& layer, NodeId node, RelativeAttribute a) {
+  const std::size_t i = std::size_t(layer.attribute_ranges.begin(index_of(node))) + a;
+  return layer.value_of_attribute.empty() ? i : layer.value_of_attribute[i];
+}
+
+}  // namespace
+
+Part ActiveCut::kind_of(TriangleId t, std::span<const std::uint32_t, 3> slots,
+                        std::span<const RelativeAttribute> relative) const {
+  if (normal_layer_ == kNone) return kFnPart;
+  const bool derived = is_derived(t);
+  if (derived) {
+    const Vec3f n = geometric_normal(vertices_[slots[0]].position, vertices_[slots[1]].position,
+                                     vertices_[slots[2]].position);
+    if (n != Vec3f{}) return kFnPart;
+  }
+  const auto has_one = [&](std::uint32_t slot) { return vertices_[slot].one_normal != 0; };
+  // A derived one without area shows what it stores, for as long as its corners stay: no SN.
+  if (!derived && std::all_of(slots.begin(), slots.end(), has_one)) return kSnPart;
+  const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
+  const std::uint32_t place = place_of_layer_[normal_layer_];
+  std::size_t values[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const RelativeAttribute a =
+        place == kNone ? RelativeAttribute{0} : relative[k * tracked_.size() + place];
+    values[k] = value_of(layer, vertices_[slots[k]].node, a);
+  }
+  return values[0] == values[1] && values[1] == values[2] ? kFnPart : kNsnPart;
+}
+
+Part ActiveCut::kind_of(const ActiveTriangles& part, std::uint32_t triangle) const {
+  const std::size_t each = 3 * tracked_.size();
+  return kind_of(part.ids[triangle],
+                 std::span<const std::uint32_t, 3>(&part.slots[3 * std::size_t(triangle)], 3),
+                 std::span<const RelativeAttribute>(part.relative).subspan(each * triangle, each));
+}
+
+std::size_t ActiveCut::value_index(const ActiveTriangles& part, std::uint32_t corner_index,
+                                   std::size_t layer) const {
+  const std::uint32_t place = place_of_layer_[layer];
+  const RelativeAttribute a =
+      place == kNone ? RelativeAttribute{0} : part.relative[tracked_.size() * corner_index + place];
+  return value_of(hierarchy_.layers[layer], vertices_[part.slots[corner_index]].node, a);
+}
+
+SplitId ActiveCut::introducing_split(TriangleId t) const {
+  std::size_t low = 0, high = h_.triangle_ranges.size();  // begin(low) <= t < begin(high)
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (h_.triangle_ranges.begin(middle) <= index_of(t) ? low : high) = middle;
+  }
+  return low == 0 ? kNoSplit : SplitId{static_cast<std::uint32_t>(low - 1)};
+}
+
+void ActiveCut::replace_corner(CornerRef from, CornerRef to) {
+  const std::uint32_t slot = parts_[from.part()].slots[from.index()];
+  for (CornerAt& at : lists_.of(vertices_[slot].corners)) {
+    if (at.corner == from) {
+      at.corner = to;
+      return;
+    }
+  }
+  CREASE_ASSERT(false);
+}
+
+void ActiveCut::copy_triangle(Part from, std::uint32_t source, Part to, std::uint32_t target) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    replace_corner(CornerRef(from, source, k), CornerRef(to, target, k));
+  }
+  const ActiveTriangles& old = parts_[from];
+  ActiveTriangles& part = parts_[to];
+  std::copy_n(&old.slots[3 * std::size_t(source)], 3, &part.slots[3 * std::size_t(target)]);
+  const std::size_t each = 3 * tracked_.size();
+  for (std::size_t i = 0; i < each; ++i) {
+    part.relative[each * target + i] = old.relative[each * source + i];
+  }
+  part.moved.mark(target);
+  part.shaded.mark(target);
+}
+
+void ActiveCut::move_triangle(Part from, std::uint32_t triangle, Part to) {
+  const std::uint32_t target = parts_[to].add(parts_[from].ids[triangle], 3 * tracked_.size());
+  copy_triangle(from, triangle, to, target);
+  parts_[from].remove(triangle);
+}
+
+void ActiveCut::fill_holes() {
+  for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
+    ActiveTriangles& part = parts_[p];
+    while (part.hole_count > 0) {
+      while (!part.ids.empty() && part.ids.back() == kNoTriangle) {
+        part.ids.pop_back();
+        --part.hole_count;
+      }
+      if (part.hole_count == 0) break;
+      const std::uint32_t hole = part.holes.back();
+      part.holes.pop_back();
+      if (hole >= part.ids.size() || part.ids[hole] != kNoTriangle) continue;
+      const auto last = static_cast<std::uint32_t>(part.ids.size() - 1);
+      copy_triangle(p, last, p, hole);
+      part.ids[hole] = part.ids[last];
+      part.ids.pop_back();
+      --part.hole_count;
+    }
+    part.holes.clear();
+    part.slots.resize(3 * part.ids.size());
+    part.relative.resize(3 * tracked_.size() * part.ids.size());
+  }
+}
+
+std::size_t ActiveCut::bytes() const {
+  std::size_t sum = 8 * done_.capacity() + map_.bytes() + lists_.bytes() +
+                    sizeof(ActiveVertex) * vertices_.capacity() + 4 * free_slots_.capacity();
+  for (const ActiveTriangles& part : parts_) {
+    sum += 4 * (part.ids.capacity() + part.slots.capacity() + part.holes.capacity() +
+                part.materials.capacity()) +
+           2 * part.relative.capacity() + 12 * part.normals.capacity() +
+           16 * part.colors.capacity();
+  }
+  return sum;
+}
+
+}  // namespace crease

@@ -1,0 +1,69 @@
+// The active triangles of one of the three parts of a draw list (SN, FN, NSN), in no order.
+//
+// A triangle that is taken away leaves a hole, which the next new one fills; holes that are left
+// when all moves are done are filled from the end (CutDrawing). So a frame that splits as much as
+// it merges moves no triangle in memory and uploads nothing but what changed.
+//
+// Memory per triangle: slots 12, id 4, 6 per attribute layer that ever has two attributes at a
+// vertex; for drawing FN normal 12, NSN normals 36, colours 48, material 4; 3 bits of marks.
+#pragma once
+
+#include "crease/mesh_hierarchy.h"
+#include "runtime/change_set.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace crease {
+
+enum Part : std::uint32_t { kSnPart, kFnPart, kNsnPart, kPartCount };
+
+inline constexpr TriangleId kNoTriangle{kNone};
+
+struct ActiveTriangles {
+  std::vector<TriangleId> ids;              // kNoTriangle: a hole
+  std::vector<std::uint32_t> slots;         // 3 a triangle: the active vertices
+  std::vector<RelativeAttribute> relative;  // per corner one for each tracked layer
+  std::vector<std::uint32_t> holes;         // may name triangles beyond the end
+  std::size_t hole_count = 0;               // in front of the end
+  ChangeSet moved;                          // slots changed
+  ChangeSet touched;                        // kind, normals or colours may have changed
+  ChangeSet shaded;                         // normals or colours did
+
+  // What is drawn beside the slots; CutDrawing keeps it.
+  std::vector<Vec3f> normals;                // FN: 1 a triangle, NSN: 3
+  std::vector<std::array<float, 4>> colors;  // 3 a triangle, or empty
+  std::vector<std::uint32_t> materials;      // or empty
+
+  std::size_t size() const { return ids.size(); }
+  std::size_t count() const { return ids.size() - hole_count; }
+
+  // A place for a triangle, in a hole or at the end.
+  std::uint32_t add(TriangleId id, std::size_t relative_per_triangle) {
+    while (hole_count > 0) {
+      const std::uint32_t hole = holes.back();
+      holes.pop_back();
+      if (hole >= ids.size() || ids[hole] != kNoTriangle) continue;
+      --hole_count;
+      ids[hole] = id;
+      return hole;
+    }
+    holes.clear();
+    const std::size_t size = ids.size() + 1;
+    ids.push_back(id);
+    slots.resize(3 * size);
+    relative.resize(relative_per_triangle * size);
+    for (ChangeSet* set : {&moved, &touched, &shaded}) set->grow(size);
+    return static_cast<std::uint32_t>(size - 1);
+  }
+
+  void remove(std::uint32_t triangle) {
+    ids[triangle] = kNoTriangle;
+    holes.push_back(triangle);
+    ++hole_count;
+  }
+};
+
+}  // namespace crease

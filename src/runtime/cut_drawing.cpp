@@ -1,0 +1,134 @@
+#include "runtime/cut_drawing.h"
+
+#include "hierarchy/geometric_normal.h"
+#include "runtime/draw_values.h"
+
+namespace crease {
+
+namespace {
+
+constexpr std::size_t kNormalsPerTriangle[] = {0, 1, 3};
+
+std::span<const float> value_at(const AttributeHierarchy& layer, std::size_t index) {
+  return std::span<const float>(layer.values).subspan(index * layer.dimension, layer.dimension);
+}
+
+Vec3f normal_of(const AttributeHierarchy& layer, std::size_t index) {
+  const std::span<const float> n = value_at(layer, index);
+  return {n[0], n[1], n[2]};
+}
+
+// Of a derived triangle its geometric normal.
+Vec3f shown_normal(const ActiveCut& cut, const ActiveTriangles& part, std::uint32_t corner_index) {
+  const std::uint32_t triangle = corner_index / 3;
+  if (cut.is_derived(part.ids[triangle])) {
+    const Vec3f n = geometric_normal_of(cut, part, triangle);
+    if (n != Vec3f{} || cut.normal_layer() == kNone) return n;
+  }
+  const std::uint32_t l = cut.normal_layer();
+  return normal_of(cut.hierarchy().layers[l], cut.value_index(part, corner_index, l));
+}
+
+}  // namespace
+
+Vec3f geometric_normal_of(const ActiveCut& cut, const ActiveTriangles& part,
+                          std::uint32_t triangle) {
+  const std::uint32_t* const slots = &part.slots[3 * std::size_t(triangle)];
+  const std::span<const ActiveVertex> vertices = cut.vertices();
+  return geometric_normal(vertices[slots[0]].position, vertices[slots[1]].position,
+                          vertices[slots[2]].position);
+}
+
+void CutDrawing::arrive(ActiveCut& cut) {
+  sort_touched(cut);
+  cut.fill_holes();
+  refresh_vertices(cut);
+  for (const Part p : {kSnPart, kFnPart, kNsnPart}) refresh_part(cut, p);
+}
+
+void CutDrawing::sort_touched(ActiveCut& cut) {
+  for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
+    touched_.clear();
+    ActiveTriangles& part = cut.parts()[p];
+    part.touched.take(part.size(), ranges_,
+                      [this](std::size_t i) { touched_.push_back(static_cast<std::uint32_t>(i)); });
+    for (const std::uint32_t t : touched_) {
+      if (part.ids[t] == kNoTriangle) continue;
+      const Part now = cut.kind_of(part, t);
+      if (now == p) {
+        part.shaded.mark(t);
+      } else {
+        cut.move_triangle(p, t, now);
+      }
+    }
+  }
+}
+
+void CutDrawing::refresh_vertices(ActiveCut& cut) {
+  const MeshHierarchy& hierarchy = cut.hierarchy();
+  positions_.resize(cut.vertices().size());
+  vertex_normals_.resize(cut.vertices().size());
+  const auto refresh = [&](std::size_t slot) {
+    const ActiveVertex& v = cut.vertices()[slot];
+    if (v.node == kNoNode) return;
+    positions_[slot] = draw_position(hierarchy.vertices.grid, v.position);
+    if (v.one_normal == 0) return;
+    const AttributeHierarchy& layer = hierarchy.layers[cut.normal_layer()];
+    if (layer.attribute_count(v.node) == 0) return;  // no triangle of now shows one
+    const std::uint32_t i = layer.attribute_ranges.begin(index_of(v.node));
+    const std::size_t index = layer.value_of_attribute.empty() ? i : layer.value_of_attribute[i];
+    vertex_normals_[slot] = normal_of(layer, index);
+  };
+  cut.vertex_changes().take(positions_.size(), changes_.positions, refresh);
+  changes_.vertex_normals = changes_.positions;
+}
+
+void CutDrawing::refresh_part(ActiveCut& cut, Part p) {
+  const MeshHierarchy& hierarchy = cut.hierarchy();
+  ActiveTriangles& part = cut.parts()[p];
+  const std::size_t normal_count = kNormalsPerTriangle[p];
+  const std::uint32_t color_layer = cut.color_layer();
+  part.normals.resize(normal_count * part.size());
+  if (color_layer != kNone) part.colors.resize(3 * part.size());
+  const auto refresh_shading = [&](std::size_t t) {
+    const auto corner = static_cast<std::uint32_t>(3 * t);
+    for (std::uint32_t k = 0; k < normal_count; ++k) {
+      part.normals[normal_count * t + k] = shown_normal(cut, part, corner + k);
+    }
+    for (std::uint32_t k = 0; color_layer != kNone && k < 3; ++k) {
+      const std::size_t value = cut.value_index(part, corner + k, color_layer);
+      part.colors[3 * t + k] = draw_color(value_at(hierarchy.layers[color_layer], value));
+    }
+  };
+  std::vector<Range>* const index_ranges[] = {&changes_.sn_indices, &changes_.fn_indices,
+                                              &changes_.nsn_indices};
+  std::vector<Range>* const normal_ranges[] = {nullptr, &changes_.fn_normals,
+                                               &changes_.nsn_normals};
+  std::vector<Range>* const color_ranges[] = {&changes_.sn_colors, &changes_.fn_colors,
+                                              &changes_.nsn_colors};
+  const auto& materials = hierarchy.vertices.material_of_triangle;
+  if (!materials.empty()) part.materials.resize(part.size());
+  part.moved.take(part.size(), *index_ranges[p], [&](std::size_t t) {
+    if (materials.empty()) return;
+    part.materials[t] = static_cast<std::uint32_t>(index_of(materials[index_of(part.ids[t])]));
+  });
+  part.shaded.take(part.size(), ranges_, refresh_shading);
+  if (normal_ranges[p] != nullptr) *normal_ranges[p] = ranges_;
+  if (color_layer != kNone) *color_ranges[p] = ranges_;
+}
+
+DrawList CutDrawing::draw_list(const ActiveCut& cut) const {
+  DrawList list;
+  list.origin = cut.hierarchy().vertices.grid.origin;
+  list.positions = positions_;
+  list.vertex_normals = vertex_normals_;
+  DrawPart* const draw[] = {&list.sn, &list.fn, &list.nsn};
+  for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
+    const ActiveTriangles& part = cut.parts()[p];
+    *draw[p] = {part.slots, part.normals, part.materials, part.colors};
+  }
+  list.materials = cut.hierarchy().materials;
+  return list;
+}
+
+}  // namespace crease

@@ -1,0 +1,38 @@
+// The draw list of a cut: positions, normals and colours of what is active, kept while it moves.
+//
+// The moves mark what they touch (ActiveCut). arrive() then sorts the touched triangles into the
+// three parts by what their corners have now, closes the holes, computes each changed float once,
+// and tells the ranges. Time O(what changed), however many moves led there.
+#pragma once
+
+#include "crease/draw_changes.h"
+#include "crease/draw_list.h"
+#include "runtime/active_cut.h"
+
+#include <vector>
+
+namespace crease {
+
+class CutDrawing {
+ public:
+  void arrive(ActiveCut& cut);
+  DrawList draw_list(const ActiveCut& cut) const;
+  const DrawChanges& changes() const { return changes_; }
+  std::size_t bytes() const { return 12 * (positions_.capacity() + vertex_normals_.capacity()); }
+
+ private:
+  void sort_touched(ActiveCut& cut);
+  void refresh_vertices(ActiveCut& cut);
+  void refresh_part(ActiveCut& cut, Part p);
+
+  std::vector<Vec3f> positions_, vertex_normals_;
+  DrawChanges changes_;
+  std::vector<std::uint32_t> touched_;  // scratch
+  std::vector<Range> ranges_;           // scratch
+};
+
+// That of the corners as they are; the zero vector for a triangle without area.
+Vec3f geometric_normal_of(const ActiveCut& cut, const ActiveTriangles& part,
+                          std::uint32_t triangle);
+
+}  // namespace crease

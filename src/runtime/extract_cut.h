@@ -1,0 +1,14 @@
+// What a cut shows as a mesh of its own.
+#pragma once
+
+#include "crease/mesh.h"
+#include "runtime/active_cut.h"
+
+namespace crease {
+
+// Triangles in the hierarchy's order; used vertices, in the order of their wedges, and used values
+// only. Two corners share an attribute iff they have the same value of the hierarchy; a derived
+// normal is one of its own.
+Mesh extract_cut(const ActiveCut& cut);
+
+}  // namespace crease

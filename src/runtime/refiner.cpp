@@ -1,0 +1,216 @@
+// The order of work. What is due is found in refiner_evaluate.cpp.
+#include "runtime/refiner.h"
+
+#include "base/assert.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace crease {
+
+namespace {
+
+constexpr std::uint32_t kMovesPerClock = 64;
+
+}  // namespace
+
+UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
+  report_ = {};
+  if (!has_view_ || !(view == view_)) {
+    look_from(cut, view);
+    evaluate_due(cut);
+  }
+  stop_at_ = view.clock == nullptr ? std::numeric_limits<double>::infinity()
+                                   : view.clock(view.clock_context) + view.max_seconds;
+  moves_until_clock_ = 0;
+  if (cut.triangle_count() > view_.max_triangles) {
+    keep_to_budget(cut, {std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot}, 0);
+  }
+  do_merges(cut);
+  do_splits(cut);
+  return report_;
+}
+
+// Done from the top down and from the bottom up; nothing is queued.
+UpdateReport Refiner::set_error(ActiveCut& cut, float error) {
+  report_ = {};
+  has_view_ = false;
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  const auto is_coarse = [&](SplitId s) {
+    const SplitBounds& bounds = h.bounds[index_of(s)];
+    return std::max(bounds.surface.value(), bounds.line.value()) > error || error < 0;
+  };
+  for (std::uint32_t slot = 0; slot < cut.vertices().size(); ++slot) pending_.push_back(slot);
+  while (!pending_.empty()) {
+    const std::uint32_t slot = pending_.back();
+    pending_.pop_back();
+    const NodeId node = cut.vertices()[slot].node;
+    if (node == kNoNode) continue;
+    if (const SplitId s = cut.vertices()[slot].split; s != kNoSplit && is_coarse(s)) {
+      const std::uint32_t other = cut.split(slot);
+      ++report_.splits;
+      if (other != kNoSlot) pending_.push_back(other);
+      pending_.push_back(slot);
+      continue;
+    }
+    if (h.is_root(node)) continue;
+    const SplitId above = h.split_above(node);
+    if (is_coarse(above) || !cut.can_merge(above)) continue;
+    const ActiveCut::Children children = cut.children(above);
+    cut.merge(above);
+    ++report_.merges;
+    pending_.push_back(children.first != kNoSlot ? children.first : children.second);
+  }
+  return report_;
+}
+
+bool Refiner::out_of_time() {
+  if (view_.clock == nullptr) return false;
+  if (moves_until_clock_ > 0) {
+    --moves_until_clock_;
+    return false;
+  }
+  if (view_.clock(view_.clock_context) >= stop_at_) {
+    report_.complete = false;
+    return true;
+  }
+  moves_until_clock_ = kMovesPerClock;
+  return false;
+}
+
+void Refiner::do_merges(ActiveCut& cut) {
+  while (!merges_.empty() && merges_.front().excess < merge_below_ && !out_of_time()) {
+    const Wish wish = merges_.front();
+    std::pop_heap(merges_.begin(), merges_.end(),
+                  [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
+    merges_.pop_back();
+    if (cut.can_merge(wish.split) && !is_needed(cut, wish.split)) merge(cut, wish.split);
+  }
+}
+
+void Refiner::do_splits(ActiveCut& cut) {
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  while (!splits_.empty() && !out_of_time()) {
+    const Wish wish = splits_.front();
+    if (cut.vertices()[wish.slot].split == wish.split) {
+      const std::size_t gain = h.triangles_of(wish.split).size();
+      if (cut.triangle_count() + gain > view_.max_triangles) {
+        keep_to_budget(cut, wish, gain);
+        if (cut.triangle_count() + gain > view_.max_triangles) {
+          if (report_.complete) splits_.clear();  // nothing is less visible: this is it
+          return;
+        }
+      }
+    }
+    std::pop_heap(splits_.begin(), splits_.end(),
+                  [](const Wish& a, const Wish& b) { return a.excess < b.excess; });
+    splits_.pop_back();
+    if (cut.vertices()[wish.slot].split != wish.split) continue;
+    view_.consistent ? split_consistently(cut, wish.slot) : split(cut, wish.slot);
+  }
+}
+
+// Merges what is less visible than `wish`, least visible first, until there is room.
+void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t room) {
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  if (!counts_all_merges_) {
+    counts_all_merges_ = true;
+    merges_.clear();
+    for (const ActiveVertex& v : cut.vertices()) {
+      if (v.node == kNoNode || h.is_root(v.node)) continue;
+      evaluate_merge(cut, v, h.split_above(v.node));
+    }
+  }
+  // Rounding may find a vertex less visible than its child; to merge it would not help the child.
+  SplitId above = kNoSplit;
+  if (wanted.split != kNoSplit) {
+    const NodeId node = h.node_of_split[index_of(wanted.split)];
+    if (!h.is_root(node)) above = h.split_above(node);
+  }
+  while (!merges_.empty() && cut.triangle_count() + room > view_.max_triangles) {
+    const Wish wish = merges_.front();
+    const bool is_least =
+        static_cast<double>(wish.excess) * view_.hysteresis < static_cast<double>(wanted.excess);
+    if (!is_least || out_of_time()) return;
+    std::pop_heap(merges_.begin(), merges_.end(),
+                  [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
+    merges_.pop_back();
+    if (wish.split == above) continue;
+    if (cut.can_merge(wish.split) && !is_needed(cut, wish.split)) merge(cut, wish.split);
+  }
+}
+
+void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
+  const std::uint32_t other = cut.split(slot);
+  ++report_.splits;
+  due_.resize(cut.vertices().size());
+  evaluate(cut, slot);
+  if (other != kNoSlot) evaluate(cut, other);
+}
+
+void Refiner::merge(ActiveCut& cut, SplitId s) {
+  const ActiveCut::Children children = cut.children(s);
+  cut.merge(s);
+  ++report_.merges;
+  const std::uint32_t slot = children.first != kNoSlot ? children.first : children.second;
+  if (slot == kNoSlot) return;
+  evaluate(cut, slot);
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  const NodeId node = cut.vertices()[slot].node;
+  // Where v_u was the last to become whole, it is v_t that watches over their merge.
+  if (h.is_root(node) || !h.is_second(node)) return;
+  const ActiveCut::Children around = cut.children(h.split_above(node));
+  if (around.first != kNoSlot && around.first != slot) evaluate(cut, around.first);
+}
+
+// A third vertex of what s brings whose own error is larger.
+bool Refiner::needs_split(const ActiveCut& cut, SplitId s, std::uint32_t& third) const {
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  const float error = h.bounds[index_of(s)].surface.value();
+  const TriangleRange born = h.triangles_of(s);
+  for (std::uint32_t t = born.begin; t < born.end; ++t) {
+    for (const WedgeId wedge : h.triangles[t]) {
+      third = cut.slot_at(wedge);
+      const SplitId other = cut.vertices()[third].split;
+      if (other == kNoSplit || other == s) continue;
+      if (h.bounds[index_of(other)].surface.value() > error) return true;
+    }
+  }
+  return false;
+}
+
+void Refiner::split_consistently(ActiveCut& cut, std::uint32_t slot) {
+  pending_.assign(1, slot);
+  while (!pending_.empty()) {
+    std::uint32_t third = kNoSlot;
+    const std::uint32_t top = pending_.back();
+    const SplitId s = cut.vertices()[top].split;
+    CREASE_ASSERT(s != kNoSplit);
+    if (needs_split(cut, s, third)) {
+      pending_.push_back(third);
+    } else {
+      pending_.pop_back();
+      split(cut, top);
+    }
+  }
+}
+
+// Consistent mode: something that is split has a third vertex below s, and a smaller error than s.
+bool Refiner::is_needed(const ActiveCut& cut, SplitId s) const {
+  if (!view_.consistent) return false;
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  const float error = h.bounds[index_of(s)].surface.value();
+  const ActiveCut::Children children = cut.children(s);
+  for (const std::uint32_t slot : {children.first, children.second}) {
+    if (slot == kNoSlot) continue;
+    for (const CornerAt& at : cut.corners_of(slot)) {
+      const TriangleId t = cut.parts()[at.corner.part()].ids[at.corner.triangle()];
+      const SplitId by = cut.introducing_split(t);
+      if (by == kNoSplit || by == s) continue;
+      if (h.bounds[index_of(by)].surface.value() < error) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace crease
