@@ -5,9 +5,8 @@
 #include "cli/model.h"
 #include "cli/panels.h"
 #include "cli/text.h"
+#include "cli/view.h"
 
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 namespace crease::cli {
@@ -22,15 +21,6 @@ struct RenderArguments {
   bool wireframe = false;
   int columns = 0;
 };
-
-Result<Camera> read_camera(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return fail(Error::NotFound, path + ": no such camera file");
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  Result<Camera> camera = parse_camera(text);
-  if (!camera.ok()) return fail(camera.failure().error, path + ": " + camera.failure().message);
-  return camera;
-}
 
 Coloring coloring_of(const std::string& name) {
   if (name == "kind") return Coloring::Kind;

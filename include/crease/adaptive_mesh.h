@@ -44,8 +44,8 @@ struct ViewParameters {
   // Nor what faces away: for closed surfaces, since others show their back.
   bool coarse_backfaces = false;
   double silhouette_weight = 1;  // errors count so much more where the surface turns away. >= 1
-  // Before a vertex is split, so are the third vertices of the triangles that appear, if their error
-  // is larger; and it is merged after them. So neighbourhoods are those the simplifier saw.
+  // Before a vertex is split, so are the third vertices of the triangles that appear, if their
+  // error is larger; and it is merged after them. So neighbourhoods are those the simplifier saw.
   bool consistent = false;
 
   bool operator==(const ViewParameters&) const = default;
@@ -81,8 +81,8 @@ class AdaptiveMesh {
   // Per position of the draw list its surface or line error, whichever is larger: for pictures.
   std::vector<float> error_of_position() const;
 
-  // What is active as a mesh of its own, all attribute layers, materials and parts; triangles in the
-  // hierarchy's order. Time O(active).
+  // What is active as a mesh of its own, all attribute layers, materials and parts; triangles in
+  // the hierarchy's order. Time O(active).
   Mesh extract() const;
 
   const MeshHierarchy& hierarchy() const;

@@ -166,6 +166,29 @@ class Commands(tool.Case):
         self.assertEqual(level["triangles"], 4)
         self.assertLess(level["error_measured"]["surface_max"], 1e-12)
 
+    def camera(self, name, position, pixels=1):
+        return self.write(name, json.dumps({"position": position, "target": [0, 0, 0],
+                                            "viewport": [640, 480], "pixels": pixels}).encode())
+
+    def test_extract_for_a_view_is_fine_where_the_camera_looks(self):
+        def seen(camera, source):
+            return self.json("extract", source, "-o", self.path("seen.ply"), "--view", camera)
+
+        near = self.camera("near.json", [60, -60, 40])
+        made = seen(near, self.built())
+        self.has(made, "asked", "triangles", "vertices", "stopped_by", "error", "error_measured",
+                 "bytes_read", "blocks_read", "seconds")
+        self.assertEqual(made["asked"]["view"], str(near))
+        self.assertEqual(self.json("info", self.path("seen.ply"))["triangles"], made["triangles"])
+        self.assertEqual(seen(near, self.city())["triangles"], made["triangles"])
+        far = seen(self.camera("far.json", [6000, -6000, 4000]), self.city())
+        rough = seen(self.camera("rough.json", [60, -60, 40], pixels=20), self.city())
+        away = seen(self.camera("away.json", [0.001, 0, -500]), self.city())
+        self.assertLess(far["triangles"], made["triangles"])
+        self.assertLess(rough["triangles"], made["triangles"])
+        self.assertGreater(away["triangles"], 0)
+        self.assertLessEqual(made["triangles"], made["full_triangles"])
+
     def test_extract_writes_every_format_and_reads_any_mesh(self):
         for extension in ("obj", "ply", "stl", "glb"):
             out = self.path("level." + extension)

@@ -40,6 +40,7 @@ class Failures(tool.Case):
                           ["build", city, "-o", "x.crease", "--normals", "soft"],
                           ["extract", city, "-o", "x.ply", "--error", "1", "--samples", "0"],
                           ["extract", city, "-o", "x.glb", "--levels", "2", "--ratio", "0.5"],
+                          ["extract", city, "-o", "x.ply", "--view", "c.json", "--ratio", "0.5"],
                           ["render", city, "-o", "x.png", "--levels", "1,0,2"],
                           ["render", city, "-o", "x.png", "--size", "10"]):
             self.assertEqual(self.fails(1, *arguments)["name"], "CommandLine")
@@ -57,6 +58,8 @@ class Failures(tool.Case):
         self.assertEqual(self.fails(2, "info", text)["name"], "NotCrease")
         self.assertEqual(self.fails(2, "validate", self.city())["name"], "NotCrease")
         self.fails(2, "extract", text, "-o", self.path("x.ply"))
+        self.fails(2, "extract", self.city(), "-o", self.path("x.ply"), "--view",
+                   self.path("none.json"))
         view = self.write("cam.json", "{\"position\": 3}")
         self.assertIn("cam.json", self.fails(2, "render", self.city(), "-o", self.path("x.png"),
                                              "--view", view)["message"])
