@@ -18,7 +18,7 @@ Result<Camera> read_camera(const std::filesystem::path& path);
 
 struct ViewedModel {
   AdaptiveMesh mesh;
-  Mesh full;     // snapped
+  Mesh full;        // snapped
   FileInfo info{};  // of a .crease file; of a mesh file all zero
 };
 
