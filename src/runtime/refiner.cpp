@@ -79,7 +79,7 @@ bool Refiner::out_of_time() {
 }
 
 void Refiner::do_merges(ActiveCut& cut) {
-  while (!merges_.empty() && merges_.front().excess < merge_below_ && !out_of_time()) {
+  while (!merges_.empty() && merges_.front().excess <= merge_below_ && !out_of_time()) {
     const Wish wish = merges_.front();
     std::pop_heap(merges_.begin(), merges_.end(),
                   [](const Wish& a, const Wish& b) { return a.excess > b.excess; });

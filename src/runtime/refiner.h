@@ -1,10 +1,11 @@
 // Which splits and merges a view needs, in which order, within budgets.
 //
 // Each active vertex is evaluated once and then again only when the camera may have changed the
-// answer: evaluation also finds a leeway, by which the camera may move without changing it, and a
-// date on an odometer that turns so much for each length travelled and each radian turned. A frame
-// compares the dates of all active vertices (4 bytes each, in a row) with the odometer and
-// evaluates those that are due. Queues: splits by what is most visible, merges by what is least.
+// answer: evaluation also tells how far the camera may go until then (ViewError::Sight), which
+// gives two dates, one on an odometer of lengths travelled and one on an odometer that turns for
+// travels and turns together. A frame compares the dates of all active vertices (8 bytes each, in a
+// row) with the odometers and evaluates those that are due. Queues: splits by what is most visible,
+// merges by what is least.
 #pragma once
 
 #include "crease/adaptive_mesh.h"
@@ -21,7 +22,8 @@ class Refiner {
   UpdateReport update(ActiveCut& cut, const ViewParameters& view);
   UpdateReport set_error(ActiveCut& cut, float error);
   std::size_t bytes() const {
-    return 4 * due_.capacity() + sizeof(Wish) * (splits_.capacity() + merges_.capacity());
+    return sizeof(Dates) * due_.capacity() +
+           sizeof(Wish) * (splits_.capacity() + merges_.capacity());
   }
 
  private:
@@ -31,12 +33,17 @@ class Refiner {
     std::uint32_t slot;  // of its vertex, for splits
   };
 
+  // On the odometers. Now, if it has to be looked at again by any other camera.
+  struct Dates {
+    float travel = 0, swing = 0;
+  };
+
   void look_from(const ActiveCut& cut, const ViewParameters& view);
   void evaluate_due(const ActiveCut& cut);
   void evaluate(const ActiveCut& cut, std::uint32_t slot);
-  float evaluate_split(const ActiveCut& cut, const ActiveVertex& v, std::uint32_t slot);
-  float evaluate_merge(const ActiveCut& cut, const ActiveVertex& v, SplitId above);
-  float turn_for(float share, float distance) const;
+  Dates evaluate_split(const ActiveCut& cut, const ActiveVertex& v, std::uint32_t slot);
+  Dates evaluate_merge(const ActiveCut& cut, const ActiveVertex& v, SplitId above);
+  Dates dates_of(const ViewError::Sight& sight) const;
 
   bool out_of_time();
   void do_merges(ActiveCut& cut);
@@ -52,8 +59,9 @@ class Refiner {
   ViewError error_;
   bool has_view_ = false;
   float merge_below_ = 1;
-  double odometer_ = 0, radians_per_length_ = 1;
-  std::vector<float> due_;             // per slot, on the odometer
+  double travelled_ = 0, swung_ = 0;  // the odometers
+  double radians_per_length_ = 1;
+  std::vector<Dates> due_;             // per slot
   std::vector<Wish> splits_, merges_;  // heaps: most visible first, least visible first
   bool counts_all_merges_ = false;     // merges_ has every possible one (a triangle budget binds)
   std::vector<std::uint32_t> pending_;

@@ -11,8 +11,7 @@ namespace crease {
 
 namespace {
 
-// Shares of the distance to a vertex by which the camera may move; the largest that holds is taken.
-constexpr float kLeeways[] = {0.5f, 0.12f, 0.03f};
+constexpr float kNever = std::numeric_limits<float>::infinity();
 
 double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
@@ -41,11 +40,11 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
   if (has_view_ && moved == view) {
     const double travelled = length(view.camera.position - view_.camera.position);
     const double turned = turn_between(view.camera, view_.camera);
-    // Even a camera that comes back lets the queues be filled anew.
-    odometer_ += std::max(travelled, turned / radians_per_length_) + 1e-30;
+    travelled_ += travelled;
+    swung_ += std::max(travelled, turned / radians_per_length_);
   } else {
-    odometer_ = 0;
-    due_.assign(cut.vertices().size(), 0);
+    travelled_ = swung_ = 0;
+    due_.assign(cut.vertices().size(), {0, 0});
     double size = 0;
     for (const Vec3i& p : h.root_positions) {
       size = std::max(size, h.grid.step * length(Vec3d{double(p.x), double(p.y), double(p.z)}));
@@ -66,70 +65,71 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
 }
 
 void Refiner::evaluate_due(const ActiveCut& cut) {
-  const auto now = static_cast<float>(odometer_);
-  if (due_.size() < cut.vertices().size()) due_.resize(cut.vertices().size(), 0);
+  const auto travelled = static_cast<float>(travelled_), swung = static_cast<float>(swung_);
+  if (due_.size() < cut.vertices().size()) due_.resize(cut.vertices().size(), {0, 0});
   for (std::uint32_t slot = 0; slot < due_.size(); ++slot) {
-    if (due_[slot] <= now && cut.vertices()[slot].node != kNoNode) evaluate(cut, slot);
+    if (due_[slot].travel > travelled && due_[slot].swing > swung) continue;
+    if (cut.vertices()[slot].node == kNoNode) {
+      due_[slot] = {kNever, kNever};
+    } else {
+      evaluate(cut, slot);
+    }
   }
 }
 
 void Refiner::evaluate(const ActiveCut& cut, std::uint32_t slot) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const ActiveVertex& v = cut.vertices()[slot];
-  float turn = std::numeric_limits<float>::infinity();
-  if (v.split != kNoSplit) turn = evaluate_split(cut, v, slot);
-  if (!h.is_root(v.node)) turn = std::min(turn, evaluate_merge(cut, v, h.split_above(v.node)));
-  // Rounded down, so that it is not late.
-  due_[slot] = std::nextafter(static_cast<float>(odometer_ + static_cast<double>(turn)), 0.0f);
+  Dates due{kNever, kNever};
+  if (v.split != kNoSplit) due = evaluate_split(cut, v, slot);
+  if (!h.is_root(v.node)) {
+    const Dates merge = evaluate_merge(cut, v, h.split_above(v.node));
+    due = {std::min(due.travel, merge.travel), std::min(due.swing, merge.swing)};
+  }
+  due_[slot] = due;
 }
 
-// Each returns how far the odometer may turn before the answer can change.
-float Refiner::evaluate_split(const ActiveCut& cut, const ActiveVertex& v, std::uint32_t slot) {
+Refiner::Dates Refiner::evaluate_split(const ActiveCut& cut, const ActiveVertex& v,
+                                       std::uint32_t slot) {
   ++report_.evaluated;
   const SplitBounds& bounds = cut.hierarchy().vertices.bounds[index_of(v.split)];
-  const Vec3f position = error_.position(v.position);
-  const float excess = error_.of(bounds, position);
-  if (excess > 1) {
-    splits_.push_back({excess, v.split, slot});
+  const ViewError::Sight sight = error_.see(bounds, error_.position(v.position), 1);
+  if (sight.excess > 1) {
+    splits_.push_back({sight.excess, v.split, slot});
     std::push_heap(splits_.begin(), splits_.end(),
                    [](const Wish& a, const Wish& b) { return a.excess < b.excess; });
-    return 0;
+    return {0, 0};
   }
-  const float distance = error_.distance(position);
-  for (const float share : kLeeways) {
-    if (error_.of(bounds, position, share * distance) <= 1) return turn_for(share, distance);
-  }
-  return 0;
+  return dates_of(sight);
 }
 
-float Refiner::evaluate_merge(const ActiveCut& cut, const ActiveVertex& v, SplitId above) {
-  constexpr float kNever = std::numeric_limits<float>::infinity();
+Refiner::Dates Refiner::evaluate_merge(const ActiveCut& cut, const ActiveVertex& v, SplitId above) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
-  if (!cut.can_merge(above)) return kNever;  // it is looked at again when it can
-  if (h.is_second(v.node) && cut.children(above).first != kNoSlot) return kNever;  // v_t's matter
+  if (!cut.can_merge(above)) return {kNever, kNever};  // it is looked at again when it can
+  // Of two that can merge it is v_t that watches.
+  if (h.is_second(v.node) && cut.children(above).first != kNoSlot) return {kNever, kNever};
   ++report_.evaluated;
   const SplitBounds& bounds = h.bounds[index_of(above)];
   const Vec3f position = error_.position(grid_difference(v.position, h.delta_of(v.node)));
-  const float excess = error_.of(bounds, position);
-  if (excess < merge_below_ || counts_all_merges_) {
-    merges_.push_back({excess, above, kNoSlot});
+  const ViewError::Sight sight = error_.see(bounds, position, merge_below_);
+  if (sight.excess <= merge_below_ || counts_all_merges_) {
+    merges_.push_back({sight.excess, above, kNoSlot});
     std::push_heap(merges_.begin(), merges_.end(),
                    [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
-    return 0;
+    return {0, 0};
   }
-  const float distance = error_.distance(position);
-  for (const float share : kLeeways) {
-    if (error_.of(bounds, position, -share * distance) >= merge_below_) {
-      return turn_for(share, distance);
-    }
-  }
-  return 0;
+  return dates_of(sight);
 }
 
 // A camera that travels x and turns by a moves a point at that distance by x + a * distance at
 // most.
-float Refiner::turn_for(float share, float distance) const {
-  return share * distance / (1 + 1.01f * static_cast<float>(radians_per_length_) * distance);
+Refiner::Dates Refiner::dates_of(const ViewError::Sight& sight) const {
+  constexpr float kSafe = 0.999f;  // for rounding
+  const float per_swing = 1 + static_cast<float>(radians_per_length_) * sight.distance;
+  const auto date = [](double now, float more) {
+    return std::nextafter(static_cast<float>(now + static_cast<double>(more)), 0.0f);
+  };
+  return {date(travelled_, kSafe * sight.travel), date(swung_, kSafe * sight.swing / per_swing)};
 }
 
 }  // namespace crease

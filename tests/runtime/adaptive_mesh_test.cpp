@@ -26,7 +26,10 @@ ViewParameters random_view(const MeshHierarchy& h, std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto point = [&] { return Vec3d{unit(random), unit(random), unit(random)}; };
   ViewParameters view;
-  const double size = 2000 * h.vertices.grid.step;
+  double size = 2000 * h.vertices.grid.step;
+  for (const SplitBounds& bounds : h.vertices.bounds) {
+    size = std::max(size, double(bounds.radius.value()));
+  }
   view.camera.position = h.vertices.grid.origin + point() * (2 * size);
   view.camera.target = h.vertices.grid.origin + point() * (0.5 * size);
   view.camera.up = normalized(point());

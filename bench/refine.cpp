@@ -1,0 +1,200 @@
+// How fast an adaptive mesh follows a camera, and what it costs.
+//
+//   bench/refine --models lucy,city200k,kuka --frames 600
+//
+// Each model is flown over along a path with a fixed seed. On one thread, processor time: splits
+// plus merges per second of the whole update (evaluation, moves, draw arrays), and of the moves
+// alone; vertices evaluated per frame; what a still camera costs; bytes; triangles at 1 pixel beside
+// the coarsest uniform level that is as right everywhere in the view.
+#include "crease/adaptive_mesh.h"
+#include "crease/build_hierarchy.h"
+#include "crease/simplify.h"
+#include "models.h"
+
+#include <CLI/CLI.hpp>
+
+#include <ctime>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace crease::bench {
+namespace {
+
+double processor_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+struct Box {
+  Vec3d low, high;
+  Vec3d at(double x, double y, double z) const {
+    return {low.x + x * (high.x - low.x), low.y + y * (high.y - low.y), low.z + z * (high.z - low.z)};
+  }
+  double diagonal() const { return length(high - low); }
+};
+
+Box box_of(const Mesh& mesh) {
+  Box box{mesh.positions[0], mesh.positions[0]};
+  for (const Vec3d& p : mesh.positions) {
+    for (int i = 0; i < 3; ++i) {
+      box.low[i] = std::min(box.low[i], p[i]);
+      box.high[i] = std::max(box.high[i], p[i]);
+    }
+  }
+  return box;
+}
+
+// A city is flown over, low, along a curve that looks ahead; anything else is orbited, near and far.
+Camera camera_at(const Box& box, bool is_city, double share) {
+  const double a = 2 * kPi * share;
+  Camera camera;
+  camera.pixels = 1;
+  if (is_city) {
+    const auto point = [&](double t) {
+      return box.at(0.5 + 0.35 * std::sin(t), 0.5 + 0.35 * std::sin(2 * t), 0) +
+             Vec3d{0, 0, 0.04 * box.diagonal()};
+    };
+    camera.position = point(a);
+    camera.target = point(a + 0.3) - Vec3d{0, 0, 0.02 * box.diagonal()};
+  } else {
+    const Vec3d middle = box.at(0.5, 0.5, 0.5);
+    const double distance = box.diagonal() * (0.6 + 0.3 * std::cos(3 * a));
+    camera.position = middle + Vec3d{std::cos(a), std::sin(a), 0.5 * std::sin(2 * a)} * distance;
+    camera.target = middle;
+  }
+  return camera;
+}
+
+struct Flight {
+  std::size_t moves = 0, evaluated = 0, triangles = 0, frames = 0, most_moves = 0;
+  double seconds = 0, worst_frame = 0;
+};
+
+Flight fly(AdaptiveMesh& mesh, const ViewParameters& start, const Box& box, bool is_city,
+           int frames, double length_of_path) {
+  Flight flight;
+  for (int f = 0; f < frames; ++f) {
+    ViewParameters view = start;
+    view.camera = camera_at(box, is_city, length_of_path * f / frames);
+    const double before = processor_seconds();
+    const UpdateReport report = mesh.update(view);
+    const double seconds = processor_seconds() - before;
+    if (f == 0) continue;  // from the coarsest cut
+    flight.seconds += seconds;
+    flight.worst_frame = std::max(flight.worst_frame, seconds);
+    flight.moves += report.splits + report.merges;
+    flight.most_moves = std::max(flight.most_moves, report.splits + report.merges);
+    flight.evaluated += report.evaluated;
+    flight.triangles += mesh.triangle_count();
+    ++flight.frames;
+  }
+  return flight;
+}
+
+// The coarsest level that has the same error everywhere and is as right in this view: its error is
+// what is allowed where the view is finest.
+std::size_t uniform_triangles(const std::shared_ptr<const MeshHierarchy>& hierarchy,
+                              const ViewParameters& view, const DrawList& list) {
+  const double half = std::tan(radians(view.camera.vertical_fov_deg) / 2);
+  const Vec3d forward = normalized(view.camera.target - view.camera.position);
+  double nearest = 1e300;
+  for (const DrawPart* part : {&list.sn, &list.fn, &list.nsn}) {
+    for (const std::uint32_t slot : part->indices) {
+      const Vec3f& p = list.positions[slot];
+      const Vec3d to = Vec3d{p.x, p.y, p.z} + list.origin - view.camera.position;
+      const double along = dot(to, forward);
+      const double aside = length(to - forward * along);
+      if (along > 0 && aside < half * along) nearest = std::min(nearest, length(to));
+    }
+  }
+  AdaptiveMesh uniform(hierarchy);
+  uniform.set_error(
+      static_cast<float>(view.camera.pixels * 2 * half * nearest / view.camera.height_px));
+  return uniform.triangle_count();
+}
+
+bool measure(const ModelEntry& entry, int frames, double pixels) {
+  Result<Model> model = load_model(entry, data_folder());
+  if (!model.ok()) {
+    std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), model.failure().message.c_str());
+    return false;
+  }
+  const Box box = box_of(model->mesh);
+  const std::size_t vertices = model->mesh.vertex_count(), triangles = model->mesh.triangle_count();
+  const Result<ContractionSequence> sequence = simplify(model->mesh, model->grid, {});
+  if (!sequence.ok()) return false;
+  Result<MeshHierarchy> built = build_hierarchy(model->mesh, *sequence, {});
+  if (!built.ok()) return false;
+  *model = {};
+  const auto hierarchy = std::make_shared<const MeshHierarchy>(*std::move(built));
+  const bool is_city = entry.kind == "city";
+  ViewParameters view;
+  view.camera.pixels = pixels;
+
+  AdaptiveMesh mesh(hierarchy);
+  const Flight flight = fly(mesh, view, box, is_city, frames, 1);
+  const double moves = double(std::max<std::size_t>(1, flight.moves));
+  view.camera = camera_at(box, is_city, double(frames - 1) / frames);
+  mesh.update(view);
+  const double before = processor_seconds();
+  std::size_t evaluated = 0;
+  for (int i = 0; i < 1000; ++i) evaluated += mesh.update(view).evaluated;
+  const double still = (processor_seconds() - before) / 1000;
+  const std::size_t uniform = uniform_triangles(hierarchy, view, mesh.draw_list());
+
+  std::printf(
+      "%-12s %8zu tris  hierarchy %5.1f bytes/vertex  active %6.1f bytes/active vertex\n"
+      "  flight: %7.0f active tris  %7.1f moves/frame (most %zu)  %7.1f evaluated/frame  "
+      "%.2f M moves/s  %.0f ns/move  frame %.3f ms (worst %.3f)\n"
+      "  still:  %.2f us/frame, %zu evaluated\n"
+      "  last view: %zu triangles, uniform level of the same error %zu (%.1f times)\n",
+      entry.name.c_str(), triangles, double(hierarchy_bytes(*hierarchy).total()) / double(vertices),
+      double(mesh.active_bytes()) / double(mesh.vertex_count()),
+      double(flight.triangles) / double(flight.frames), double(flight.moves) / double(flight.frames),
+      flight.most_moves, double(flight.evaluated) / double(flight.frames),
+      moves / flight.seconds / 1e6, flight.seconds / moves * 1e9,
+      flight.seconds / double(flight.frames) * 1e3, flight.worst_frame * 1e3, still * 1e6,
+      evaluated, mesh.triangle_count(), uniform, double(uniform) / double(mesh.triangle_count()));
+  std::fflush(stdout);
+  return true;
+}
+
+int run(int argc, char** argv) {
+  std::vector<std::string> models{"lucy", "city200k", "kuka"};
+  std::filesystem::path list = std::filesystem::path(CREASE_BENCH_SOURCE) / "models.txt";
+  int frames = 600;
+  double pixels = 1;
+  CLI::App app("Flights over adaptive meshes");
+  app.add_option("--models", models, "names of models.txt, or generate:N")->delimiter(',');
+  app.add_option("--list", list, "instead of models.txt");
+  app.add_option("--frames", frames, "of a flight");
+  app.add_option("--pixels", pixels, "error allowed on the screen");
+  CLI11_PARSE(app, argc, argv);
+  Result<std::vector<ModelEntry>> entries = read_models(list);
+  if (!entries.ok()) {
+    std::fprintf(stderr, "%s\n", entries.failure().message.c_str());
+    return 2;
+  }
+  bool good = true;
+  for (const std::string& name : models) {
+    if (name.starts_with("generate:")) {
+      good = measure({name, "city", "keep", name}, frames, pixels) && good;
+    }
+    for (const ModelEntry& entry : *entries) {
+      if (entry.name == name) good = measure(entry, frames, pixels) && good;
+    }
+  }
+  return good ? 0 : 2;
+}
+
+}  // namespace
+}  // namespace crease::bench
+
+int main(int argc, char** argv) {
+  return crease::bench::run(argc, argv);
+}
