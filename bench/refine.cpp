@@ -4,8 +4,8 @@
 //
 // Each model is flown over along a path with a fixed seed. On one thread, processor time: splits
 // plus merges per second of the whole update (evaluation, moves, draw arrays), and of the moves
-// alone; vertices evaluated per frame; what a still camera costs; bytes; triangles at 1 pixel beside
-// the coarsest uniform level that is as right everywhere in the view.
+// alone; vertices evaluated per frame; what a still camera costs; bytes; triangles at 1 pixel
+// beside the coarsest uniform level that is as right everywhere in the view.
 #include "crease/adaptive_mesh.h"
 #include "crease/build_hierarchy.h"
 #include "crease/simplify.h"
@@ -33,7 +33,8 @@ double processor_seconds() {
 struct Box {
   Vec3d low, high;
   Vec3d at(double x, double y, double z) const {
-    return {low.x + x * (high.x - low.x), low.y + y * (high.y - low.y), low.z + z * (high.z - low.z)};
+    return {low.x + x * (high.x - low.x), low.y + y * (high.y - low.y),
+            low.z + z * (high.z - low.z)};
   }
   double diagonal() const { return length(high - low); }
 };
@@ -49,7 +50,8 @@ Box box_of(const Mesh& mesh) {
   return box;
 }
 
-// A city is flown over, low, along a curve that looks ahead; anything else is orbited, near and far.
+// A city is flown over, low, along a curve that looks ahead; anything else is orbited, near and
+// far.
 Camera camera_at(const Box& box, bool is_city, double share) {
   const double a = 2 * kPi * share;
   Camera camera;
@@ -155,11 +157,12 @@ bool measure(const ModelEntry& entry, int frames, double pixels) {
       "  last view: %zu triangles, uniform level of the same error %zu (%.1f times)\n",
       entry.name.c_str(), triangles, double(hierarchy_bytes(*hierarchy).total()) / double(vertices),
       double(mesh.active_bytes()) / double(mesh.vertex_count()),
-      double(flight.triangles) / double(flight.frames), double(flight.moves) / double(flight.frames),
-      flight.most_moves, double(flight.evaluated) / double(flight.frames),
-      moves / flight.seconds / 1e6, flight.seconds / moves * 1e9,
-      flight.seconds / double(flight.frames) * 1e3, flight.worst_frame * 1e3, still * 1e6,
-      evaluated, mesh.triangle_count(), uniform, double(uniform) / double(mesh.triangle_count()));
+      double(flight.triangles) / double(flight.frames),
+      double(flight.moves) / double(flight.frames), flight.most_moves,
+      double(flight.evaluated) / double(flight.frames), moves / flight.seconds / 1e6,
+      flight.seconds / moves * 1e9, flight.seconds / double(flight.frames) * 1e3,
+      flight.worst_frame * 1e3, still * 1e6, evaluated, mesh.triangle_count(), uniform,
+      double(uniform) / double(mesh.triangle_count()));
   std::fflush(stdout);
   return true;
 }
