@@ -59,6 +59,11 @@ struct HeaderReader {
     if (element.name.empty() || !line.integer(count) || count < 0) {
       return refuse(Error::BadFormat, "element without a name and a count");
     }
+    for (const PlyElement& before : header.elements) {
+      if (before.name == element.name) {
+        return refuse(Error::BadFormat, "a second element " + in_quotes(element.name));
+      }
+    }
     element.count = static_cast<std::size_t>(count);
     header.elements.push_back(std::move(element));
     return true;

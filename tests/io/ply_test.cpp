@@ -211,6 +211,14 @@ TEST_CASE("every refusal names the place and the reason") {
         "a.ply:13: face 0 of 1: not a number: 'x'");
 }
 
+TEST_CASE("an element that the header names twice is refused") {
+  const std::string twice =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float heat\nelement vertex 0\nproperty float x\n"
+      "property float y\nproperty float z\nproperty float heat\nend_header\n0 0 0 1\n";
+  CHECK(refusal_of(twice, "a.ply") == "a.ply:8: a second element 'vertex'");
+}
+
 TEST_CASE("counts beyond the file's size take no memory") {
   for (const char* count : {"4294967295", "9223372036854775807", "1000000000000"}) {
     const std::string huge =
