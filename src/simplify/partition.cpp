@@ -3,6 +3,7 @@
 #include "parallel/parallel.h"
 
 #include <algorithm>
+#include <array>
 
 namespace crease::simplification {
 
@@ -16,52 +17,104 @@ struct Centroid {
 // Where a cell is cut, by band: never the same place twice in a row.
 constexpr double kCut[] = {0.5, 0.38, 0.62, 0.44, 0.56};
 
+// Cuts cells of centroids in two until they are small enough. A cell's centroids stay in the order
+// of their triangles.
 class Divider {
  public:
-  Divider(std::uint32_t patch_triangles, int band)
-      : patch_triangles_(patch_triangles), cut_(kCut[band % 5]) {}
+  Divider(std::uint32_t patch_triangles, int band, std::size_t n)
+      : patch_triangles_(patch_triangles), cut_(kCut[band % 5]), scratch_(n), is_first_(n, 0) {}
 
-  // Leaves are marked in `is_first`; every mark is its own byte, so threads do not meet.
-  void divide(Centroid* begin, Centroid* end, std::vector<char>& is_first, std::size_t offset) {
-    const std::size_t n = static_cast<std::size_t>(end - begin);
+  // `offset`: of the cell in the whole.
+  void divide(std::span<Centroid> cell, std::size_t offset) {
+    const std::size_t n = cell.size();
     if (n <= patch_triangles_) {
-      is_first[offset] = 1;
-      std::sort(begin, end,
-                [](const Centroid& a, const Centroid& b) { return a.triangle < b.triangle; });
+      is_first_[offset] = 1;
       return;
     }
-    const int axis = longest_axis(begin, end);
+    const Axis axis = longest_axis(cell);
     // Near the leaves an uneven cut only makes patches smaller than they need to be.
     const double share = n > 4 * patch_triangles_ ? cut_ : 0.5;
     const std::size_t left = static_cast<std::size_t>(share * static_cast<double>(n));
-    std::nth_element(begin, begin + left, end, [axis](const Centroid& a, const Centroid& b) {
-      return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis] : a.triangle < b.triangle;
-    });
-    parallel_both([&] { divide(begin, begin + left, is_first, offset); },
-                  [&] { divide(begin + left, end, is_first, offset + left); });
+    separate(cell, axis, left, offset);
+    parallel_both([&] { divide(cell.first(left), offset); },
+                  [&] { divide(cell.subspan(left), offset + left); });
   }
 
+  // Whether a patch begins at this centroid; every mark is its own byte, so threads do not meet.
+  const std::vector<char>& is_first() const { return is_first_; }
+
  private:
-  static int longest_axis(const Centroid* begin, const Centroid* end) {
-    std::int64_t best = -1;
-    int axis = 0;
-    for (int i = 0; i < 3; ++i) {
-      std::int32_t low = begin->sum[i], high = low;
-      for (const Centroid* c = begin; c != end; ++c) {
-        low = std::min(low, c->sum[i]);
-        high = std::max(high, c->sum[i]);
-      }
-      const std::int64_t extent = std::int64_t(high) - low;
-      if (extent > best) {
-        best = extent;
-        axis = i;
+  struct Axis {
+    int index = 0;
+    std::int32_t low = 0, high = 0;
+  };
+
+  static Axis longest_axis(std::span<const Centroid> cell) {
+    std::int32_t low[3], high[3];
+    for (int i = 0; i < 3; ++i) low[i] = high[i] = cell[0].sum[i];
+    for (const Centroid& c : cell) {
+      for (int i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], c.sum[i]);
+        high[i] = std::max(high[i], c.sum[i]);
       }
     }
-    return axis;
+    Axis longest;
+    std::int64_t best = -1;
+    for (int i = 0; i < 3; ++i) {
+      const std::int64_t extent = std::int64_t(high[i]) - low[i];
+      if (extent <= best) continue;
+      best = extent;
+      longest = {i, low[i], high[i]};
+    }
+    return longest;
+  }
+
+  // Puts the `left` centroids that are lowest on the axis first, both sides in their old order. A
+  // histogram finds the bucket with the border in it, only that bucket is looked at closely.
+  void separate(std::span<Centroid> cell, const Axis& axis, std::size_t left, std::size_t offset) {
+    constexpr std::size_t kBuckets = 1024;
+    std::array<std::uint32_t, kBuckets> count{};
+    const double extent = double(axis.high) - double(axis.low);
+    const double scale = extent > 0 ? (kBuckets - 0.5) / extent : 0;
+    const auto bucket_of = [&](std::int32_t x) {
+      return static_cast<std::size_t>((double(x) - double(axis.low)) * scale);
+    };
+    for (const Centroid& c : cell) ++count[bucket_of(c.sum[axis.index])];
+    std::size_t border_bucket = 0, below = 0;
+    while (below + count[border_bucket] <= left) below += count[border_bucket++];
+
+    std::vector<std::int32_t> close;
+    close.reserve(count[border_bucket]);
+    for (const Centroid& c : cell) {
+      if (bucket_of(c.sum[axis.index]) == border_bucket) close.push_back(c.sum[axis.index]);
+    }
+    const std::size_t rank = left - below;
+    const auto at_rank = close.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(close.begin(), at_rank, close.end());
+    const std::int32_t border = *at_rank;
+    // So many of those that lie on the border go left.
+    std::size_t on_border_left =
+        rank - static_cast<std::size_t>(std::count_if(close.begin(), at_rank,
+                                                      [&](std::int32_t x) { return x < border; }));
+
+    Centroid* to_left = cell.data();
+    Centroid* to_right = &scratch_[offset];
+    for (const Centroid& c : cell) {
+      const std::int32_t x = c.sum[axis.index];
+      const bool goes_left = x < border || (x == border && on_border_left > 0);
+      on_border_left -= goes_left && x == border;
+      Centroid* to = goes_left ? to_left : to_right;
+      *to = c;
+      to_left += goes_left;
+      to_right += !goes_left;
+    }
+    std::copy(&scratch_[offset], to_right, to_left);
   }
 
   std::size_t patch_triangles_;
   double cut_;
+  std::vector<Centroid> scratch_;
+  std::vector<char> is_first_;
 };
 
 }  // namespace
@@ -92,11 +145,11 @@ Patches partition_triangles(std::span<const Vec3i> positions,
     }
   });
 
-  std::vector<char> is_first(n, 0);
-  Divider(patch_triangles, band).divide(centroids.data(), centroids.data() + n, is_first, 0);
+  Divider divider(patch_triangles, band, n);
+  divider.divide(centroids, 0);
   for (std::size_t i = 0; i < n; ++i) {
     patches.triangles[i] = centroids[i].triangle;
-    if (is_first[i]) patches.first.push_back(static_cast<std::uint32_t>(i));
+    if (divider.is_first()[i]) patches.first.push_back(static_cast<std::uint32_t>(i));
   }
   patches.first.push_back(static_cast<std::uint32_t>(n));
   return patches;
