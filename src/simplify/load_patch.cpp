@@ -193,7 +193,7 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
   facing_.assign(global_triangle_.size(), Facing{});
   for (Index t = 0; t < global_triangle_.size(); ++t) {
     const Index* v = &vertex_of_corner_[3 * t];
-    const Vec3d& p0 = positions_[v[0]];
+    const Vec3d p0 = positions_[v[0]];
     const Vec3d e1 = positions_[v[1]] - p0, e2 = positions_[v[2]] - p0;
     const Vec3d twice = cross(e1, e2);
     const double twice_area = length(twice);
@@ -207,36 +207,48 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
     plane.weight = area;
     for (int c = 0; c < 3; ++c) surface_[v[c]].add(plane);
 
+    // The second and the third corner's barycentric coordinates, as linear functions.
     const double longest = std::max({dot(e1, e1), dot(e2, e2), dot(e2 - e1, e2 - e1)});
-    const bool thin = twice_area < kThin * longest;
-    const double inverse = 1 / (twice_area * twice_area);
-    const Vec3d toward1 = cross(e2, twice) * inverse, toward2 = cross(twice, e1) * inverse;
+    Row second{0, 0, 0, 1.0 / 3}, third = second;
+    if (twice_area >= kThin * longest) {
+      const double inverse = 1 / (twice_area * twice_area);
+      const Vec3d toward1 = cross(e2, twice) * inverse, toward2 = cross(twice, e1) * inverse;
+      second = Row{toward1.x, toward1.y, toward1.z, -dot(toward1, p0)};
+      third = Row{toward2.x, toward2.y, toward2.z, -dot(toward2, p0)};
+    }
     for (std::size_t l = 0; l < layer_count(); ++l) {
-      const WorkLayer& layer = work_->layers[l];
       const Index* w = &wedge_of_corner_[l][3 * t];
-      std::vector<Wedge>& wedges = wedges_[l];
+      Wedge* wedges = wedges_[l].data();
       for (int c = 0; c < 3; ++c) wedges[w[c]].area += area;
+      const WorkLayer& layer = work_->layers[l];
       if (!layer.steers) continue;
-      std::vector<AttributeQuadric>& quadrics = attribute_quadrics_[l];
-      if (wedges[w[0]].id == wedges[w[1]].id && wedges[w[1]].id == wedges[w[2]].id) {
-        for (int c = 0; c < 3; ++c) {
-          const Wedge& wedge = wedges[w[c]];
-          if (wedge.quadric == kNone) continue;
-          quadrics[wedge.quadric].add_constant(wedge.value, area, layer.dimension);
+      AttributeQuadric* quadrics = attribute_quadrics_[l].data();
+      const Wedge &w0 = wedges[w[0]], &w1 = wedges[w[1]], &w2 = wedges[w[2]];
+      if (w0.id == w1.id && w1.id == w2.id) {
+        for (const Wedge* wedge : {&w0, &w1, &w2}) {
+          if (wedge->quadric == kNone) continue;
+          quadrics[wedge->quadric].add_constant(wedge->value, area, layer.dimension);
         }
         continue;
       }
-      AttributeQuadric quadric;
-      quadric.own.weight = area;
+      AttributeQuadric* sums[] = {&quadrics[w0.quadric], &quadrics[w1.quadric],
+                                  &quadrics[w2.quadric]};
+      Row own[3] = {};
+      double c = 0;
       for (int j = 0; j < layer.dimension; ++j) {
-        const double s0 = double(wedges[w[0]].value[j]);
-        const double d1 = double(wedges[w[1]].value[j]) - s0;
-        const double d2 = double(wedges[w[2]].value[j]) - s0;
-        const Vec3d gradient = thin ? Vec3d{} : toward1 * d1 + toward2 * d2;
-        const double offset = thin ? s0 + (d1 + d2) / 3 : s0 - dot(gradient, p0);
-        quadric.add_linear(j, gradient, offset, area);
+        const double value = double(w0.value[j]);
+        const Row f = second * (double(w1.value[j]) - value) +
+                      third * (double(w2.value[j]) - value) + Row{0, 0, 0, value};
+        const Row g = f * area;
+        for (int i = 0; i < 3; ++i) own[i] += f[i] * g;
+        c += f[3] * g[3];
+        for (AttributeQuadric* sum : sums) sum->linear[j] += g;
       }
-      for (int c = 0; c < 3; ++c) quadrics[wedges[w[c]].quadric].add(quadric, layer.dimension);
+      for (AttributeQuadric* sum : sums) {
+        for (int i = 0; i < 3; ++i) sum->own.row[i] += own[i];
+        sum->own.c += c;
+        sum->own.weight += area;
+      }
     }
   }
 }

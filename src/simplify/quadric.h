@@ -114,12 +114,6 @@ struct AttributeQuadric {
     for (int j = 0; j < dimension; ++j) linear[j] += o.linear[j];
   }
 
-  void add_linear(int j, const Vec3d& gradient, double offset, double w) {
-    const Row f{gradient.x, gradient.y, gradient.z, offset};
-    own.add_square(f, w);
-    linear[j] += w * f;
-  }
-
   // Triangles on which the attribute is `value` everywhere.
   void add_constant(const float* value, double area, int dimension) {
     own.weight += area;

@@ -31,13 +31,18 @@ TEST_CASE("on a plane the minimum stays where it was looked for") {
   CHECK(best.z == doctest::Approx(3).epsilon(1e-3));
 }
 
+// Of triangles with this weight on which the attribute is the linear function f.
+AttributeQuadric of_linear(const Row& f, double weight) {
+  AttributeQuadric quadric;
+  quadric.own.weight = weight;
+  quadric.own.add_square(f, weight);
+  quadric.linear[0] = weight * f;
+  return quadric;
+}
+
 TEST_CASE("the best value of a joined wedge is the least squares one") {
   // Two triangles whose attribute is x on the one and 2 - y on the other.
-  AttributeQuadric a, b;
-  a.own.weight = 1;
-  a.add_linear(0, {1, 0, 0}, 0, 1);
-  b.own.weight = 3;
-  b.add_linear(0, {0, -1, 0}, 2, 3);
+  const AttributeQuadric a = of_linear(Row{1, 0, 0, 0}, 1), b = of_linear(Row{0, -1, 0, 2}, 3);
   const Vec3d x{0.5, 0.25, 9};
   AttributeQuadric both = a;
   both.add(b, 1);
