@@ -2,7 +2,10 @@
 #include "simplify/patch_simplifier.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace crease::simplification {
 
@@ -27,6 +30,26 @@ float raised(float base, double own) {
   return static_cast<float>(double(base) + own);
 }
 
+// Stable. Costs are not negative, so their bits are in their order; eleven bits at a time.
+template <class Ordered>
+void sort_by_cost(std::vector<Ordered>& entries, std::vector<Ordered>& scratch) {
+  constexpr std::uint32_t kBits = 11, kDigits = 1u << kBits;
+  std::array<std::array<std::uint32_t, kDigits>, 3> first{};
+  const auto digit_of = [](const Ordered& e, std::uint32_t i) {
+    return (std::bit_cast<std::uint32_t>(e.cost) >> (i * kBits)) % kDigits;
+  };
+  for (const Ordered& e : entries) {
+    for (std::uint32_t i = 0; i < 3; ++i) ++first[i][digit_of(e, i)];
+  }
+  scratch.resize(entries.size());
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    std::uint32_t next = 0;
+    for (std::uint32_t& f : first[i]) next += std::exchange(f, next);
+    for (const Ordered& e : entries) scratch[first[i][digit_of(e, i)]++] = e;
+    entries.swap(scratch);
+  }
+}
+
 LevelError worst(const LevelError& a, const LevelError& b) {
   return {std::max(a.surface, b.surface), std::max(a.line, b.line), std::max(a.degrees, b.degrees),
           std::max(a.texture, b.texture)};
@@ -47,16 +70,16 @@ void PatchSimplifier::push(const Entry& entry) {
 }
 
 bool PatchSimplifier::pop(Entry& entry) {
-  const bool from_heap =
-      !heap_.empty() && (next_in_order_ == order_.size() || order_[next_in_order_] < heap_.front());
-  if (from_heap) {
-    entry = heap_.front();
-    std::pop_heap(heap_.begin(), heap_.end());
-    heap_.pop_back();
+  const bool ordered = next_in_order_ != order_.size();
+  if (heap_.empty() && !ordered) return false;
+  if (heap_.empty() || (ordered && order_[next_in_order_].cost <= heap_.front().cost)) {
+    const Ordered& next = order_[next_in_order_++];
+    entry = {next.cost, next.pair, kNone, 0};
     return true;
   }
-  if (next_in_order_ == order_.size()) return false;
-  entry = order_[next_in_order_++];
+  entry = heap_.front();
+  std::pop_heap(heap_.begin(), heap_.end());
+  heap_.pop_back();
   return true;
 }
 
@@ -77,16 +100,16 @@ PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
 void PatchSimplifier::hold(const Entry& entry, double cost, double cost_with_ring) {
   if (blamed_ == kNone || entry.tries >= kTries) {
     if (cost_with_ring <= steering_.cost_limit) {
-      push({static_cast<float>(cost_with_ring), entry.a, entry.b, kNone, entry.tries});
+      push({static_cast<float>(cost_with_ring), entry.pair, kNone, entry.tries});
     }
     return;
   }
   const Index id = static_cast<Index>(held_.size());
-  held_.push_back({entry.a, entry.b, held_of_triangle_[blamed_], static_cast<float>(cost),
-                   entry.tries + 1, true});
+  held_.push_back(
+      {entry.pair, held_of_triangle_[blamed_], static_cast<float>(cost), entry.tries + 1, true});
   held_of_triangle_[blamed_] = id;
   if (!(cost_with_ring <= steering_.cost_limit)) return;
-  push({static_cast<float>(cost_with_ring), entry.a, entry.b, id, entry.tries + 1});
+  push({static_cast<float>(cost_with_ring), entry.pair, id, entry.tries + 1});
 }
 
 void PatchSimplifier::release(Index triangle) {
@@ -95,36 +118,65 @@ void PatchSimplifier::release(Index triangle) {
   for (; i != kNone; i = held_[i].next) {
     if (!held_[i].waiting) continue;
     held_[i].waiting = false;
-    push({held_[i].cost, held_[i].a, held_[i].b, kNone, held_[i].tries});
+    push({held_[i].cost, held_[i].pair, kNone, held_[i].tries});
   }
+}
+
+void PatchSimplifier::order_pairs() {
+  order_.clear();
+  next_in_order_ = 0;
+  for (Index i = 0; i < pairs_.size(); ++i) {
+    const double cost = place(pairs_[i].first, pairs_[i].second).cost;
+    if (!(cost <= steering_.cost_limit)) continue;
+    order_.push_back({static_cast<float>(cost), i});
+  }
+  sort_by_cost(order_, order_scratch_);
+}
+
+// Whether the pair is the first with these ends. One that is dropped keeps its old ones, of which
+// one is gone, so that it is not taken for the owner.
+bool PatchSimplifier::claim(Index pair, Index a, Index b) {
+  if (2 * owner_count_ >= owners_.size()) {
+    const std::vector<Index> old = std::move(owners_);
+    owners_.assign(2 * old.size(), kNone);
+    owner_count_ = 0;
+    for (Index owner : old) {
+      if (owner == kNone) continue;
+      const auto [x, y] = pairs_[owner];
+      if (vertices_[x].alive && vertices_[y].alive) claim(owner, x, y);
+    }
+  }
+  const std::size_t mask = owners_.size() - 1;
+  std::size_t slot = (a * 0x9e3779b1u ^ b * 0x85ebca77u) & mask;
+  for (; owners_[slot] != kNone; slot = (slot + 1) & mask) {
+    if (pairs_[owners_[slot]] == std::pair(a, b)) return owners_[slot] == pair;
+  }
+  owners_[slot] = pair;
+  ++owner_count_;
+  pairs_[pair] = {a, b};
+  return true;
 }
 
 PatchResult PatchSimplifier::run() {
   result_.new_values.resize(layer_count());
   held_of_triangle_.assign(global_triangle_.size(), kNone);
-  order_.clear();
-  next_in_order_ = 0;
-  for (const auto& [a, b] : pairs_) {
-    const double cost = place(a, b).cost;
-    if (!(cost <= steering_.cost_limit)) continue;
-    order_.push_back({static_cast<float>(cost), a, b, kNone, 0});
-  }
-  std::sort(order_.begin(), order_.end(), [](const Entry& x, const Entry& y) { return y < x; });
-
+  order_pairs();
+  owners_.assign(std::bit_ceil(2 * pairs_.size() + 64), kNone);
+  owner_count_ = 0;
   for (Entry entry; pop(entry);) {
     if (entry.held != kNone) {
       if (!held_[entry.held].waiting) continue;
       held_[entry.held].waiting = false;
     }
-    entry.a = survivor(entry.a);
-    entry.b = survivor(entry.b);
-    if (entry.a == entry.b) continue;
-    if (entry.a > entry.b) std::swap(entry.a, entry.b);
+    Index a = survivor(pairs_[entry.pair].first), b = survivor(pairs_[entry.pair].second);
+    if (a == b) continue;
+    if (a > b) std::swap(a, b);
+    if (!claim(entry.pair, a, b)) continue;
     entry.held = kNone;
     const float next = next_cost();
 
     Quadric cost_if_kept[2];
-    Placed placed = place(entry.a, entry.b, cost_if_kept);
+    Placed placed = place(a, b, cost_if_kept);
     const double cost = placed.cost;
     if (!(cost <= steering_.cost_limit)) continue;
     if (static_cast<float>(cost) > entry.cost && static_cast<float>(cost) > next) {
@@ -134,13 +186,13 @@ PatchResult PatchSimplifier::run() {
     }
     const double bound =
         std::min(steering_.cost_limit, kDear * double(std::max(next, static_cast<float>(cost))));
-    placed = make_legal(entry.a, entry.b, placed, bound, cost_if_kept);
+    placed = make_legal(a, b, placed, bound, cost_if_kept);
     if (!(placed.cost <= steering_.cost_limit) ||
         (static_cast<float>(placed.cost) > entry.cost && static_cast<float>(placed.cost) > next)) {
       hold(entry, cost, placed.cost);
       continue;
     }
-    contract(entry.a, entry.b, placed.position, placed.cost);
+    contract(a, b, placed.position, placed.cost);
   }
   write_back();
   result_.triangles_left = live_triangles_;

@@ -82,17 +82,22 @@ class PatchSimplifier {
   // is looked at again when it comes to the top, and not before.
   struct Entry {
     float cost;
-    Index a, b;
+    Index pair;                             // in pairs_
     Index held;                             // in held_, or kNone
     Index tries;                            // so often it was held
     bool operator<(const Entry& o) const {  // std heaps put the largest first
-      return cost != o.cost ? cost > o.cost : a != o.a ? a > o.a : b > o.b;
+      return cost != o.cost ? cost > o.cost : pair > o.pair;
     }
   };
   // Of a triangle, as it is.
   struct Facing {
     Vec3d normal;  // of unit length, or zero without area
     double area = 0;
+  };
+  // Of a pair at the start: its cost, then its place in pairs_.
+  struct Ordered {
+    float cost;
+    Index pair;
   };
   // One result wedge of a contraction: which wedges of a layer become one.
   struct Joined {
@@ -157,10 +162,12 @@ class PatchSimplifier {
   void combine_quadrics(std::size_t layer, std::span<const Index> members, Wedge& result);
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
                      const Vec3d& target, Wedge& result);
+  void order_pairs();
   void push(const Entry& entry);
   bool pop(Entry& entry);
   float next_cost() const;
   Index survivor(Index v);
+  bool claim(Index pair, Index a, Index b);
   void hold(const Entry& entry, double cost, double cost_with_ring);
   void release(Index triangle);
 
@@ -227,8 +234,13 @@ class PatchSimplifier {
   std::vector<Index> category_around_;  // by vertex; kNone: several
   std::vector<std::pair<Index, double>> changed_area_;
 
-  std::vector<std::pair<Index, Index>> pairs_;  // edges, then virtual pairs
-  std::vector<Entry> order_;                    // the pairs of the start, cheapest first
+  // Edges, then virtual pairs. Contractions make pairs the same: the first that is looked at
+  // afterwards owns its two ends, the others are dropped.
+  std::vector<std::pair<Index, Index>> pairs_;
+  std::vector<Index>
+      owners_;  // hash table of pairs that were looked at, by their ends; kNone: free
+  std::size_t owner_count_ = 0;
+  std::vector<Ordered> order_, order_scratch_;  // the pairs of the start, cheapest first
   std::size_t next_in_order_ = 0;
   std::vector<Entry> heap_;  // those that were looked at again
   double last_key_ = 0;
@@ -239,7 +251,7 @@ class PatchSimplifier {
   // to blame has changed they may have become legal, so they are tried again at once, and the
   // waiting entry is void.
   struct Held {
-    Index a, b;
+    Index pair;
     Index next;  // in the list of the same triangle
     float cost;  // without the fold
     Index tries;
