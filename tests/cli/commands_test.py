@@ -299,8 +299,16 @@ class Commands(tool.Case):
         self.run_tool("render", self.city(), "-o", out, "--outside", exit_status=1)
 
     def test_validate(self):
-        self.assertEqual(self.json("validate", self.built())["errors"], [])
-        self.assertTrue(self.json("validate", self.built())["ok"])
+        whole = self.json("validate", self.built())
+        self.assertEqual(whole["errors"], [])
+        self.assertTrue(whole["ok"])
+        self.has(whole["hierarchy"], "splits", "bytes", "hard_edges", "seconds")
+        edges = whole["hierarchy"]["hard_edges"]
+        self.assertGreater(edges["count"], 1000)
+        self.assertEqual((edges["soft_at_one_end"], edges["soft_at_both_ends"]), (0, 0))
+        file_only = self.json("validate", self.built(), "--file-only")
+        self.assertTrue(file_only["ok"])
+        self.assertIsNone(file_only["hierarchy"])
 
     def test_quiet_leaves_standard_error_empty(self):
         done = self.run_tool("build", self.city(), "-o", self.path("q.crease"), "--quiet")
