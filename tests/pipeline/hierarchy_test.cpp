@@ -1,9 +1,7 @@
 // What a hierarchy promises beside cuts: shading, bounds, bytes, one root; and real models.
-#include "crease/import.h"
 #include "pipeline/hierarchy_case.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
-#include "support/shared_data.h"
 
 #include <doctest/doctest.h>
 
@@ -151,18 +149,9 @@ TEST_CASE("a smooth mesh takes at most 80 bytes a vertex") {
 
 TEST_CASE("any cut of real models is that of the plain definition") {
   std::mt19937_64 random(8);
-  for (const char* name :
-       {"cad/fandisk.off", "cad/hoppe_cessna.obj.zst", "attributes/pirate.obj.zst",
-        "attributes/corset.glb", "attributes/materials_7.obj.zst", "nasty/topology_moebius.obj",
-        "nasty/topology_many_on_edges.obj", "nasty/topology_touching_solids.obj",
-        "nasty/orientation_mixed.stl", "nasty/topology_soup.stl"}) {
-    const std::filesystem::path path = shared_model(name);
-    if (path.empty()) continue;
-    CAPTURE(name);
-    const Result<Imported> in = import_mesh(path, {});
-    REQUIRE(in.ok());
-    if (kSanitized && in->mesh.triangle_count() > 2000) continue;
-    const HierarchyCase c = simplified_case(in->mesh);
+  for (const ZooMesh& z : real_meshes(kSanitized ? 2000 : 20'000)) {
+    CAPTURE(z.name);
+    const HierarchyCase c = simplified_case(z.mesh);
     require_valid(c.hierarchy);
     REQUIRE(check_hard_edges(c.hierarchy).ok());
     REQUIRE(check_leaves(c.hierarchy, c.maps, c.mesh).ok());
