@@ -8,11 +8,10 @@ namespace crease {
 
 namespace {
 
-constexpr double kFlat = 4;          // a scene is flat if the frustum is so much higher
-constexpr double kRoom = 0.03;       // around a flat scene and the eye, of their size
-constexpr double kShownRoom = 0.15;  // lines further off from the scene may leave the picture
-constexpr double kPictureShare =
-    0.05;  // where the picture near the eye is, of the frustum's length
+constexpr double kFlat = 4;             // a scene is flat if the frustum is so much higher
+constexpr double kRoom = 0.03;          // around a flat scene and the eye, of their size
+constexpr double kShownRoom = 0.15;     // lines further off from the scene may leave the picture
+constexpr double kPictureShare = 0.05;  // of the frustum's length: the picture near the eye
 
 View view_of(const Camera& camera) {
   return make_view(camera, double(camera.width_px) / camera.height_px);
@@ -39,7 +38,7 @@ double reach(Scene scene, const View& view) {
   return size > 0 ? size : 1;
 }
 
-Box box_of(Scene scene) {
+Box bounds_of(Scene scene) {
   Box box;
   for (const PointSet& set : scene) {
     for (const Vec3f& p : set.points) box.add(set.origin + Vec3d{p.x, p.y, p.z});
@@ -59,7 +58,7 @@ std::array<Vec3d, 4> rectangle(const View& view, double depth) {
 // Lines end at the sides of this box. Over a flat scene it is the scene's and the eye's, with some
 // room but below, so that the frustum shows what it covers and does not fill the sky.
 Box stage_of(Scene scene, const View& view, const Vec3d& up, double depth) {
-  Box box = box_of(scene);
+  Box box = bounds_of(scene);
   int upright = 0;
   for (int i = 1; i < 3; ++i) {
     if (std::abs(up[i]) > std::abs(up[upright])) upright = i;
@@ -145,7 +144,7 @@ std::vector<Segment> frustum_lines(Scene scene, const Camera& camera) {
 
 Camera fit_outside(Scene scene, const Camera& seen, int width_px, int height_px) {
   const View view = view_of(seen);
-  Box near_scene = box_of(scene);
+  Box near_scene = bounds_of(scene);
   near_scene.add(view.eye);
   const Vec3d room = (near_scene.high - near_scene.low) * kShownRoom;
   near_scene.low = near_scene.low - room;

@@ -14,12 +14,12 @@ namespace {
 
 using Clip = std::array<double, 4>;
 
-constexpr const char* kVertexShader = R"(#version 330 core
+constexpr const char* kLineVertexShader = R"(#version 330 core
 layout(location = 0) in vec4 position;
 void main() { gl_Position = position; }
 )";
 
-constexpr const char* kFragmentShader = R"(#version 330 core
+constexpr const char* kLineFragmentShader = R"(#version 330 core
 uniform vec4 line_color;
 out vec4 color;
 void main() { color = line_color; }
@@ -106,7 +106,7 @@ void draw_strips(std::span<const float> corners) {
 }  // namespace
 
 Status draw_lines(std::span<const Segment> lines, const LineView& view) {
-  const Result<GlProgram> program = link_program(kVertexShader, kFragmentShader);
+  const Result<GlProgram> program = link_program(kLineVertexShader, kLineFragmentShader);
   if (!program.ok()) return program.failure();
   GLint viewport[4];
   glGetIntegerv(GL_VIEWPORT, viewport);
