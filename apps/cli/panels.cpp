@@ -2,6 +2,7 @@
 
 #include "cli/console.h"
 #include "cli/text.h"
+#include "cli/view.h"
 #include "crease/compare.h"
 
 #include <algorithm>
@@ -19,11 +20,26 @@ double corner_angle(const Mesh& mesh, const Triangle& t, std::size_t corner) {
 }
 
 // 0 for the full mesh, 1 for the base, even steps for even factors between.
-float level_share(const ProgressiveMesh& mesh) {
-  const double full = static_cast<double>(mesh.full_triangle_count());
-  const double base = static_cast<double>(std::max<std::size_t>(1, mesh.base_triangle_count()));
-  const double now = static_cast<double>(std::max<std::size_t>(1, mesh.triangle_count()));
+float level_share(std::size_t full_count, std::size_t base_count, std::size_t count) {
+  const double full = static_cast<double>(full_count);
+  const double base = static_cast<double>(std::max<std::size_t>(1, base_count));
+  const double now = static_cast<double>(std::max<std::size_t>(1, count));
   return full > base ? static_cast<float>(std::log(full / now) / std::log(full / base)) : 0.0f;
+}
+
+// What the error at each position looks like from where the camera is, whichever way it turns.
+std::vector<float> errors_in_pixels(const AdaptiveMesh& mesh, const Camera& camera) {
+  std::vector<float> errors = mesh.error_of_position();
+  const DrawList list = mesh.draw_list();
+  const double pixels_per_radian =
+      camera.height_px / (2 * std::tan(radians(camera.vertical_fov_deg) / 2));
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const Vec3f& p = list.positions[i];
+    const double away = length(list.origin + Vec3d{p.x, p.y, p.z} - camera.position);
+    const double pixels = double(errors[i]) * pixels_per_radian / std::max(away, 1e-300);
+    errors[i] = static_cast<float>(std::min(pixels, 1e30));
+  }
+  return errors;
 }
 
 std::string level_name(const ProgressiveMesh& mesh) {
@@ -66,7 +82,9 @@ void Panels::add(Source source, const std::string& title, Json json, const Panel
   sources_.push_back(std::move(source));
   const Source& kept = sources_.back();
   Panel panel;
-  panel.list = kept.progressive ? kept.progressive->draw_list() : kept.arrays->draw_list();
+  panel.list = kept.progressive ? kept.progressive->draw_list()
+               : kept.adaptive  ? kept.adaptive->draw_list()
+                                : kept.arrays->draw_list();
   if (options.titles) panel.title = title;
   panel.level_share = share;
   panel.error_of_position = kept.errors;
@@ -87,7 +105,8 @@ void Panels::add_level(ProgressiveMesh mesh, const Mesh& full, const std::string
     source.errors = distances_to(full, points, common.threads);
   }
   const std::size_t triangles = source.progressive->triangle_count();
-  const float share = level_share(*source.progressive);
+  const float share = level_share(source.progressive->full_triangle_count(),
+                                  source.progressive->base_triangle_count(), triangles);
   add(std::move(source), name + ": " + grouped(triangles) + " triangles",
       {{"triangles", triangles}, {"control", false}}, options, share);
 }
@@ -99,8 +118,31 @@ void Panels::add_control(const Mesh& level, const std::string& name, const Panel
       {{"triangles", level.triangle_count()}, {"control", true}}, options, 0.0f);
 }
 
+Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& options,
+                        const Common& common) {
+  Result<ViewedModel> model = load_viewed(path, options.read, common);
+  if (!model.ok()) return model.failure();
+  const std::size_t full = model->full.triangle_count();
+  Source source;
+  source.adaptive = std::make_unique<AdaptiveMesh>(std::move(model->mesh));
+  AdaptiveMesh& mesh = *source.adaptive;
+  mesh.update({.camera = *options.view});
+  if (options.errors_of_positions) source.errors = errors_in_pixels(mesh, *options.view);
+  const std::size_t triangles = mesh.triangle_count();
+  const std::size_t coarsest = mesh.hierarchy().vertices.coarse_triangles().size();
+  const std::string name = path.filename().string();
+  const Mesh shown = options.control ? mesh.extract() : Mesh{};
+  add(std::move(source), name + ": " + grouped(triangles) + " of " + grouped(full) + " triangles",
+      {{"triangles", triangles}, {"full_triangles", full}, {"control", false}}, options,
+      level_share(full, coarsest, triangles));
+  if (options.control) add_control(shown, name, options);
+  columns_ = std::max(columns_, options.control ? 2 : 1);
+  return Done{};
+}
+
 Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& options,
                         const Common& common) {
+  if (options.view) return add_view(path, options, common);
   const LevelOptions& one = options.level;
   const bool whole = std::ranges::all_of(options.ratios, [](double r) { return r == 1; }) &&
                      !one.triangles && !one.ratio && !one.error;

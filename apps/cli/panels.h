@@ -3,11 +3,13 @@
 
 #include "cli/level.h"
 #include "cli/model.h"
+#include "crease/adaptive_mesh.h"
 #include "crease/render.h"
 
 #include <deque>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,9 +19,11 @@ namespace crease::cli {
 struct PanelOptions {
   std::vector<double> ratios;  // a panel each; empty: one panel by `level`
   LevelOptions level;
-  bool control = false;  // after the levels, each again with one averaged normal a vertex
+  std::optional<Camera> view;  // instead of both: one panel, as fine as this camera needs it
+  bool control = false;        // after the levels, each again with one averaged normal a vertex
   bool titles = true;
-  bool errors_of_positions = false;  // for Coloring::Error
+  // For Coloring::Error: measured distances; of a view, pixels on its screen.
+  bool errors_of_positions = false;
   ReadOptions read;
 };
 
@@ -38,8 +42,11 @@ class Panels {
   struct Source {
     std::unique_ptr<ProgressiveMesh> progressive;
     std::unique_ptr<MeshDrawArrays> arrays;
+    std::unique_ptr<AdaptiveMesh> adaptive;
     std::vector<float> errors;
   };
+  Status add_view(const std::filesystem::path& path, const PanelOptions& options,
+                  const Common& common);
   void add_level(ProgressiveMesh mesh, const Mesh& full, const std::string& name,
                  const PanelOptions& options, const Common& common);
   void add_control(const Mesh& level, const std::string& name, const PanelOptions& options);

@@ -17,9 +17,16 @@ struct RenderArguments {
   std::vector<std::filesystem::path> files;
   std::filesystem::path output;
   PanelOptions panels;
-  std::string levels, view, size, coloring = "shaded", up = "z";
-  bool wireframe = false;
+  std::string levels, view, size, up = "z";
+  std::string coloring;                          // empty: shaded, by error from outside
+  bool wireframe = false, no_wireframe = false;  // neither: from outside
+  bool outside = false;
   int columns = 0;
+
+  bool has_level() const {
+    const LevelOptions& one = panels.level;
+    return !levels.empty() || one.triangles || one.ratio || one.error;
+  }
 };
 
 Coloring coloring_of(const std::string& name) {
@@ -29,16 +36,24 @@ Coloring coloring_of(const std::string& name) {
   return Coloring::Shaded;
 }
 
+// Errors of a view are in pixels: what is allowed is the middle of the scale.
+void scale_to_pixels(const Camera& camera, RenderOptions& render) {
+  render.error_full = 2 * camera.pixels;
+  render.error_unit = render.error_full == 1 ? "pixel" : "pixels";
+}
+
 Result<RenderOptions> render_options(const RenderArguments& options) {
   RenderOptions render;
-  render.coloring = coloring_of(options.coloring);
-  render.wireframe = options.wireframe;
+  const bool by_error = options.outside && options.coloring.empty();
+  render.coloring = by_error ? Coloring::Error : coloring_of(options.coloring);
+  render.wireframe = options.wireframe || (options.outside && !options.no_wireframe);
   render.columns = options.columns;
   if (options.up == "y") render.up = {0, 1, 0};
   if (!options.view.empty()) {
     const Result<Camera> camera = read_camera(options.view);
     if (!camera.ok()) return camera.failure();
-    render.camera = *camera;
+    (options.outside ? render.frustum : render.camera) = *camera;
+    if (!options.has_level()) scale_to_pixels(*camera, render);
     render.width_px = camera->width_px;
     render.height_px = camera->height_px;
   }
@@ -63,12 +78,19 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
     if (!ratios.ok()) return ratios.failure();
     options.panels.ratios = *std::move(ratios);
   }
+  if (options.outside && options.has_level()) {
+    return fail(Error::CommandLine,
+                "--outside shows what --view refines: leave out --levels, --triangles, --ratio and "
+                "--error");
+  }
   if (options.output.extension() != ".png") {
     return fail(Error::NotSupported, options.output.string() + ": pictures are written as .png");
   }
   Result<RenderOptions> render = render_options(options);
   if (!render.ok()) return render.failure();
   options.panels.errors_of_positions = render->coloring == Coloring::Error;
+  if (!options.has_level())
+    options.panels.view = options.outside ? render->frustum : render->camera;
 
   Panels panels;
   for (const std::filesystem::path& file : options.files) {
@@ -110,19 +132,32 @@ Command add_render(CLI::App& app, const Common& common) {
       ->add_option("--levels", options->levels, "shares of the triangles, a panel each: 1,0.2,0.02")
       ->type_name("R,...");
   add_level_options(*command, options->panels.level);
+  CLI::Option* view =
+      command
+          ->add_option(
+              "--view", options->view,
+              "camera: {\"position\":[x,y,z],\"target\":[x,y,z],\"up\":[x,y,z],"
+              "\"vertical_fov\":45,\"viewport\":[1920,1080],\"pixels\":1}. Without a level "
+              "the model is as fine as it needs, within its \"pixels\" of error, and coarse "
+              "elsewhere. Default: all of the model")
+          ->type_name("CAM.json");
   command
-      ->add_option("--view", options->view,
-                   "camera: {\"position\":[x,y,z],\"target\":[x,y,z],\"up\":[x,y,z],"
-                   "\"vertical_fov\":45}; default: all of the model")
-      ->type_name("CAM.json");
+      ->add_flag("--outside", options->outside,
+                 "the model as fine as --view needs it, seen from outside with its frustum, "
+                 "coloured by error: up to \"pixels\" blue, beyond yellow to red")
+      ->needs(view);
   command->add_option("--up", options->up, "axis that points up when there is no --view")
       ->check(CLI::IsMember({"y", "z"}))
       ->capture_default_str();
-  command->add_option("--color", options->coloring, "shaded | kind | level | error")
+  command
+      ->add_option("--color", options->coloring,
+                   "shaded | kind | level | error; default: shaded, error with --outside")
       ->check(CLI::IsMember({"shaded", "kind", "level", "error"}))
-      ->type_name("BY")
-      ->capture_default_str();
-  command->add_flag("--wireframe", options->wireframe, "edges over the surface");
+      ->type_name("BY");
+  CLI::Option* wireframe = command->add_flag("--wireframe", options->wireframe,
+                                             "edges over the surface; --outside has them");
+  command->add_flag("--no-wireframe", options->no_wireframe, "none with --outside either")
+      ->excludes(wireframe);
   command->add_flag("--control", options->panels.control,
                     "beside each panel the same triangles with one averaged normal a vertex: what "
                     "ignoring shading discontinuities does");
@@ -134,7 +169,9 @@ Command add_render(CLI::App& app, const Common& common) {
   command->add_flag("--no-titles{false}", options->panels.titles, "no titles in the panels");
   add_build_options(*command, options->panels.read);
   command->footer(
-      "Example:\n  crease render bunny.crease -o bunny.png --levels 1,0.2,0.02 --wireframe");
+      "Examples:\n  crease render bunny.crease -o bunny.png --levels 1,0.2,0.02 --wireframe\n"
+      "  crease render city.crease -o seen.png --view camera.json\n"
+      "  crease render city.crease -o outside.png --view camera.json --outside");
   return {command, [options, &common] { return run_render(*options, common); }};
 }
 

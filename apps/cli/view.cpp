@@ -1,7 +1,6 @@
 #include "cli/view.h"
 
 #include "cli/console.h"
-#include "crease/build_hierarchy.h"
 #include "crease/progressive_mesh.h"
 #include "crease/render.h"
 
@@ -24,8 +23,8 @@ Result<Camera> read_camera(const std::filesystem::path& path) {
   return camera;
 }
 
-Result<ViewedModel> load_viewed(const std::filesystem::path& path, const ReadOptions& options,
-                                const Common& common) {
+Result<ModelHierarchy> load_hierarchy(const std::filesystem::path& path, const ReadOptions& options,
+                                      const Common& common) {
   Result<BuildOptions> build = build_options(options, common);
   if (!build.ok()) return build.failure();
   Mesh full;
@@ -51,10 +50,19 @@ Result<ViewedModel> load_viewed(const std::filesystem::path& path, const ReadOpt
   Result<ContractionSequence> sequence = simplify(full, grid, build->simplify);
   wipe_progress_bar();
   if (!sequence.ok()) return sequence.failure();
-  Result<MeshHierarchy> hierarchy = build_hierarchy(full, *sequence, {});
+  HierarchyMaps maps;
+  Result<MeshHierarchy> hierarchy = build_hierarchy(full, *sequence, {}, &maps);
   if (!hierarchy.ok()) return hierarchy.failure();
-  return ViewedModel{AdaptiveMesh(std::make_shared<const MeshHierarchy>(*std::move(hierarchy))),
-                     std::move(full), std::move(info)};
+  return ModelHierarchy{std::make_shared<const MeshHierarchy>(*std::move(hierarchy)),
+                        std::move(maps), std::move(full), std::move(info)};
+}
+
+Result<ViewedModel> load_viewed(const std::filesystem::path& path, const ReadOptions& options,
+                                const Common& common) {
+  Result<ModelHierarchy> model = load_hierarchy(path, options, common);
+  if (!model.ok()) return model.failure();
+  return ViewedModel{AdaptiveMesh(std::move(model->hierarchy)), std::move(model->full),
+                     std::move(model->info)};
 }
 
 }  // namespace crease::cli

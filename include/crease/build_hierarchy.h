@@ -32,4 +32,9 @@ Result<MeshHierarchy> build_hierarchy(const Mesh& snapped, const ContractionSequ
                                       const HierarchyOptions& options,
                                       HierarchyMaps* maps = nullptr);
 
+// Whether full refinement is `snapped`, corner for corner: positions, values, materials and parts,
+// and which corners of a vertex share an attribute. `hierarchy` must hold check_hierarchy(). Time
+// O(corners * depth).
+Status check_leaves(const MeshHierarchy& hierarchy, const HierarchyMaps& maps, const Mesh& snapped);
+
 }  // namespace crease

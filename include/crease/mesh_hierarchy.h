@@ -259,4 +259,21 @@ HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy);
 // (O(triangles * depth) at worst), memory about the hierarchy's own.
 Status check_hierarchy(const MeshHierarchy& hierarchy);
 
+// Pairs of triangles at an edge of the input that is hard: they share no normal at either end.
+struct HardEdges {
+  std::size_t count = 0;
+  // In some cut that has both triangles they share a normal at one end: a crease that ended at a
+  // vertex is contracted from there (G03 figure 6 e).
+  std::size_t soft_at_one_end = 0;
+  // In some cut at both: a crease shorter than it was contracted from either side.
+  std::size_t soft_at_both_ends = 0;
+};
+
+// No cut shades across an edge that is hard in the input and whose both triangles are there, but
+// from where its crease ended: normals from both sides become one only at a contraction whose
+// collapsed triangles link them, directly or by others (DESIGN 6.3). Else the first split where
+// they do. Exact over all cuts. `hierarchy` must hold check_hierarchy(). Time O(edges * depth) at
+// worst.
+Result<HardEdges> check_hard_edges(const MeshHierarchy& hierarchy);
+
 }  // namespace crease

@@ -4,6 +4,7 @@
 //   std::vector<Panel> panels{{.list = pm.draw_list(), .title = "20 %"}};
 //   Result<Image> image = render_panels(panels, RenderOptions{});
 //   write_png(*image, "levels.png");
+//   render_panels(panels, {.frustum = camera});   // from outside, with the camera's frustum
 #pragma once
 
 #include "crease/camera.h"
@@ -44,17 +45,24 @@ struct Panel {
   DrawList list{};
   std::string title;      // drawn at the panel's top; empty: nothing
   float level_share = 0;  // for Coloring::Level: 0 full resolution .. 1 base
-  // For Coloring::Error: one value per position of the list, model units; or empty.
+  // For Coloring::Error: one value per position of the list, in RenderOptions::error_unit; or
+  // empty.
   std::span<const float> error_of_position{};
 };
 
 struct RenderOptions {
   int width_px = 1920, height_px = 1080;  // of the whole picture; panels share it in a row or grid
   std::optional<Camera> camera{};         // else fitted to all panels; the same for all
-  Vec3d up{0, 0, 1};                      // for the fitted camera: many scans have y up
+  // Shows as lines what this camera sees. Without `camera` the picture is then taken from outside:
+  // from beside and behind it, with everything in view.
+  std::optional<Camera> frustum{};
+  Vec3d up{0, 0, 1};  // for the fitted camera: many scans have y up
   Coloring coloring = Coloring::Shaded;
   bool wireframe = false;  // edges over the shaded surface
   int columns = 0;         // 0: as many as look best
+  // Coloring::Error: the error at the red end, or 0: nearly the largest one there is.
+  double error_full = 0;
+  std::string error_unit = "model units";
 };
 
 struct Image {

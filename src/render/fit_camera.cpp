@@ -14,11 +14,15 @@ struct Direction {
   Vec3d towards_eye, up;
 };
 
+Vec3d unit_up(const Vec3d& wanted) {
+  const Vec3d up = normalized(wanted);
+  return up == Vec3d{} ? Vec3d{0, 0, 1} : up;
+}
+
 // Three-quarter view from the front right. Low scenes from 33 degrees above, so that streets show;
 // objects as tall as wide from 20, so that they stand.
 Direction three_quarter(const Box& box, const Vec3d& up_wanted) {
-  Vec3d up = normalized(up_wanted);
-  if (up == Vec3d{}) up = {0, 0, 1};
+  const Vec3d up = unit_up(up_wanted);
   // Right-handed frame with `up` as its third axis: x to the right unless up is along x.
   const Vec3d first_axis = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   const Vec3d depth_axis = normalized(cross(up, first_axis));  // away from the viewer
@@ -33,6 +37,17 @@ Direction three_quarter(const Box& box, const Vec3d& up_wanted) {
   const double azimuth = radians(32);  // from the front towards the right
   const Vec3d level = right_axis * std::sin(azimuth) - depth_axis * std::cos(azimuth);
   return {level * std::cos(elevation) + up * std::sin(elevation), up};
+}
+
+// From behind to the right of someone who looks along `forward`, and from above.
+Direction beside(const Box& box, const Vec3d& forward, const Vec3d& up_wanted) {
+  const Vec3d up = unit_up(up_wanted);
+  const Vec3d level = forward - up * dot(forward, up);
+  if (length(level) < 0.2 * length(forward)) return three_quarter(box, up);
+  const Vec3d ahead = normalized(level);
+  const double azimuth = radians(55), elevation = radians(35);
+  const Vec3d out = cross(ahead, up) * std::sin(azimuth) - ahead * std::cos(azimuth);
+  return {out * std::cos(elevation) + up * std::sin(elevation), up};
 }
 
 // Calls `visit` with every point less the first set's origin.
@@ -92,6 +107,11 @@ Camera fit_camera_to(Scene scene, const Vec3d& up, int width_px, int height_px) 
   const Vec3f origin{};
   const PointSet point{{}, std::span(&origin, 1)};
   return fit(std::span(&point, 1), three_quarter(Box{}, up), width_px, height_px);
+}
+
+Camera fit_camera_beside(Scene scene, const Vec3d& forward, const Vec3d& up, int width_px,
+                         int height_px) {
+  return fit(scene, beside(box_of(scene), forward, up), width_px, height_px);
 }
 
 Camera fit_camera(const Vec3d& low, const Vec3d& high, int width_px, int height_px,

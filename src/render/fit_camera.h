@@ -17,6 +17,11 @@ using Scene = std::span<const PointSet>;
 // As fit_camera, but as close as the points themselves allow, and not their box.
 Camera fit_camera_to(Scene scene, const Vec3d& up, int width_px, int height_px);
 
+// The same from behind and to the right of someone who looks along `forward`; where that is up or
+// down, from the three-quarter view.
+Camera fit_camera_beside(Scene scene, const Vec3d& forward, const Vec3d& up, int width_px,
+                         int height_px);
+
 // Width over height of the scene in the picture that fit_camera_to would make: what the layout of
 // panels goes by.
 double projected_aspect(Scene scene, const Vec3d& up);

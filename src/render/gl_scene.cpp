@@ -6,6 +6,8 @@ namespace crease {
 
 namespace {
 
+constexpr float kFrustumLinePx = 2.5f;  // beside the lines of a wireframe
+
 Vec3f to_float(const Vec3d& v) {
   return {float(v.x), float(v.y), float(v.z)};
 }
@@ -39,13 +41,18 @@ Box box_of_corners(const DrawList& list) {
 
 }  // namespace
 
-GlScene::GlScene(const DrawList& list, std::span<const float> errors)
+GlScene::GlScene(const DrawList& list, std::span<const float> errors, std::vector<Segment> lines)
     : origin_(list.origin),
       box_(box_of_corners(list)),
       positions_(upload(list.positions, GL_RGB32F)),
       vertex_normals_(upload(list.vertex_normals, GL_RGB32F)),
       errors_(upload(errors, GL_R32F)),
-      no_attributes_(GlVertexArray::make()) {
+      no_attributes_(GlVertexArray::make()),
+      lines_(std::move(lines)) {
+  for (const Segment& line : lines_) {
+    box_.add(line.from);
+    box_.add(line.to);
+  }
   const auto colors = material_colors(list.materials);
   material_colors_ = upload(std::span(colors), GL_RGBA32F);
   sn_ = upload_part(list.sn);
@@ -89,7 +96,13 @@ Status GlScene::draw(ProgramCache& programs, const View& view, const Vec3d& up,
     const Status drawn = draw_part(programs, *part, kind, view, up, clip, style);
     if (!drawn.ok()) return drawn;
   }
-  return Done{};
+  if (lines_.empty()) return Done{};
+  return draw_lines(lines_, {.view = view,
+                             .origin = origin_,
+                             .near = depth.near,
+                             .clip_from_list = clip,
+                             .width_px = kFrustumLinePx * style.line_px,
+                             .reversed_depth = style.reversed_depth});
 }
 
 Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind kind,

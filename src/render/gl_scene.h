@@ -4,6 +4,7 @@
 
 #include "crease/draw_list.h"
 #include "crease/shading.h"
+#include "render/gl_lines.h"
 #include "render/gl_objects.h"
 #include "render/gl_shaders.h"
 #include "render/transform.h"
@@ -22,8 +23,8 @@ struct DrawStyle {
 
 class GlScene {
  public:
-  // `errors` has one value per position, or none.
-  GlScene(const DrawList& list, std::span<const float> errors);
+  // `errors` has one value per position, or none. `lines` are drawn over the triangles.
+  GlScene(const DrawList& list, std::span<const float> errors, std::vector<Segment> lines);
 
   // Into the bound framebuffer. `window` is the part of the picture that its viewport shows.
   Status draw(ProgramCache& programs, const View& view, const Vec3d& up, const Window& window,
@@ -40,10 +41,11 @@ class GlScene {
                    const Vec3d& up, const Matrix4f& clip_from_list, const DrawStyle& style) const;
 
   Vec3d origin_;
-  Box box_;  // of the triangles' corners, in model units
+  Box box_;  // of the triangles' corners and the lines, in model units
   GlArray positions_, vertex_normals_, errors_, material_colors_;
   GlVertexArray no_attributes_;
   Part sn_, fn_, nsn_;
+  std::vector<Segment> lines_;
 };
 
 }  // namespace crease

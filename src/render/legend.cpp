@@ -86,8 +86,9 @@ void draw_legend(Image& image, const PixelRect& rect, const LegendContent& conte
       return draw_scale(image, rect, "full resolution", "base", level_color);
     case Coloring::Error: {
       const bool clipped = content.error_max > content.error_full * 1.0005;
-      std::string high = number(content.error_full) + " model units";
-      if (clipped) high = "\u2265 " + high + " (largest " + number(content.error_max) + ")";
+      std::string high = number(content.error_full) + " " + content.error_unit;
+      if (clipped) high = "\u2265 " + high;
+      if (clipped && content.says_max) high += " (largest " + number(content.error_max) + ")";
       return draw_scale(image, rect, "0", high, error_color);
     }
   }

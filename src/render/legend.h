@@ -11,6 +11,8 @@ struct LegendContent {
   bool has_sn = false, has_fn = false, has_nsn = false;  // Coloring::Kind: those that occur
   double error_full = 0;                                 // Coloring::Error: at the red end
   double error_max = 0;                                  // may be larger than that
+  bool says_max = true;                                  // where it is larger
+  std::string error_unit = "model units";
 };
 
 // Nothing for Coloring::Shaded.

@@ -21,6 +21,7 @@ Color linear_from_srgb(const ColorSrgb& encoded);
 inline constexpr ColorSrgb kBackgroundTop{250, 251, 252}, kBackgroundBottom{218, 224, 231};
 inline constexpr ColorSrgb kTextColor{38, 43, 51}, kPageColor{255, 255, 255};
 inline constexpr ColorSrgb kSeparatorColor{196, 202, 210};
+inline constexpr ColorSrgb kFrustumColor{20, 24, 30};
 
 inline constexpr ColorSrgb kDefaultSurface{224, 217, 207};  // warm light grey
 

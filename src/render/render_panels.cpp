@@ -1,5 +1,6 @@
 #include "crease/render.h"
 #include "render/fit_camera.h"
+#include "render/frustum.h"
 #include "render/gl_context.h"
 #include "render/gl_scene.h"
 #include "render/gl_target.h"
@@ -81,8 +82,10 @@ struct ErrorScale {
   double full = 1, max = 0;
 };
 
-// The red end is the 99.5th percentile over all panels: one far vertex must not turn all else blue.
-ErrorScale error_scale(std::span<const Panel> panels) {
+// The red end is the one that is asked for, else the 99.5th percentile over all panels: one far
+// vertex must not turn all else blue.
+ErrorScale error_scale(std::span<const Panel> panels, const RenderOptions& options) {
+  if (options.coloring != Coloring::Error) return {};
   std::vector<float> errors;
   for (const Panel& panel : panels) {
     for (float e : panel.error_of_position) {
@@ -93,6 +96,7 @@ ErrorScale error_scale(std::span<const Panel> panels) {
   const auto at = errors.begin() + std::ptrdiff_t(double(errors.size() - 1) * 0.995);
   std::nth_element(errors.begin(), at, errors.end());
   const double max = *std::max_element(at, errors.end());
+  if (options.error_full > 0) return {options.error_full, max};
   const double full = *at > 0 ? double(*at) : max;
   return {full > 0 ? full : 1, max};
 }
@@ -197,15 +201,40 @@ Status draw_view(Image& image, const PixelRect& view_rect, const GlScene& scene,
   return Done{};
 }
 
-LegendContent legend_content(std::span<const Panel> panels, Coloring coloring,
+LegendContent legend_content(std::span<const Panel> panels, const RenderOptions& options,
                              const ErrorScale& scale) {
-  LegendContent content{.coloring = coloring, .error_full = scale.full, .error_max = scale.max};
+  LegendContent content{.coloring = options.coloring,
+                        .error_full = scale.full,
+                        .error_max = scale.max,
+                        .says_max = options.error_full <= 0,
+                        .error_unit = options.error_unit};
   for (const Panel& panel : panels) {
     content.has_sn |= panel.list.sn.triangle_count() > 0;
     content.has_fn |= panel.list.fn.triangle_count() > 0;
     content.has_nsn |= panel.list.nsn.triangle_count() > 0;
   }
   return content;
+}
+
+// Those of triangles: an adaptive mesh has others in between, which must not widen the view.
+std::vector<Vec3f> used_positions(const DrawList& list) {
+  std::vector<char> is_used(list.positions.size(), 0);
+  for (const DrawPart* part : {&list.sn, &list.fn, &list.nsn}) {
+    for (std::uint32_t i : part->indices) {
+      if (i < is_used.size()) is_used[i] = 1;  // check_panel() refuses others
+    }
+  }
+  std::vector<Vec3f> used;
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    if (is_used[i] != 0) used.push_back(list.positions[i]);
+  }
+  return used;
+}
+
+Camera choose_camera(Scene scene, const RenderOptions& options, int width_px, int height_px) {
+  if (options.camera) return *options.camera;
+  if (options.frustum) return fit_outside(scene, *options.frustum, width_px, height_px);
+  return fit_camera_to(scene, options.up, width_px, height_px);
 }
 
 }  // namespace
@@ -218,8 +247,12 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
                                      std::to_string(options.height_px) +
                                      " pixels; each side is 1 to " + std::to_string(kMaxSide));
   }
+  std::vector<std::vector<Vec3f>> points;
+  for (const Panel& panel : panels) points.push_back(used_positions(panel.list));
   std::vector<PointSet> scene;
-  for (const Panel& panel : panels) scene.push_back({panel.list.origin, panel.list.positions});
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    scene.push_back({panels[i].list.origin, points[i]});
+  }
   const Layout layout = make_layout(
       {.panel_count = panels.size(),
        .width_px = options.width_px,
@@ -236,8 +269,9 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
                                      std::to_string(options.width_px) + " x " +
                                      std::to_string(options.height_px) + " pixels");
   }
-  const Camera camera =
-      options.camera ? *options.camera : fit_camera_to(scene, options.up, size.width, size.height);
+  const Camera camera = choose_camera(scene, options, size.width, size.height);
+  const std::vector<Segment> lines =
+      options.frustum ? frustum_lines(scene, *options.frustum) : std::vector<Segment>{};
 
   Result<GlContext> gl = open_gl();
   if (!gl.ok()) return gl.failure();
@@ -251,7 +285,7 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
   image.height = options.height_px;
   image.rgba.resize(4 * std::size_t(image.width) * std::size_t(image.height));
   fill_rect(image, {0, 0, image.width, image.height}, kPageColor);
-  const ErrorScale scale = options.coloring == Coloring::Error ? error_scale(panels) : ErrorScale{};
+  const ErrorScale scale = error_scale(panels, options);
   ProgramCache programs;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Status sound = check_panel(panels[i], gl->max_texel_count());
@@ -267,7 +301,7 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
                           .level_share = panels[i].level_share,
                           .error_full = float(scale.full),
                           .reversed_depth = gl->can_reverse_depth()};
-    const GlScene on_gpu(panels[i].list, panels[i].error_of_position);
+    const GlScene on_gpu(panels[i].list, panels[i].error_of_position, lines);
     const Status drawn =
         draw_view(image, layout.views[i], on_gpu, camera, style, *target, tile_px, programs);
     if (!drawn.ok()) return drawn.failure();
@@ -275,7 +309,7 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
   for (const PixelRect& separator : layout.separators) {
     fill_rect(image, separator, kSeparatorColor);
   }
-  draw_legend(image, layout.legend, legend_content(panels, options.coloring, scale));
+  draw_legend(image, layout.legend, legend_content(panels, options, scale));
   return image;
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/extract_cut.h"
 
 #include "runtime/cut_drawing.h"
+#include "runtime/layer_like.h"
 
 #include <algorithm>
 #include <vector>
@@ -52,12 +53,7 @@ void extract_vertices(const ActiveCut& cut, const std::vector<ActiveTriangle>& t
 AttributeLayer extract_layer(const ActiveCut& cut, const std::vector<ActiveTriangle>& triangles,
                              std::uint32_t l) {
   const AttributeHierarchy& source = cut.hierarchy().layers[l];
-  AttributeLayer layer{.name = source.name,
-                       .role = source.role,
-                       .interpolation = source.interpolation,
-                       .dimension = source.dimension,
-                       .values = {},
-                       .of_corner = {}};
+  AttributeLayer layer = layer_like(source);
   const auto append = [&layer](std::span<const float> value) {
     layer.values.insert(layer.values.end(), value.begin(), value.end());
     return static_cast<std::uint32_t>(layer.value_count() - 1);

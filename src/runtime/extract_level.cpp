@@ -1,6 +1,7 @@
 #include "runtime/extract_level.h"
 
 #include "hierarchy/geometric_normal.h"
+#include "runtime/layer_like.h"
 
 #include <algorithm>
 #include <bit>
@@ -200,12 +201,7 @@ AttributeLayer extract_normals(const ProgressiveArrays& arrays, const LinearStat
 AttributeLayer extract_layer(const ProgressiveArrays& arrays, const LinearState& state,
                              std::span<const std::uint32_t> triangles, std::size_t l) {
   const ProgressiveLayer& source = arrays.layers[l];
-  AttributeLayer layer{.name = source.name,
-                       .role = source.role,
-                       .interpolation = source.interpolation,
-                       .dimension = source.dimension,
-                       .values = {},
-                       .of_corner = {}};
+  AttributeLayer layer = layer_like(source);
   LayerMaker(state, triangles, layer)
       .run(
           source.value_count(), arrays.full.vertices(),

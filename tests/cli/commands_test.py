@@ -266,9 +266,49 @@ class Commands(tool.Case):
             self.assertEqual(png_size(out), (160, 120))
         self.json("render", self.city(), "-o", out, "--size", "160x120")
 
+    def test_render_for_a_view_draws_what_extract_makes_for_it(self):
+        near = self.camera("near.json", [60, -60, 40])
+        out = self.path("view.png")
+        seen = self.json("extract", self.built(), "-o", self.path("seen.ply"), "--view", near)
+        for source in (self.built(), self.city()):
+            picture = self.json("render", source, "-o", out, "--view", near)
+            self.assertEqual(png_size(out), (640, 480))
+            self.assertEqual(len(picture["panels"]), 1)
+            self.assertEqual(picture["panels"][0]["triangles"], seen["triangles"])
+            self.assertEqual(picture["panels"][0]["full_triangles"], seen["full_triangles"])
+        whole = self.json("render", self.built(), "-o", out, "--view", near, "--ratio", 1)
+        self.assertEqual(whole["panels"][0]["triangles"], seen["full_triangles"])
+        for color in ("shaded", "kind", "level", "error"):
+            self.json("render", self.city(), "-o", out, "--view", near, "--color", color, "--control",
+                      "--size", "200x100")
+            self.assertEqual(png_size(out), (200, 100))
+
+    def test_render_from_outside_shows_the_same_triangles_another_way(self):
+        near = self.camera("near.json", [60, -60, 40])
+        pictures = {}
+        for options in ((), ("--outside",), ("--outside", "--color", "shaded"),
+                        ("--outside", "--no-wireframe")):
+            out = self.path("picture.png")
+            made = self.json("render", self.city(), "-o", out, "--view", near, *options)
+            pictures[digest(out)] = made["panels"][0]["triangles"]
+        self.assertEqual(len(pictures), 4)
+        self.assertEqual(len(set(pictures.values())), 1)
+        failed = self.json("render", self.city(), "-o", out, "--view", near, "--outside", "--ratio", 1,
+                           exit_status=1)
+        self.assertIn("--outside", failed["error"]["message"])
+        self.run_tool("render", self.city(), "-o", out, "--outside", exit_status=1)
+
     def test_validate(self):
-        self.assertEqual(self.json("validate", self.built())["errors"], [])
-        self.assertTrue(self.json("validate", self.built())["ok"])
+        whole = self.json("validate", self.built())
+        self.assertEqual(whole["errors"], [])
+        self.assertTrue(whole["ok"])
+        self.has(whole["hierarchy"], "splits", "bytes", "hard_edges", "seconds")
+        edges = whole["hierarchy"]["hard_edges"]
+        self.assertGreater(edges["count"], 1000)
+        self.assertEqual((edges["soft_at_one_end"], edges["soft_at_both_ends"]), (0, 0))
+        file_only = self.json("validate", self.built(), "--file-only")
+        self.assertTrue(file_only["ok"])
+        self.assertIsNone(file_only["hierarchy"])
 
     def test_quiet_leaves_standard_error_empty(self):
         done = self.run_tool("build", self.city(), "-o", self.path("q.crease"), "--quiet")

@@ -1,7 +1,11 @@
 #include "pipeline/hierarchy_case.h"
 
+#include "crease/import.h"
 #include "crease/simplify.h"
 #include "hierarchy/attribute_values.h"
+#include "support/shared_data.h"
+
+#include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cstring>
@@ -43,6 +47,25 @@ HierarchyCase simplified_case(Mesh mesh, Placement placement) {
   options.threads = 1;
   ContractionSequence sequence = *simplify(mesh, grid, options);
   return case_of(std::move(mesh), std::move(sequence));
+}
+
+std::vector<ZooMesh> real_meshes(std::size_t most_triangles) {
+  std::vector<ZooMesh> meshes;
+  for (const char* name :
+       {"cad/fandisk.off", "cad/hoppe_cessna.obj.zst", "cad/hoppe_golf_club.obj.zst",
+        "attributes/pirate.obj.zst", "attributes/corset.glb", "attributes/materials_7.obj.zst",
+        "attributes/cow_viewpoint.obj.zst", "nasty/topology_bunny_nonmanifold_ascii.ply",
+        "nasty/topology_moebius.obj", "nasty/topology_many_on_edges.obj",
+        "nasty/topology_everything_twice.obj", "nasty/topology_touching_solids.obj",
+        "nasty/topology_three_on_an_edge.obj", "nasty/degenerate_faces.obj",
+        "nasty/orientation_mixed.stl", "nasty/topology_soup.stl"}) {
+    const std::filesystem::path path = shared_model(name);
+    if (path.empty()) continue;
+    Result<Imported> in = import_mesh(path, {});
+    if (!in.ok()) FAIL(name, ": ", in.failure().message);
+    if (in->mesh.triangle_count() <= most_triangles) meshes.push_back({name, std::move(in->mesh)});
+  }
+  return meshes;
 }
 
 Cut linear_cut(const HierarchyCase& c, std::size_t applied) {

@@ -8,6 +8,7 @@
 #include "crease/build_hierarchy.h"
 #include "crease/contraction.h"
 #include "crease/mesh_hierarchy.h"
+#include "support/mesh_zoo.h"
 #include "support/random_contractions.h"
 
 #include <cstdint>
@@ -30,6 +31,10 @@ struct HierarchyCase {
 HierarchyCase random_case(Mesh mesh, const RandomContractionOptions& options);
 HierarchyCase simplified_case(Mesh mesh, Placement placement = Placement::Optimal);
 HierarchyCase case_of(Mesh snapped, ContractionSequence sequence);
+
+// Models of ../shared/data, of every kind, that have at most so many triangles: those that are
+// there.
+std::vector<ZooMesh> real_meshes(std::size_t most_triangles);
 
 // Which contractions are merged: all below a merged one are, too.
 using Cut = std::vector<bool>;

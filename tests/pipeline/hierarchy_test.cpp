@@ -1,9 +1,7 @@
 // What a hierarchy promises beside cuts: shading, bounds, bytes, one root; and real models.
-#include "crease/import.h"
 #include "pipeline/hierarchy_case.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
-#include "support/shared_data.h"
 
 #include <doctest/doctest.h>
 
@@ -149,61 +147,14 @@ TEST_CASE("a smooth mesh takes at most 80 bytes a vertex") {
   CHECK(hierarchy_bytes(c.hierarchy).total() <= 80 * c.mesh.vertex_count());
 }
 
-TEST_CASE("every broken invariant of a hierarchy is found and named") {
-  const HierarchyCase c = random_case(hard_box(3), {.seed = 5});
-  require_valid(c.hierarchy);
-  struct Broken {
-    const char* what;
-    std::function<void(MeshHierarchy&)> harm;
-  };
-  const Broken cases[] = {
-      {"add up", [](MeshHierarchy& h) { ++h.vertices.root_count; }},
-      {"lacks its position or wedges", [](MeshHierarchy& h) { h.vertices.root_positions = {}; }},
-      {"an array of splits", [](MeshHierarchy& h) { h.vertices.bounds.pop_back(); }},
-      {"lacks its position", [](MeshHierarchy& h) { h.vertices.wide_deltas.push_back({}); }},
-      {"an array of triangles", [](MeshHierarchy& h) { h.vertices.deriving_splits.push_back({}); }},
-      {"error is less", [](MeshHierarchy& h) { h.vertices.bounds[0].line = {}; }},
-      {"sphere", [](MeshHierarchy& h) { h.vertices.bounds[0].radius = {}; }},
-      {"cone", [](MeshHierarchy& h) { h.vertices.bounds[0].cone_angle = 1; }},
-      {"names another split",
-       [](MeshHierarchy& h) {
-         SplitId& s = h.vertices.deriving_splits[0];
-         s = s == SplitId{0} ? SplitId{1} : SplitId{0};
-       }},
-      {"a node lacks its range",
-       [](MeshHierarchy& h) { h.layers[0].attribute_ranges = CompactRanges(); }},
-      {"a split lacks its parent map", [](MeshHierarchy& h) { h.layers[0].parents_of_split = {}; }},
-      {"not finite", [](MeshHierarchy& h) { h.layers[0].values[0] = std::nanf(""); }},
-      {"odd in number", [](MeshHierarchy& h) { h.layers[0].values.pop_back(); }},
-      {"a wedge lacks its attribute",
-       [](MeshHierarchy& h) { h.layers[0].leaf_attribute.push_back({}); }},
-  };
-  for (const Broken& broken : cases) {
-    CAPTURE(broken.what);
-    MeshHierarchy hierarchy = c.hierarchy;
-    broken.harm(hierarchy);
-    const Status status = check_hierarchy(hierarchy);
-    REQUIRE(!status.ok());
-    CHECK_MESSAGE(status.failure().message.find(broken.what) != std::string::npos,
-                  status.failure().message);
-  }
-}
-
 TEST_CASE("any cut of real models is that of the plain definition") {
   std::mt19937_64 random(8);
-  for (const char* name :
-       {"cad/fandisk.off", "cad/hoppe_cessna.obj.zst", "attributes/pirate.obj.zst",
-        "attributes/corset.glb", "attributes/materials_7.obj.zst", "nasty/topology_moebius.obj",
-        "nasty/topology_many_on_edges.obj", "nasty/topology_touching_solids.obj",
-        "nasty/orientation_mixed.stl", "nasty/topology_soup.stl"}) {
-    const std::filesystem::path path = shared_model(name);
-    if (path.empty()) continue;
-    CAPTURE(name);
-    const Result<Imported> in = import_mesh(path, {});
-    REQUIRE(in.ok());
-    if (kSanitized && in->mesh.triangle_count() > 2000) continue;
-    const HierarchyCase c = simplified_case(in->mesh);
+  for (const ZooMesh& z : real_meshes(kSanitized ? 2000 : 20'000)) {
+    CAPTURE(z.name);
+    const HierarchyCase c = simplified_case(z.mesh);
     require_valid(c.hierarchy);
+    REQUIRE(check_hard_edges(c.hierarchy).ok());
+    REQUIRE(check_leaves(c.hierarchy, c.maps, c.mesh).ok());
     const std::size_t count = c.sequence.contractions.size();
     for (std::size_t level = 0; level <= 8; ++level) {
       REQUIRE(difference_at_level(c, count * level / 8) == "");

@@ -150,6 +150,22 @@ TEST_CASE("full refinement restores the snapped input, corner for corner, from a
   }
 }
 
+TEST_CASE("real models are restored by full refinement, and copies follow what changes") {
+  for (const ZooMesh& z : real_meshes(kSanitized ? 500 : 20'000)) {
+    CAPTURE(z.name);
+    const HierarchyCase c = simplified_case(z.mesh);
+    check_copies(c, 6, 5);
+    AdaptiveMesh mesh(share(c));
+    std::mt19937_64 random(6);
+    for (int i = 0; i < 2; ++i) {
+      mesh.update(random_view(c.hierarchy, random));
+      check_draw_list(mesh);
+      mesh.set_error(-1);
+      check_full(c, mesh.extract());
+    }
+  }
+}
+
 TEST_CASE("a mesh without normals shows its triangles' own") {
   Mesh plain = hard_box(2);
   const std::size_t triangle_count = plain.triangle_count();

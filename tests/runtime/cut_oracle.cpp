@@ -7,12 +7,47 @@
 
 namespace crease {
 
+namespace {
+
+template <typename Corner>
+void add_edges(const std::array<Corner, 3>& corners,
+               std::vector<std::pair<Corner, Corner>>& edges) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Corner a = corners[k], b = corners[(k + 1) % 3];
+    edges.emplace_back(std::min(a, b), std::max(a, b));
+  }
+}
+
+// Those that are there an odd number of times.
+template <typename Edge>
+void keep_odd(std::vector<Edge>& edges) {
+  std::sort(edges.begin(), edges.end());
+  std::vector<Edge> odd;
+  for (const Edge& edge : edges) {
+    if (!odd.empty() && odd.back() == edge) {
+      odd.pop_back();
+    } else {
+      odd.push_back(edge);
+    }
+  }
+  edges = std::move(odd);
+}
+
+}  // namespace
+
 CutOracle::CutOracle(const HierarchyCase& hierarchy_case) : case_(hierarchy_case) {
   const VertexHierarchy& h = hierarchy().vertices;
   const std::vector<WedgeRange> ranges = wedge_ranges(h);
   leaf_of_wedge_ = leaves_of_wedges(h, ranges);
   for (const WedgeRange& range : ranges) seen_.push_back(range.begin != range.end);
   done_.assign(h.split_count(), false);
+  for (std::uint32_t t = 0; t < h.triangles.size(); ++t) {
+    const auto& wedges = h.triangles[t];
+    add_edges(std::array{leaf_of_wedge_[index_of(wedges[0])], leaf_of_wedge_[index_of(wedges[1])],
+                         leaf_of_wedge_[index_of(wedges[2])]},
+              border_);
+  }
+  keep_odd(border_);
 }
 
 void CutOracle::set(const Cut& cut) {
@@ -21,9 +56,19 @@ void CutOracle::set(const Cut& cut) {
   }
 }
 
-NodeId CutOracle::active_ancestor(WedgeId wedge) const {
+std::vector<NodeEdge> CutOracle::border() const {
+  std::vector<NodeEdge> edges;
+  for (const auto& [a, b] : border_) {
+    const NodeId now_a = active_ancestor(a), now_b = active_ancestor(b);
+    if (now_a != now_b) edges.emplace_back(std::min(now_a, now_b), std::max(now_a, now_b));
+  }
+  keep_odd(edges);
+  return edges;
+}
+
+NodeId CutOracle::active_ancestor(NodeId leaf) const {
   const VertexHierarchy& h = hierarchy().vertices;
-  NodeId active = leaf_of_wedge_[index_of(wedge)];
+  NodeId active = leaf;
   for (NodeId n = active; !h.is_root(n);) {
     const SplitId s = h.split_above(n);
     n = h.node_of_split[index_of(s)];
@@ -63,14 +108,20 @@ bool CutOracle::is_derived(TriangleId t) const {
 void walk_to(const CutOracle& oracle, ActiveCut& cut, std::mt19937_64& random) {
   const VertexHierarchy& h = oracle.hierarchy().vertices;
   const auto split_all = [&] {
+    std::vector<std::uint32_t> slot_of_node(h.node_count(), kNoSlot);
+    const auto note = [&](std::uint32_t slot) {
+      if (slot == kNoSlot) return;
+      const NodeId n = cut.vertices()[slot].node;
+      if (n != kNoNode) slot_of_node[index_of(n)] = slot;
+    };
+    for (std::uint32_t slot = 0; slot < cut.vertices().size(); ++slot) note(slot);
     for (std::uint32_t s = 0; s < h.split_count(); ++s) {
       const NodeId n = h.node_of_split[s];
       if (!oracle.is_seen(n) || !oracle.is_done(SplitId{s}) || cut.is_done(SplitId{s})) continue;
-      const auto& vertices = cut.vertices();
-      const auto at = std::find_if(vertices.begin(), vertices.end(),
-                                   [n](const ActiveVertex& v) { return v.node == n; });
-      if (at == vertices.end()) continue;
-      if (random() % 8 != 0) cut.split(static_cast<std::uint32_t>(at - vertices.begin()));
+      const std::uint32_t slot = slot_of_node[index_of(n)];
+      if (slot == kNoSlot || random() % 8 == 0) continue;
+      note(cut.split(slot));
+      note(slot);
     }
   };
   const auto merge_all = [&] {
@@ -94,6 +145,21 @@ void walk_to(const CutOracle& oracle, ActiveCut& cut, std::mt19937_64& random) {
 }
 
 namespace {
+
+std::string cracks_of(const CutOracle& oracle, const ActiveCut& cut) {
+  std::vector<NodeEdge> edges;
+  for (const ActiveTriangles& part : cut.parts()) {
+    for (std::uint32_t i = 0; i < part.size(); ++i) {
+      if (part.ids[i] == kNoTriangle) continue;
+      const auto node = [&](std::size_t k) {
+        return cut.vertices()[part.slots[3 * std::size_t(i) + k]].node;
+      };
+      add_edges(std::array{node(0), node(1), node(2)}, edges);
+    }
+  }
+  keep_odd(edges);
+  return edges == oracle.border() ? "" : "a crack";
+}
 
 // Which corners the lists say stand at each vertex.
 std::string difference_of_lists(const ActiveCut& cut) {
@@ -148,6 +214,7 @@ std::string difference(const CutOracle& oracle, const ActiveCut& cut) {
       }
     }
   }
+  if (std::string cracks = cracks_of(oracle, cut); !cracks.empty()) return cracks;
   return difference_of_lists(cut);
 }
 
