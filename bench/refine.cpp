@@ -120,7 +120,7 @@ std::size_t uniform_triangles(const std::shared_ptr<const MeshHierarchy>& hierar
   return uniform.triangle_count();
 }
 
-bool measure(const ModelEntry& entry, int frames, double pixels) {
+bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
   Result<Model> model = load_model(entry, data_folder());
   if (!model.ok()) {
     std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), model.failure().message.c_str());
@@ -138,8 +138,16 @@ bool measure(const ModelEntry& entry, int frames, double pixels) {
   ViewParameters view;
   view.camera.pixels = pixels;
 
+  // Every round does the same moves; the fastest is what others disturbed least.
+  Flight flight;
+  for (int r = 1; r < rounds; ++r) {
+    AdaptiveMesh mesh(hierarchy);
+    const Flight again = fly(mesh, view, box, is_city, frames, 1);
+    if (r == 1 || again.seconds < flight.seconds) flight = again;
+  }
   AdaptiveMesh mesh(hierarchy);
-  const Flight flight = fly(mesh, view, box, is_city, frames, 1);
+  const Flight last = fly(mesh, view, box, is_city, frames, 1);
+  if (rounds == 1 || last.seconds < flight.seconds) flight = last;
   const double moves = double(std::max<std::size_t>(1, flight.moves));
   view.camera = camera_at(box, is_city, double(frames - 1) / frames);
   mesh.update(view);
@@ -170,12 +178,14 @@ bool measure(const ModelEntry& entry, int frames, double pixels) {
 int run(int argc, char** argv) {
   std::vector<std::string> models{"lucy", "city200k", "kuka"};
   std::filesystem::path list = std::filesystem::path(CREASE_BENCH_SOURCE) / "models.txt";
-  int frames = 600;
+  int frames = 600, rounds = 3;
   double pixels = 1;
   CLI::App app("Flights over adaptive meshes");
   app.add_option("--models", models, "names of models.txt, or generate:N")->delimiter(',');
   app.add_option("--list", list, "instead of models.txt");
   app.add_option("--frames", frames, "of a flight");
+  app.add_option("--rounds", rounds, "flights, of which the fastest counts")
+      ->check(CLI::PositiveNumber);
   app.add_option("--pixels", pixels, "error allowed on the screen");
   CLI11_PARSE(app, argc, argv);
   Result<std::vector<ModelEntry>> entries = read_models(list);
@@ -186,10 +196,10 @@ int run(int argc, char** argv) {
   bool good = true;
   for (const std::string& name : models) {
     if (name.starts_with("generate:")) {
-      good = measure({name, "city", "keep", name}, frames, pixels) && good;
+      good = measure({name, "city", "keep", name}, frames, rounds, pixels) && good;
     }
     for (const ModelEntry& entry : *entries) {
-      if (entry.name == name) good = measure(entry, frames, pixels) && good;
+      if (entry.name == name) good = measure(entry, frames, rounds, pixels) && good;
     }
   }
   return good ? 0 : 2;
