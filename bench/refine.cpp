@@ -20,6 +20,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 
 namespace crease::bench {
 namespace {
@@ -74,21 +75,27 @@ Camera camera_at(const Box& box, bool is_city, double share) {
 
 struct Flight {
   std::size_t moves = 0, evaluated = 0, triangles = 0, frames = 0, most_moves = 0;
-  double seconds = 0, worst_frame = 0;
+  std::vector<double> seconds_of_frame;
+
+  double seconds() const {
+    return std::accumulate(seconds_of_frame.begin(), seconds_of_frame.end(), 0.0);
+  }
 };
 
+// Every round does the same moves in the same frames; of each frame the fastest counts, which is
+// the one that others on the machine disturbed least.
 Flight fly(AdaptiveMesh& mesh, const ViewParameters& start, const Box& box, bool is_city,
-           int frames, double length_of_path) {
+           int frames, const Flight* before) {
   Flight flight;
   for (int f = 0; f < frames; ++f) {
     ViewParameters view = start;
-    view.camera = camera_at(box, is_city, length_of_path * f / frames);
-    const double before = processor_seconds();
+    view.camera = camera_at(box, is_city, double(f) / frames);
+    const double began = processor_seconds();
     const UpdateReport report = mesh.update(view);
-    const double seconds = processor_seconds() - before;
+    double seconds = processor_seconds() - began;
     if (f == 0) continue;  // from the coarsest cut
-    flight.seconds += seconds;
-    flight.worst_frame = std::max(flight.worst_frame, seconds);
+    if (before != nullptr) seconds = std::min(seconds, before->seconds_of_frame[flight.frames]);
+    flight.seconds_of_frame.push_back(seconds);
     flight.moves += report.splits + report.merges;
     flight.most_moves = std::max(flight.most_moves, report.splits + report.merges);
     flight.evaluated += report.evaluated;
@@ -138,16 +145,14 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
   ViewParameters view;
   view.camera.pixels = pixels;
 
-  // Every round does the same moves; the fastest is what others disturbed least.
   Flight flight;
   for (int r = 1; r < rounds; ++r) {
     AdaptiveMesh mesh(hierarchy);
-    const Flight again = fly(mesh, view, box, is_city, frames, 1);
-    if (r == 1 || again.seconds < flight.seconds) flight = again;
+    flight = fly(mesh, view, box, is_city, frames, r == 1 ? nullptr : &flight);
   }
   AdaptiveMesh mesh(hierarchy);
-  const Flight last = fly(mesh, view, box, is_city, frames, 1);
-  if (rounds == 1 || last.seconds < flight.seconds) flight = last;
+  flight = fly(mesh, view, box, is_city, frames, rounds == 1 ? nullptr : &flight);
+  const double worst_frame = *std::ranges::max_element(flight.seconds_of_frame);
   const double moves = double(std::max<std::size_t>(1, flight.moves));
   view.camera = camera_at(box, is_city, double(frames - 1) / frames);
   mesh.update(view);
@@ -167,9 +172,9 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
       double(mesh.active_bytes()) / double(mesh.vertex_count()),
       double(flight.triangles) / double(flight.frames),
       double(flight.moves) / double(flight.frames), flight.most_moves,
-      double(flight.evaluated) / double(flight.frames), moves / flight.seconds / 1e6,
-      flight.seconds / moves * 1e9, flight.seconds / double(flight.frames) * 1e3,
-      flight.worst_frame * 1e3, still * 1e6, evaluated, mesh.triangle_count(), uniform,
+      double(flight.evaluated) / double(flight.frames), moves / flight.seconds() / 1e6,
+      flight.seconds() / moves * 1e9, flight.seconds() / double(flight.frames) * 1e3,
+      worst_frame * 1e3, still * 1e6, evaluated, mesh.triangle_count(), uniform,
       double(uniform) / double(mesh.triangle_count()));
   std::fflush(stdout);
   return true;
@@ -184,7 +189,7 @@ int run(int argc, char** argv) {
   app.add_option("--models", models, "names of models.txt, or generate:N")->delimiter(',');
   app.add_option("--list", list, "instead of models.txt");
   app.add_option("--frames", frames, "of a flight");
-  app.add_option("--rounds", rounds, "flights, of which the fastest counts")
+  app.add_option("--rounds", rounds, "flights; of each frame the fastest counts")
       ->check(CLI::PositiveNumber);
   app.add_option("--pixels", pixels, "error allowed on the screen");
   CLI11_PARSE(app, argc, argv);
