@@ -93,6 +93,22 @@ bool Refiner::out_of_time() {
   return false;
 }
 
+// Of moves to come.
+void Refiner::fetch_merges(const ActiveCut& cut) const {
+  const std::vector<Wish>& wishes = merges_.wishes;
+  const std::size_t i = merges_.next, count = wishes.size();
+  if (i + 12 < count) cut.prefetch_merge(wishes[i + 12].slot, wishes[i + 12].split);
+  if (i + 8 < count) cut.prefetch_merge_further(wishes[i + 8].slot, wishes[i + 8].split);
+  if (i + 4 < count) cut.prefetch_siblings(wishes[i + 4].split);
+}
+
+void Refiner::fetch_splits(const ActiveCut& cut) const {
+  const std::vector<Wish>& wishes = splits_.wishes;
+  const std::size_t i = splits_.next, count = wishes.size();
+  if (i + 12 < count) cut.prefetch_split(wishes[i + 12].slot, wishes[i + 12].split);
+  if (i + 8 < count) cut.prefetch_split_further(wishes[i + 8].slot, wishes[i + 8].split);
+}
+
 void Refiner::do_merges(ActiveCut& cut) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
   while (!merges_.empty() && !out_of_time()) {
@@ -126,6 +142,7 @@ void Refiner::do_splits(ActiveCut& cut) {
         }
       }
     }
+    if (!is_ordered_) fetch_splits(cut);
     const Wish wish = take(splits_, less_visible);
     if (cut.vertices()[wish.slot].split != wish.split) continue;
     view_.consistent ? split_consistently(cut, wish.slot) : split(cut, wish.slot);
@@ -187,7 +204,7 @@ void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
 void Refiner::merge(ActiveCut& cut, SplitId s) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const ActiveCut::Children children = cut.children(s);
-  cut.merge(s);
+  cut.merge(s, children);
   ++report_.merges;
   for (const std::uint32_t slot : {children.first, children.second}) {
     if (slot == kNoSlot) continue;

@@ -70,6 +70,8 @@ class Refiner {
   template <typename Later>
   Wish take(Queue& queue, Later later) const;
   void count_merge(const ActiveCut& cut, SplitId s, std::uint32_t slot);
+  void fetch_merges(const ActiveCut& cut) const;
+  void fetch_splits(const ActiveCut& cut) const;
   bool out_of_time();
   void do_merges(ActiveCut& cut);
   void do_splits(ActiveCut& cut);

@@ -30,8 +30,8 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
 
 void Refiner::watch_all(const ActiveCut& cut) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
-  wrong_.resize(0, error_.uses_cones());
-  merged_.resize(0, error_.uses_cones());
+  wrong_ = {};
+  merged_ = {};
   wrong_.resize(cut.vertices().size(), error_.uses_cones());
   pairs_.clear();
   pair_of_slot_.assign(cut.vertices().size(), kNone);
@@ -94,13 +94,13 @@ float Refiner::excess_above(const ActiveCut& cut, const ActiveVertex& v, SplitId
 
 void Refiner::find_merges(const ActiveCut& cut) {
   report_.evaluated += pairs_.size();
-  merged_.find(error_, false,
-               [&](std::uint32_t pair) { wish_merge(cut, pairs_[pair].split, pairs_[pair].slot); });
+  merged_.find<false>(
+      error_, [&](std::uint32_t pair) { wish_merge(cut, pairs_[pair].split, pairs_[pair].slot); });
 }
 
 void Refiner::find_splits(const ActiveCut& cut) {
   report_.evaluated += cut.vertex_count();
-  wrong_.find(error_, true, [&](std::uint32_t slot) { wish_split(cut, slot); });
+  wrong_.find<true>(error_, [&](std::uint32_t slot) { wish_split(cut, slot); });
 }
 
 void Refiner::wish_split(const ActiveCut& cut, std::uint32_t slot) {

@@ -4,18 +4,8 @@
 
 namespace crease {
 
-namespace {
-
-Vec3f as_float(const Vec3d& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-}  // namespace
-
 ViewError::ViewError(const ViewParameters& view, const Grid& grid)
-    : eye_(as_float(view.camera.position - grid.origin)),
-      leeway_(view.coarse_outside ? 0 : std::numeric_limits<float>::infinity()),
-      step_(grid.step),
+    : step_(grid.step),
       per_degree_(view.degrees > 0 ? static_cast<float>(1 / view.degrees) : 0.0f),
       silhouette_weight_(static_cast<float>(view.silhouette_weight)),
       coarse_backfaces_(view.coarse_backfaces),
@@ -29,9 +19,28 @@ ViewError::ViewError(const ViewParameters& view, const Grid& grid)
   const Vec3d forward = normalized(camera.target - camera.position);
   const Vec3d right = normalized(cross(forward, camera.up));
   const Vec3d up = cross(right, forward);
-  planes_ = {as_float(forward), as_float(normalized(forward * wide + right)),
-             as_float(normalized(forward * wide - right)),
-             as_float(normalized(forward * half + up)), as_float(normalized(forward * half - up))};
+  const auto set = [](std::array<float, 3>& to, const Vec3d& from) {
+    to = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
+  };
+  // The distance from a side is dot(forward * wide + right, to) / |forward * wide + right|.
+  const double wide_length = std::hypot(wide, 1), high_length = std::hypot(half, 1);
+  set(gaze_.eye, camera.position - grid.origin);
+  set(gaze_.forward, forward);
+  set(gaze_.right, right * (1 / wide_length));
+  set(gaze_.up, up * (1 / high_length));
+  gaze_.wide_forward = static_cast<float>(wide / wide_length);
+  gaze_.high_forward = static_cast<float>(half / high_length);
+  gaze_.outside = view.coarse_outside ? 0 : -std::numeric_limits<float>::infinity();
+  const auto spread = [](float x) { return Float4{x, x, x, x}; };
+  for (std::size_t i = 0; i < 3; ++i) {
+    gaze4_.eye[i] = spread(gaze_.eye[i]);
+    gaze4_.forward[i] = spread(gaze_.forward[i]);
+    gaze4_.right[i] = spread(gaze_.right[i]);
+    gaze4_.up[i] = spread(gaze_.up[i]);
+  }
+  gaze4_.wide_forward = spread(gaze_.wide_forward);
+  gaze4_.high_forward = spread(gaze_.high_forward);
+  gaze4_.outside = spread(gaze_.outside);
 }
 
 Watch ViewError::watch(const SplitBounds& bounds, const Vec3f& position, float limit) const {
@@ -62,9 +71,8 @@ Watch ViewError::watch(const SplitBounds& bounds, const Vec3f& position, float l
 float ViewError::of(const SplitBounds& bounds, const Vec3f& position) const {
   const Watch w = watch(bounds, position, 1);
   const Vec3f& c = w.center;
-  const float any_distance = std::numeric_limits<float>::infinity();
-  if (!is_wrong<float>(c.x, c.y, c.z, any_distance, w.radius)) return 0;  // out of view
-  const float distance = length(c - eye_);
+  if (!is_in_view(c.x, c.y, c.z, w.radius)) return 0;
+  const float distance = length(c - Vec3f{gaze_.eye[0], gaze_.eye[1], gaze_.eye[2]});
   const float nearest = std::max(distance - w.radius, 1e-20f);
   const float error = std::max(decoded(bounds.surface), decoded(bounds.line));
   float excess = error > 0 ? std::min(error * pixels_at_one_ / nearest, kMost) : 0;

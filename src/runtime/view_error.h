@@ -29,8 +29,15 @@ using Int4 [[gnu::vector_size(16)]] = std::int32_t;
 
 inline bool any(const Int4& lanes) {
   using Long2 [[gnu::vector_size(16)]] = std::int64_t;
-  const Long2 halves = reinterpret_cast<const Long2&>(lanes);
+  const auto halves = std::bit_cast<Long2>(lanes);
   return (halves[0] | halves[1]) != 0;
+}
+
+inline float magnitude(float x) {
+  return std::fabs(x);
+}
+inline Float4 magnitude(const Float4& x) {
+  return std::bit_cast<Float4>(std::bit_cast<Int4>(x) & 0x7fffffff);
 }
 
 // Never wrong, as it is here.
@@ -58,18 +65,25 @@ class ViewError {
 
   bool is_wrong(const Watch& watch) const;
 
-  // The same for a number or for four.
+  // The two parts of the same, for a number or for four: a lane is all ones where it holds.
   template <typename Real>
-  auto is_wrong(const Real& x, const Real& y, const Real& z, const Real& reach2,
-                const Real& radius) const {
-    const Real to_x = x - eye_.x, to_y = y - eye_.y, to_z = z - eye_.z;
-    const auto is_near = to_x * to_x + to_y * to_y + to_z * to_z < reach2;
-    Real inside = to_x * planes_[0].x + to_y * planes_[0].y + to_z * planes_[0].z;
-    for (std::size_t i = 1; i < planes_.size(); ++i) {
-      const Real other = to_x * planes_[i].x + to_y * planes_[i].y + to_z * planes_[i].z;
-      inside = inside < other ? inside : other;
-    }
-    return is_near & (inside + (radius + leeway_) >= 0);
+  auto is_near(const Real& x, const Real& y, const Real& z, const Real& reach2) const {
+    const Gaze<Real>& g = gaze_for(Real{});
+    const Real to_x = x - g.eye[0], to_y = y - g.eye[1], to_z = z - g.eye[2];
+    return to_x * to_x + to_y * to_y + to_z * to_z < reach2;
+  }
+  template <typename Real>
+  auto is_in_view(const Real& x, const Real& y, const Real& z, const Real& radius) const {
+    const Gaze<Real>& g = gaze_for(Real{});
+    const Real to_x = x - g.eye[0], to_y = y - g.eye[1], to_z = z - g.eye[2];
+    const auto along = [&](const std::array<Real, 3>& axis) {
+      return Real(to_x * axis[0] + to_y * axis[1] + to_z * axis[2]);
+    };
+    const Real ahead = along(g.forward);
+    const Real across = g.wide_forward * ahead - magnitude(along(g.right));
+    const Real upright = g.high_forward * ahead - magnitude(along(g.up));
+    return (ahead + radius >= g.outside) & (across + radius >= g.outside) &
+           (upright + radius >= g.outside);
   }
   template <typename Real>
   Real reach2(const Real& x, const Real& y, const Real& z, const Real& reach2, const Real& radius,
@@ -89,9 +103,20 @@ class ViewError {
   // As RoundedUp::value(), here for speed.
   static float decoded(RoundedUp f) { return std::bit_cast<float>(std::uint32_t(f.bits) << 15); }
 
-  Vec3f eye_;
-  std::array<Vec3f, 5> planes_{};  // through the eye: four sides and what is behind it
-  float leeway_ = 0;               // infinite if what is outside counts as well
+  // The view as numbers to compute with. The frustum has five planes through the eye: four sides
+  // and what is behind it. Those that are opposite differ in a sign; `right` and `up` are scaled so
+  // that the differences below are distances from the planes.
+  template <typename Real>
+  struct Gaze {
+    std::array<Real, 3> eye{}, forward{}, right{}, up{};
+    Real wide_forward{}, high_forward{};
+    Real outside{};  // 0, or -infinity if what is outside counts as well
+  };
+  const Gaze<float>& gaze_for(float) const { return gaze_; }
+  const Gaze<Float4>& gaze_for(const Float4&) const { return gaze4_; }
+
+  Gaze<float> gaze_;
+  Gaze<Float4> gaze4_;
   double step_ = 1;
   float pixels_at_one_ = 1;  // a length of 1 at distance 1, in pixels that are allowed
   // Shading of a sphere at distance 1 that is off by one degree, per radius and degree allowed,
@@ -106,7 +131,7 @@ inline bool ViewError::is_wrong(const Watch& w) const {
   const float reach = uses_cones_ ? reach2(c.x, c.y, c.z, w.reach2, w.radius, w.axis.x, w.axis.y,
                                            w.axis.z, w.sine, w.cosine, w.reach2_aside)
                                   : w.reach2;
-  return is_wrong<float>(c.x, c.y, c.z, reach, w.radius);
+  return is_near(c.x, c.y, c.z, reach) && is_in_view(c.x, c.y, c.z, w.radius);
 }
 
 // Which of the two reaches counts, by how the sphere's normals face the eye. All directions from
@@ -117,7 +142,8 @@ Real ViewError::reach2(const Real& x, const Real& y, const Real& z, const Real& 
                        const Real& radius, const Real& axis_x, const Real& axis_y,
                        const Real& axis_z, const Real& sine, const Real& cosine,
                        const Real& reach2_aside) const {
-  const Real to_x = x - eye_.x, to_y = y - eye_.y, to_z = z - eye_.z;
+  const Gaze<Real>& g = gaze_for(Real{});
+  const Real to_x = x - g.eye[0], to_y = y - g.eye[1], to_z = z - g.eye[2];
   const Real behind2 = to_x * to_x + to_y * to_y + to_z * to_z - radius * radius;
   const Real tangent2 = behind2 > 0 ? behind2 : behind2 * 0;  // to where a ray touches the sphere
   const Real facing = to_x * axis_x + to_y * axis_y + to_z * axis_z;

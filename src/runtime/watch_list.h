@@ -4,7 +4,7 @@
 //   WatchList watches;
 //   watches.resize(slot_count);
 //   watches.set(slot, error.watch(bounds, position, limit));
-//   watches.find(error, true, [](std::uint32_t slot) { ... });   // those that are
+//   watches.find<true>(error, [](std::uint32_t slot) { ... });   // those that are
 //
 // All that the answer depends on stands in 20 bytes in a row, so a frame streams through memory
 // and looks nothing up: 1 to 2 ns a watch (bench/refine). To keep a date at which each answer may
@@ -25,12 +25,14 @@ namespace crease {
 
 class WatchList {
  public:
-  // New ones are off: never wrong. Facing of old ones is to be set again if it was not kept.
+  // New ones are as they last were, or off: never wrong. Facing of old ones is to be set again if
+  // it was not kept.
   void resize(std::size_t count, bool with_facing) {
     size_ = count;
     const std::size_t blocks = (count + kLanes - 1) / kLanes;
-    spheres_.resize(blocks, kOff);
-    facings_.resize(with_facing ? blocks : 0);
+    if (blocks > spheres_.size()) spheres_.resize(blocks, kOff);
+    if (!with_facing) return facings_.clear();
+    if (spheres_.size() > facings_.size()) facings_.resize(spheres_.size());
   }
   std::size_t size() const { return size_; }
 
@@ -63,22 +65,15 @@ class WatchList {
   void prefetch(std::size_t i) const { __builtin_prefetch(&spheres_[i / kLanes]); }
 
   // Calls found(i), ascending, for each that is seen to be wrong, or for each other one.
-  template <typename Found>
-  void find(const ViewError& error, bool wrong, Found found) const {
-    for (std::size_t b = 0; b < spheres_.size(); ++b) {
+  template <bool kWrong, typename Found>
+  void find(const ViewError& error, Found found) const {
+    for (std::size_t b = 0; kLanes * b < size_; ++b) {
       const Spheres& s = spheres_[b];
-      Int4 is_wrong;
-      if (facings_.empty()) {
-        is_wrong = error.is_wrong<Float4>(s.x, s.y, s.z, s.reach2, s.radius);
-      } else {
-        const Facings& f = facings_[b];
-        is_wrong =
-            error.is_wrong<Float4>(s.x, s.y, s.z,
-                                   error.reach2<Float4>(s.x, s.y, s.z, s.reach2, s.radius, f.x, f.y,
-                                                        f.z, f.sine, f.cosine, f.reach2_aside),
-                                   s.radius);
-      }
-      const Int4 hit = wrong ? is_wrong : ~is_wrong;
+      const Int4 is_near = error.is_near(s.x, s.y, s.z, reach2_of(error, b));
+      // Hardly any of what is not split is near, unless it is out of view.
+      if (kWrong && !any(is_near)) continue;
+      const Int4 is_wrong = is_near & error.is_in_view(s.x, s.y, s.z, s.radius);
+      const Int4 hit = kWrong ? is_wrong : ~is_wrong;
       if (!any(hit)) continue;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const std::size_t i = kLanes * b + lane;
@@ -99,6 +94,14 @@ class WatchList {
   struct Facings {
     Float4 x, y, z, sine, cosine, reach2_aside;
   };
+  Float4 reach2_of(const ViewError& error, std::size_t b) const {
+    const Spheres& s = spheres_[b];
+    if (facings_.empty()) return s.reach2;
+    const Facings& f = facings_[b];
+    return error.reach2(s.x, s.y, s.z, s.reach2, s.radius, f.x, f.y, f.z, f.sine, f.cosine,
+                        f.reach2_aside);
+  }
+
   static constexpr Spheres kOff{{}, {}, {}, {-1, -1, -1, -1}, {}};
 
   std::vector<Spheres> spheres_;
