@@ -3,9 +3,10 @@
 //   bench/refine --models lucy,city200k,kuka --frames 600
 //
 // Each model is flown over along a path with a fixed seed. On one thread, processor time: splits
-// plus merges per second of the whole update (evaluation, moves, draw arrays), and of the moves
-// alone; vertices evaluated per frame; what a still camera costs; bytes; triangles at 1 pixel
-// beside the coarsest uniform level that is as right everywhere in the view.
+// plus merges per second of the whole update (evaluation, moves, draw arrays), of several flights
+// the fastest of each frame; vertices and pairs evaluated per frame; what a still camera costs;
+// bytes; triangles at 1 pixel beside the coarsest uniform level that is as right everywhere in the
+// view.
 #include "crease/adaptive_mesh.h"
 #include "crease/build_hierarchy.h"
 #include "crease/simplify.h"

@@ -252,8 +252,9 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
   const Part kind = is_smooth ? kSnPart : kind_of(t, slots, arriving_);
   ActiveTriangles& part = parts_[kind];
   const std::uint32_t place = part.add(t, arriving_.size());
-  std::copy(arriving_.begin(), arriving_.end(),
-            part.relative.begin() + std::ptrdiff_t(arriving_.size() * place));
+  for (std::size_t i = 0; i < arriving_.size(); ++i) {
+    part.relative[arriving_.size() * place + i] = arriving_[i];
+  }
   for (std::uint32_t k = 0; k < 3; ++k) {
     part.slots[3 * std::size_t(place) + k] = slots[k];
     lists_.push_back(vertices_[slots[k]].corners, {CornerRef(kind, place, k), wedges[k]});

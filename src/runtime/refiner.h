@@ -87,6 +87,8 @@ class Refiner {
   bool has_view_ = false;
   bool is_ordered_ = false;
   float merge_below_ = 1;
+  Odometer odometer_;
+  int frames_on_odometer_ = 0;
   WatchList wrong_;                          // per slot
   WatchList merged_;                         // per pair
   std::vector<Pair> pairs_;                  // in no order

@@ -6,6 +6,12 @@
 
 namespace crease {
 
+namespace {
+
+constexpr int kFramesOnOdometer = 4096;  // so that floats can tell what a frame adds
+
+}  // namespace
+
 void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
   ViewParameters moved = view_;
   moved.camera.position = view.camera.position;
@@ -18,7 +24,18 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
   const bool only_moved = has_view_ && moved == view;
   has_view_ = true;
   view_ = view;
+  const ViewError before = error_;
   error_ = ViewError(view, cut.hierarchy().vertices.grid);
+  const ViewError::Motion motion = error_.motion_from(before);
+  odometer_.travel += motion.travel;
+  odometer_.turn += motion.turn;
+  odometer_.slop = 1e-6f * error_.eye_length();
+  if (!only_moved || ++frames_on_odometer_ > kFramesOnOdometer) {
+    odometer_.travel = odometer_.turn = 0;
+    frames_on_odometer_ = 0;
+    wrong_.look_at_all();
+    merged_.look_at_all();
+  }
   merge_below_ = static_cast<float>(1 / std::max(view.hysteresis, 1.0));
   is_ordered_ =
       view.clock != nullptr || view.max_triangles != std::numeric_limits<std::size_t>::max();
@@ -93,14 +110,14 @@ float Refiner::excess_above(const ActiveCut& cut, const ActiveVertex& v, SplitId
 }
 
 void Refiner::find_merges(const ActiveCut& cut) {
-  report_.evaluated += pairs_.size();
-  merged_.find<false>(
-      error_, [&](std::uint32_t pair) { wish_merge(cut, pairs_[pair].split, pairs_[pair].slot); });
+  report_.evaluated += merged_.find<false>(error_, odometer_, [&](std::uint32_t pair) {
+    wish_merge(cut, pairs_[pair].split, pairs_[pair].slot);
+  });
 }
 
 void Refiner::find_splits(const ActiveCut& cut) {
-  report_.evaluated += cut.vertex_count();
-  wrong_.find<true>(error_, [&](std::uint32_t slot) { wish_split(cut, slot); });
+  report_.evaluated +=
+      wrong_.find<true>(error_, odometer_, [&](std::uint32_t slot) { wish_split(cut, slot); });
 }
 
 void Refiner::wish_split(const ActiveCut& cut, std::uint32_t slot) {

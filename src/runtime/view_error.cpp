@@ -24,13 +24,14 @@ ViewError::ViewError(const ViewParameters& view, const Grid& grid)
   };
   // The distance from a side is dot(forward * wide + right, to) / |forward * wide + right|.
   const double wide_length = std::hypot(wide, 1), high_length = std::hypot(half, 1);
+  frame_ = {camera.position, forward, right, up};
   set(gaze_.eye, camera.position - grid.origin);
   set(gaze_.forward, forward);
   set(gaze_.right, right * (1 / wide_length));
   set(gaze_.up, up * (1 / high_length));
   gaze_.wide_forward = static_cast<float>(wide / wide_length);
   gaze_.high_forward = static_cast<float>(half / high_length);
-  gaze_.outside = view.coarse_outside ? 0 : -std::numeric_limits<float>::infinity();
+  gaze_.outside = view.coarse_outside ? 0 : kNever;
   const auto spread = [](float x) { return Float4{x, x, x, x}; };
   for (std::size_t i = 0; i < 3; ++i) {
     gaze4_.eye[i] = spread(gaze_.eye[i]);
@@ -50,16 +51,16 @@ Watch ViewError::watch(const SplitBounds& bounds, const Vec3f& position, float l
   watch.radius = radius;
   const float error = std::max(decoded(bounds.surface), decoded(bounds.line)) * pixels_at_one_;
   const float turned = decoded(bounds.degrees) * per_degree_;
-  const auto reach2_for = [&](float weight) {
+  const auto reach_for = [&](float weight) {
     float reach = error * weight / limit;
     if (turned * weight > limit) {
       reach = std::max(reach, turned * weight / limit * radius * full_size_at_one_);
     }
-    return reach > 0 ? (reach + radius) * (reach + radius) : -1.0f;
+    return reach > 0 ? reach + radius : -kNever;
   };
-  watch.reach2 = reach2_for(1);
+  watch.reach = reach_for(1);
   if (!uses_cones_) return watch;
-  watch.reach2_aside = reach2_for(silhouette_weight_);
+  watch.reach_aside = reach_for(silhouette_weight_);
   if (bounds.cone_angle >= 128) return watch;
   const NormalCone cone = bounds.cone();
   watch.axis = cone.axis;
@@ -68,20 +69,30 @@ Watch ViewError::watch(const SplitBounds& bounds, const Vec3f& position, float l
   return watch;
 }
 
+// Directions change by at most the root of the sum of squares that the frame's three do, over the
+// root of 2.
+ViewError::Motion ViewError::motion_from(const ViewError& before) const {
+  double sum = 0;
+  for (std::size_t i = 1; i < frame_.size(); ++i) {
+    const Vec3d change = frame_[i] - before.frame_[i];
+    sum += dot(change, change);
+  }
+  return {length(frame_[0] - before.frame_[0]), std::sqrt(sum / 2)};
+}
+
 float ViewError::of(const SplitBounds& bounds, const Vec3f& position) const {
   const Watch w = watch(bounds, position, 1);
   const Vec3f& c = w.center;
-  if (!is_in_view(c.x, c.y, c.z, w.radius)) return 0;
-  const float distance = length(c - Vec3f{gaze_.eye[0], gaze_.eye[1], gaze_.eye[2]});
-  const float nearest = std::max(distance - w.radius, 1e-20f);
+  if (inside(c.x, c.y, c.z) + w.radius < 0) return 0;
+  const float nearest = std::max(distance(c.x, c.y, c.z) - w.radius, 1e-20f);
   const float error = std::max(decoded(bounds.surface), decoded(bounds.line));
   float excess = error > 0 ? std::min(error * pixels_at_one_ / nearest, kMost) : 0;
   const float size = std::min(1.0f, w.radius * full_size_at_one_ / nearest);
   excess = std::max(excess, decoded(bounds.degrees) * per_degree_ * size);
   if (!uses_cones_) return excess;
   // Which of three reaches is chosen tells the weight.
-  const float weight = reach2(c.x, c.y, c.z, 1.0f, w.radius, w.axis.x, w.axis.y, w.axis.z, w.sine,
-                              w.cosine, silhouette_weight_);
+  const float weight = facing_reach(c.x, c.y, c.z, 1.0f, w.radius, w.axis.x, w.axis.y, w.axis.z,
+                                    w.sine, w.cosine, silhouette_weight_);
   return excess * std::max(weight, 0.0f);
 }
 

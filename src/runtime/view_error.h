@@ -22,6 +22,10 @@
 #include <cstdint>
 #include <limits>
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 namespace crease {
 
 using Float4 [[gnu::vector_size(16)]] = float;
@@ -40,16 +44,34 @@ inline Float4 magnitude(const Float4& x) {
   return std::bit_cast<Float4>(std::bit_cast<Int4>(x) & 0x7fffffff);
 }
 
+template <typename Real>
+Real smaller(const Real& a, const Real& b) {
+  return a < b ? a : b;
+}
+
+inline Float4 root(const Float4& x) {
+#if defined(__SSE__)
+  return _mm_sqrt_ps(x);
+#else
+  return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+#endif
+}
+inline float root(float x) {
+  return std::sqrt(x);
+}
+
+inline constexpr float kNever = std::numeric_limits<float>::infinity();
+
 // Never wrong, as it is here.
 struct Watch {
   Vec3f center;
-  float reach2 = -1;  // squared: it is wrong for eyes within this distance
-  float radius = 0;   // of the sphere that has to be in view
+  float reach = -kNever;  // it is wrong for eyes within this distance
+  float radius = 0;       // of the sphere that has to be in view
   // Where facing counts: normals are within an angle of so much sine and cosine around the axis.
   // Cosine 0: any direction.
   Vec3f axis;
   float sine = 1, cosine = 0;
-  float reach2_aside = -1;  // in place of reach2 for what may be a silhouette
+  float reach_aside = -kNever;  // in place of reach for what may be a silhouette
 };
 
 class ViewError {
@@ -65,15 +87,18 @@ class ViewError {
 
   bool is_wrong(const Watch& watch) const;
 
-  // The two parts of the same, for a number or for four: a lane is all ones where it holds.
+  // The same for a number or for four, in parts: wrong is what is nearer than its reach and whose
+  // sphere is in view, that is, not in front of any of five planes through the eye by more than the
+  // radius.
   template <typename Real>
-  auto is_near(const Real& x, const Real& y, const Real& z, const Real& reach2) const {
+  Real distance(const Real& x, const Real& y, const Real& z) const {
     const Gaze<Real>& g = gaze_for(Real{});
     const Real to_x = x - g.eye[0], to_y = y - g.eye[1], to_z = z - g.eye[2];
-    return to_x * to_x + to_y * to_y + to_z * to_z < reach2;
+    return root(to_x * to_x + to_y * to_y + to_z * to_z);
   }
+  // How far inside the nearest plane, or outside the farthest one if negative.
   template <typename Real>
-  auto is_in_view(const Real& x, const Real& y, const Real& z, const Real& radius) const {
+  Real inside(const Real& x, const Real& y, const Real& z) const {
     const Gaze<Real>& g = gaze_for(Real{});
     const Real to_x = x - g.eye[0], to_y = y - g.eye[1], to_z = z - g.eye[2];
     const auto along = [&](const std::array<Real, 3>& axis) {
@@ -82,13 +107,20 @@ class ViewError {
     const Real ahead = along(g.forward);
     const Real across = g.wide_forward * ahead - magnitude(along(g.right));
     const Real upright = g.high_forward * ahead - magnitude(along(g.up));
-    return (ahead + radius >= g.outside) & (across + radius >= g.outside) &
-           (upright + radius >= g.outside);
+    return g.outside + smaller(ahead, smaller(across, upright));
   }
   template <typename Real>
-  Real reach2(const Real& x, const Real& y, const Real& z, const Real& reach2, const Real& radius,
-              const Real& axis_x, const Real& axis_y, const Real& axis_z, const Real& sine,
-              const Real& cosine, const Real& reach2_aside) const;
+  Real facing_reach(const Real& x, const Real& y, const Real& z, const Real& reach,
+                    const Real& radius, const Real& axis_x, const Real& axis_y, const Real& axis_z,
+                    const Real& sine, const Real& cosine, const Real& reach_aside) const;
+
+  // What moves between two views that differ in the camera's place and direction alone: the eye,
+  // and any direction that is fixed in the picture, at most.
+  struct Motion {
+    double travel, turn;
+  };
+  Motion motion_from(const ViewError& before) const;
+  float eye_length() const { return std::hypot(gaze_.eye[0], gaze_.eye[1], gaze_.eye[2]); }
 
   bool uses_cones() const { return uses_cones_; }
   Vec3f position(const Vec3i& g) const {
@@ -110,13 +142,14 @@ class ViewError {
   struct Gaze {
     std::array<Real, 3> eye{}, forward{}, right{}, up{};
     Real wide_forward{}, high_forward{};
-    Real outside{};  // 0, or -infinity if what is outside counts as well
+    Real outside{};  // 0, or infinity if what is outside counts as well
   };
   const Gaze<float>& gaze_for(float) const { return gaze_; }
   const Gaze<Float4>& gaze_for(const Float4&) const { return gaze4_; }
 
   Gaze<float> gaze_;
   Gaze<Float4> gaze4_;
+  std::array<Vec3d, 4> frame_{};  // eye, forward, right, up
   double step_ = 1;
   float pixels_at_one_ = 1;  // a length of 1 at distance 1, in pixels that are allowed
   // Shading of a sphere at distance 1 that is off by one degree, per radius and degree allowed,
@@ -128,20 +161,21 @@ class ViewError {
 
 inline bool ViewError::is_wrong(const Watch& w) const {
   const Vec3f& c = w.center;
-  const float reach = uses_cones_ ? reach2(c.x, c.y, c.z, w.reach2, w.radius, w.axis.x, w.axis.y,
-                                           w.axis.z, w.sine, w.cosine, w.reach2_aside)
-                                  : w.reach2;
-  return is_near(c.x, c.y, c.z, reach) && is_in_view(c.x, c.y, c.z, w.radius);
+  const float reach = uses_cones_
+                          ? facing_reach(c.x, c.y, c.z, w.reach, w.radius, w.axis.x, w.axis.y,
+                                         w.axis.z, w.sine, w.cosine, w.reach_aside)
+                          : w.reach;
+  return distance(c.x, c.y, c.z) < reach && inside(c.x, c.y, c.z) + w.radius >= 0;
 }
 
 // Which of the two reaches counts, by how the sphere's normals face the eye. All directions from
 // the eye to the sphere and all normals differ from the axes by half_angle + asin(radius /
 // distance) at most; here by sines and cosines of these angles, times the distance.
 template <typename Real>
-Real ViewError::reach2(const Real& x, const Real& y, const Real& z, const Real& reach2,
-                       const Real& radius, const Real& axis_x, const Real& axis_y,
-                       const Real& axis_z, const Real& sine, const Real& cosine,
-                       const Real& reach2_aside) const {
+Real ViewError::facing_reach(const Real& x, const Real& y, const Real& z, const Real& reach,
+                             const Real& radius, const Real& axis_x, const Real& axis_y,
+                             const Real& axis_z, const Real& sine, const Real& cosine,
+                             const Real& reach_aside) const {
   const Gaze<Real>& g = gaze_for(Real{});
   const Real to_x = x - g.eye[0], to_y = y - g.eye[1], to_z = z - g.eye[2];
   const Real behind2 = to_x * to_x + to_y * to_y + to_z * to_z - radius * radius;
@@ -155,8 +189,8 @@ Real ViewError::reach2(const Real& x, const Real& y, const Real& z, const Real& 
       (behind2 > 0) & (cosine > 0) & (cosine * cosine * tangent2 > sine * sine * (radius * radius));
   const auto is_away = is_narrow & (more > 0) & (more * more > sine2);
   const auto is_towards = is_narrow & (less > 0) & (less * less > sine2);
-  const Real away = coarse_backfaces_ ? reach2 * 0 - 1 : reach2;
-  return is_away ? away : is_towards ? reach2 : reach2_aside;
+  const Real away = coarse_backfaces_ ? Real{} - kNever : reach;
+  return is_away ? away : is_towards ? reach : reach_aside;
 }
 
 }  // namespace crease
