@@ -11,9 +11,9 @@
 // bounds of the hierarchy, so what is left unsplit is at most that wrong. No split needs another
 // one: the mesh has no crack, whatever is split (DESIGN 6.1).
 //
-// Cost: that of the splits and merges done, of evaluating the vertices for which the camera has
-// moved far enough to change the answer, and of comparing one number per active vertex. A camera
-// that has not moved costs nothing.
+// Cost: that of the splits and merges done, of asking some 20 bytes per active vertex whether it is
+// seen to be wrong, four at a time, where the camera has moved far enough to change the answer, and
+// of comparing two numbers per four of them. A camera that has not moved costs nothing.
 #pragma once
 
 #include "crease/camera.h"
@@ -53,7 +53,7 @@ struct ViewParameters {
 
 struct UpdateReport {
   std::size_t splits = 0, merges = 0;
-  std::size_t evaluated = 0;  // vertices whose error on the screen was computed
+  std::size_t evaluated = 0;  // vertices and pairs of which it was asked whether they are wrong
   bool complete = true;       // else time ran out
 };
 

@@ -28,30 +28,38 @@ constexpr std::uint32_t popcount_inline(std::uint64_t bits) {
 #endif
 }
 
-// A bit per key, and how many of them are set before it.
+// A bit per key, and how many of them are set before it: side by side, so that both are one
+// look-up.
 class RankedBits {
  public:
   void push_back(bool bit) {
-    if (size_ % 64 == 0) {
-      rank_of_word_.push_back(set_count_);
-      words_.push_back(0);
-    }
-    words_.back() |= std::uint64_t(bit) << (size_ % 64);
+    if (size_ % 64 == 0) words_.push_back({0, 0, set_count_});
+    Word& word = words_.back();
+    (size_ % 64 < 32 ? word.low : word.high) |= std::uint32_t(bit) << (size_ % 32);
     set_count_ += bit ? 1 : 0;
     ++size_;
   }
-  bool test(std::size_t key) const { return (words_[key / 64] >> (key % 64) & 1) != 0; }
-  std::uint32_t rank(std::size_t key) const {
-    const std::uint64_t before = words_[key / 64] & ((std::uint64_t(1) << (key % 64)) - 1);
-    return rank_of_word_[key / 64] + popcount_inline(before);
+  bool test(std::size_t key) const {
+    const Word& word = words_[key / 64];
+    return ((key % 64 < 32 ? word.low : word.high) >> (key % 32) & 1) != 0;
   }
+  std::uint32_t rank(std::size_t key) const {
+    const Word& word = words_[key / 64];
+    const std::uint64_t bits = std::uint64_t(word.high) << 32 | word.low;
+    const std::uint64_t before = bits & ((std::uint64_t(1) << (key % 64)) - 1);
+    return word.rank + popcount_inline(before);
+  }
+  void prefetch(std::size_t key) const { __builtin_prefetch(&words_[key / 64]); }
   std::size_t size() const { return size_; }
   std::size_t set_count() const { return set_count_; }
-  std::size_t bytes() const { return 8 * words_.size() + 4 * rank_of_word_.size(); }
+  std::size_t bytes() const { return sizeof(Word) * words_.size(); }
 
  private:
-  std::vector<std::uint64_t> words_;
-  std::vector<std::uint32_t> rank_of_word_;
+  struct Word {
+    std::uint32_t low, high;
+    std::uint32_t rank;  // of its first key
+  };
+  std::vector<Word> words_;
   std::size_t size_ = 0;
   std::uint32_t set_count_ = 0;
 };
@@ -75,9 +83,20 @@ class CompactRanges {
     return usual_ + (excess_[rank + 1] - excess_[rank]);
   }
   std::uint32_t end(std::size_t key) const { return begin(key) + count(key); }
+  struct Range {
+    std::uint32_t begin, end;
+  };
+  Range range(std::size_t key) const {  // begin and end for one look-up
+    const std::uint32_t rank = is_unusual_.rank(key), before = excess_[rank];
+    const std::uint32_t begin = static_cast<std::uint32_t>(key) * usual_ + before;
+    if (!is_unusual_.test(key)) return {begin, begin + usual_};
+    return {begin, begin + usual_ + (excess_[rank + 1] - before)};
+  }
+  bool is_usual(std::size_t key) const { return !is_unusual_.test(key); }
   std::uint32_t total() const {
     return static_cast<std::uint32_t>(size()) * usual_ + excess_.back();
   }
+  void prefetch(std::size_t key) const { is_unusual_.prefetch(key); }
   std::size_t size() const { return is_unusual_.size(); }
   std::size_t bytes() const { return is_unusual_.bytes() + 4 * excess_.size(); }
 

@@ -180,7 +180,8 @@ struct VertexHierarchy {
 
  private:
   TriangleRange triangles_in(std::size_t key) const {
-    return {triangle_ranges.begin(key), triangle_ranges.end(key)};
+    const CompactRanges::Range range = triangle_ranges.range(key);
+    return {range.begin, range.end};
   }
 };
 

@@ -37,6 +37,7 @@ class BitArray {
     const std::uint64_t high = words_[bit / 64 + 1] << 1 << (63 - bit % 64);
     return static_cast<std::uint32_t>((low | high) & ((std::uint64_t(1) << bits) - 1));
   }
+  void prefetch(std::size_t bit) const { __builtin_prefetch(&words_[bit / 64]); }
   std::size_t size() const { return size_; }
   std::size_t bytes() const { return 8 * words_.size(); }
 
@@ -58,6 +59,7 @@ class PackedIndices {
   Index operator[](std::size_t i) const {
     return static_cast<Index>(packed_.read(i * bits_, bits_));
   }
+  void prefetch(std::size_t i) const { packed_.prefetch(i * bits_); }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   unsigned bits() const { return bits_; }

@@ -54,16 +54,17 @@ class ParentMaps {
     bit_ranges_.push_back(static_cast<std::uint32_t>(kWidthBits + width * parents.size()));
   }
   Map of(std::size_t split) const {
-    const std::uint32_t bits = bit_ranges_.count(split);
     Map map;
-    if (bits == 0) return map;
-    const std::size_t first = bit_ranges_.begin(split);
+    if (is_empty(split)) return map;
+    const CompactRanges::Range range = bit_ranges_.range(split);
+    const std::size_t first = range.begin, bits = range.end - range.begin;
     map.bits_ = &bits_;
     map.first_ = first + kWidthBits;
     map.width_ = bits_.read(first, kWidthBits) + 1;
     map.size_ = (bits - kWidthBits) / map.width_;
     return map;
   }
+  bool is_empty(std::size_t split) const { return bit_ranges_.is_usual(split); }
   std::size_t size() const { return bit_ranges_.size(); }
   std::size_t list_count() const { return map_count_; }
   std::size_t bytes() const { return bit_ranges_.bytes() + bits_.bytes(); }

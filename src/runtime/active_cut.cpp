@@ -44,7 +44,7 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
   for (std::uint32_t t = coarse.begin; t < coarse.end; ++t) {
     std::array<std::uint32_t, 3> slots;
     for (std::size_t k = 0; k < 3; ++k) slots[k] = map_.slot_at(h_.triangles[t][k]);
-    activate(TriangleId{t}, slots);
+    activate(TriangleId{t}, h_.triangles[t], slots);
   }
 }
 
@@ -70,8 +70,13 @@ void ActiveCut::stand(std::uint32_t slot, NodeId node, const Vec3i& position) {
   v.node = node;
   v.split = h_.split_of(node);
   v.position = position;
-  v.one_normal =
-      normal_layer_ != kNone && hierarchy_.layers[normal_layer_].attribute_count(node) <= 1;
+  if (normal_layer_ != kNone) {
+    const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
+    const CompactRanges::Range range = layer.attribute_ranges.range(index_of(node));
+    v.normal_begin = range.begin;
+    v.normal_count = range.end - range.begin;
+    v.one_normal = v.normal_count <= 1;
+  }
   vertex_changes_.mark(slot);
 }
 
@@ -118,47 +123,53 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
 
   const TriangleRange born = h_.triangles_of(s);
   for (std::uint32_t t = born.begin; t < born.end; ++t) {
+    const std::array<WedgeId, 3> wedges = h_.triangles[t];
     std::array<std::uint32_t, 3> slots;
     for (std::size_t k = 0; k < 3; ++k) {
-      const WedgeId wedge = h_.triangles[t][k];
+      const WedgeId wedge = wedges[k];
       slots[k] = wedge < begin || wedge >= end ? map_.slot_at(wedge)
                  : wedge < middle              ? slot
                                                : other;
     }
-    activate(TriangleId{t}, slots);
+    activate(TriangleId{t}, wedges, slots);
   }
   touch_derived(s);
   return other;
 }
 
 // Those from `middle` on. Which way a corner goes is a coin toss, so both ways are written and one
-// counts.
+// counts. `to` has none yet.
 void ActiveCut::give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle) {
   CornerList& list = vertices_[from].corners;
+  CornerList& other = vertices_[to].corners;
   const std::span<CornerAt> all = lists_.of(list);
-  leaving_.resize(all.size());
-  std::size_t stay = 0, leave = 0;
+  const bool fits = all.size() <= CornerList::kOwn;
+  if (!fits) leaving_.resize(all.size());
+  CornerAt* const leaving = fits ? other.own.data() : leaving_.data();
+  std::uint32_t stay = 0, leave = 0;
   for (const CornerAt at : all) {
     const bool leaves = at.wedge >= middle;
-    leaving_[leave] = at;
+    leaving[leave] = at;
     all[stay] = at;
     leave += leaves ? 1 : 0;
     stay += leaves ? 0 : 1;
   }
-  lists_.resize(list, stay);
-  CornerList& other = vertices_[to].corners;
-  lists_.resize(other, leave);
-  std::copy_n(leaving_.begin(), leave, lists_.of(other).begin());
-  for (std::size_t i = 0; i < leave; ++i) {
-    const CornerRef corner = leaving_[i].corner;
-    slots_of(corner)[corner.corner()] = to;
-    parts_[corner.part()].moved.mark(corner.triangle());
+  if (fits) {
+    list.count = stay;
+    other.count = leave;
+  } else {
+    lists_.resize(list, stay);
+    lists_.resize(other, leave);
+    std::copy_n(leaving_.begin(), leave, lists_.of(other).begin());
+  }
+  for (const CornerAt& at : lists_.of(other)) {
+    slots_of(at.corner)[at.corner.corner()] = to;
+    parts_[at.corner.part()].moved.mark(at.corner.triangle());
   }
 }
 
-void ActiveCut::merge(SplitId s) {
-  CREASE_ASSERT(can_merge(s));
-  const Children slots = children(s);
+void ActiveCut::merge(SplitId s, const Children& slots) {
+  CREASE_ASSERT(is_done(s));
   const NodeId node = h_.node_of_split[index_of(s)];
   set_done(s, false);
   if (slots.first == kNoSlot || slots.second == kNoSlot) {
@@ -222,25 +233,34 @@ void ActiveCut::take_corners(std::uint32_t from, std::uint32_t to) {
   std::copy(leaving_.begin(), leaving_.end(), lists_.of(list).begin() + std::ptrdiff_t(staying));
 }
 
-void ActiveCut::activate(TriangleId t, const std::array<std::uint32_t, 3>& slots) {
-  const std::array<WedgeId, 3>& wedges = h_.triangles[index_of(t)];
-  arriving_.clear();
+void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
+                         const std::array<std::uint32_t, 3>& slots) {
+  const std::size_t tracked = tracked_.size();
+  arriving_.resize(3 * tracked);
+  bool one_normal = true;
   for (std::size_t k = 0; k < 3; ++k) {
-    for (std::uint32_t l : tracked_) {
-      arriving_.push_back(hierarchy_.attribute_at(l, vertices_[slots[k]].node, wedges[k]));
+    const ActiveVertex& v = vertices_[slots[k]];
+    one_normal &= v.one_normal != 0;
+    for (std::size_t i = 0; i < tracked; ++i) {
+      const std::uint32_t l = tracked_[i];
+      const bool is_only = l == normal_layer_ && v.one_normal != 0;
+      arriving_[k * tracked + i] =
+          is_only ? RelativeAttribute{0} : hierarchy_.attribute_at(l, v.node, wedges[k]);
     }
   }
-  const Part kind = touches_triangles_ ? kind_of(t, slots, arriving_) : kSnPart;
+  const bool is_smooth = !touches_triangles_ || (one_normal && !is_derived(t));
+  const Part kind = is_smooth ? kSnPart : kind_of(t, slots, arriving_);
   ActiveTriangles& part = parts_[kind];
   const std::uint32_t place = part.add(t, arriving_.size());
-  std::copy(arriving_.begin(), arriving_.end(),
-            part.relative.begin() + std::ptrdiff_t(arriving_.size() * place));
+  for (std::size_t i = 0; i < arriving_.size(); ++i) {
+    part.relative[arriving_.size() * place + i] = arriving_[i];
+  }
   for (std::uint32_t k = 0; k < 3; ++k) {
     part.slots[3 * std::size_t(place) + k] = slots[k];
     lists_.push_back(vertices_[slots[k]].corners, {CornerRef(kind, place, k), wedges[k]});
   }
   part.moved.mark(place);
-  if (kind != kSnPart || color_layer_ != kNone) part.touched.mark(place);
+  if (kind != kSnPart || color_layer_ != kNone) part.shaded.mark(place);
 }
 
 // Which has corners at `from` and at `to`; the lists of these two are left as they are.
@@ -265,23 +285,45 @@ void ActiveCut::pass_down(SplitId s, std::uint32_t slot, bool second) {
   touch_corners(slot);
   for (std::size_t i = 0; i < tracked_.size(); ++i) {
     const std::uint32_t l = tracked_[i];
-    if (hierarchy_.layers[l].parents_of_split.of(index_of(s)).empty()) continue;  // 0 remains
-    for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
+    const AttributeHierarchy& layer = hierarchy_.layers[l];
+    if (layer.parents_of_split.is_empty(index_of(s))) continue;  // 0 remains
+    const std::span<const CornerAt> corners = lists_.of(vertices_[slot].corners);
+    // MeshHierarchy::below() for all of them: what each attribute above comes from.
+    const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
+    const std::uint32_t of_first = layer.attribute_count(h_.first_child(s));
+    const std::size_t begin = second ? of_first : 0, end = second ? parents.size() : of_first;
+    below_.assign(layer.attribute_count(h_.node_of_split[index_of(s)]), {});
+    for (std::size_t from = begin; from < end; ++from) {
+      const RelativeAttribute to = parents[from];
+      if (to == kRemoved) continue;
+      Below& below = below_[to];
+      if (below.first == kRemoved) {
+        below.first = static_cast<RelativeAttribute>(from - begin);
+      } else {
+        below.has_more = true;
+      }
+    }
+    for (const CornerAt& at : corners) {
       RelativeAttribute& a =
           parts_[at.corner.part()].relative[tracked_.size() * at.corner.index() + i];
-      a = hierarchy_.below(l, s, second, a, at.wedge);
+      const Below below = below_[a];
+      a = below.has_more            ? hierarchy_.below(l, s, second, a, at.wedge)
+          : below.first != kRemoved ? below.first
+                                    : RelativeAttribute{0};  // no such corner stands there
     }
   }
 }
 
 void ActiveCut::pass_up(SplitId s, std::uint32_t slot, bool second) {
   for (std::size_t i = 0; i < tracked_.size(); ++i) {
-    const std::uint32_t l = tracked_[i];
-    if (hierarchy_.layers[l].parents_of_split.of(index_of(s)).empty()) continue;
+    const AttributeHierarchy& layer = hierarchy_.layers[tracked_[i]];
+    if (layer.parents_of_split.is_empty(index_of(s))) continue;
+    const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
+    const std::size_t begin = second ? layer.attribute_count(h_.first_child(s)) : 0;
     for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
       RelativeAttribute& a =
           parts_[at.corner.part()].relative[tracked_.size() * at.corner.index() + i];
-      a = hierarchy_.above(l, s, second, a, at.wedge);
+      a = parents[begin + a];
     }
   }
 }
@@ -295,6 +337,61 @@ void ActiveCut::touch_derived(SplitId s) {
       ActiveTriangles& part = parts_[at.corner.part()];
       if (part.ids[at.corner.triangle()] == t) part.touched.mark(at.corner.triangle());
     }
+  }
+}
+
+void ActiveCut::prefetch_split(std::uint32_t slot, SplitId s) const {
+  const std::size_t first = index_of(h_.first_child(s));
+  prefetch_vertex(slot);
+  h_.second_wedge.prefetch(index_of(s));
+  h_.deltas.prefetch(3 * (first - h_.root_count));
+  h_.deltas.prefetch(3 * (first - h_.root_count) + 5);
+  h_.is_split.prefetch(first);
+  h_.triangle_ranges.prefetch(index_of(s) + 1);
+  if (normal_layer_ != kNone) hierarchy_.layers[normal_layer_].attribute_ranges.prefetch(first);
+}
+
+void ActiveCut::prefetch_split_further(std::uint32_t slot, SplitId s) const {
+  const std::size_t first = index_of(h_.first_child(s));
+  __builtin_prefetch(&h_.bounds[index_of(s)]);
+  const std::size_t below = h_.is_split.rank(first);
+  if (below < h_.bounds.size()) __builtin_prefetch(&h_.bounds[below]);
+  const TriangleRange born = h_.triangles_of(s);
+  if (born.begin < born.end) h_.triangles.of_corner.prefetch(3 * std::size_t(born.begin));
+  if (vertices_[slot].split == s) prefetch_corners(slot);
+}
+
+void ActiveCut::prefetch_merge(std::uint32_t slot, SplitId s) const {
+  prefetch_vertex(slot);
+  h_.second_wedge.prefetch(index_of(s));
+  h_.node_of_split.prefetch(index_of(s));
+  h_.deltas.prefetch(3 * (index_of(h_.first_child(s)) - h_.root_count));
+}
+
+void ActiveCut::prefetch_merge_further(std::uint32_t slot, SplitId s) const {
+  const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
+  if (middle < h_.wedge_count()) map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle)});
+  if (middle > 0) map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle - 1)});
+  prefetch_corners(slot);
+  const NodeId node = h_.node_of_split[index_of(s)];
+  h_.is_split.prefetch(index_of(node));
+  if (h_.is_root(node)) return;
+  const SplitId above = h_.split_above(node);
+  __builtin_prefetch(&h_.bounds[index_of(above)]);
+  __builtin_prefetch(&h_.bounds[index_of(s)]);
+  h_.deltas.prefetch(3 * (index_of(node) - h_.root_count));
+}
+
+void ActiveCut::prefetch_siblings(SplitId s) const {
+  const Children slots = children(s);
+  for (const std::uint32_t slot : {slots.first, slots.second}) {
+    if (slot != kNoSlot) prefetch_vertex(slot);
+  }
+}
+
+void ActiveCut::prefetch_corners(std::uint32_t slot) const {
+  for (const CornerAt& at : corners_of(slot)) {
+    __builtin_prefetch(&parts_[at.corner.part()].slots[3 * std::size_t(at.corner.triangle())]);
   }
 }
 

@@ -37,8 +37,10 @@ struct alignas(128) ActiveVertex {
   NodeId node = kNoNode;     // kNoNode: the slot is free
   SplitId split = kNoSplit;  // of the node
   WedgeId begin{}, end{};
-  Vec3i position;                // grid units
-  std::uint32_t one_normal = 0;  // all its corners have the same (SN of DB03)
+  Vec3i position;                  // grid units
+  std::uint32_t one_normal = 0;    // all its corners have the same (SN of DB03)
+  std::uint32_t normal_count = 0;  // of the normal layer at the node
+  std::uint32_t normal_begin = 0;  // and the first of them
   CornerList corners;
 };
 static_assert(sizeof(ActiveVertex) == 128);
@@ -77,7 +79,16 @@ class ActiveCut {
   // The vertex in `slot` must not be a leaf. Returns the slot of v_u, or kNoSlot if one of the
   // children has no triangles.
   std::uint32_t split(std::uint32_t slot);
-  void merge(SplitId s);  // can_merge(s)
+  void merge(SplitId s) { merge(s, children(s)); }  // can_merge(s)
+  void merge(SplitId s, const Children& slots);
+
+  // What a move soon to be done will read, some moves ahead; each step follows what the one before
+  // it has brought.
+  void prefetch_split(std::uint32_t slot, SplitId s) const;
+  void prefetch_split_further(std::uint32_t slot, SplitId s) const;
+  void prefetch_merge(std::uint32_t slot, SplitId s) const;
+  void prefetch_merge_further(std::uint32_t slot, SplitId s) const;
+  void prefetch_siblings(SplitId s) const;
 
   std::span<const CornerAt> corners_of(std::uint32_t slot) const {
     return lists_.of(vertices_[slot].corners);
@@ -122,9 +133,17 @@ class ActiveCut {
   void touch_corners(std::uint32_t slot);
   void give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle);
   void take_corners(std::uint32_t from, std::uint32_t to);
-  void activate(TriangleId t, const std::array<std::uint32_t, 3>& slots);
+  void activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
+                const std::array<std::uint32_t, 3>& slots);
+  std::size_t value_of(std::size_t layer, std::uint32_t slot, RelativeAttribute a) const;
   void deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to);
   void touch_derived(SplitId s);
+  void prefetch_vertex(std::uint32_t slot) const {
+    const char* const vertex = reinterpret_cast<const char*>(&vertices_[slot]);
+    __builtin_prefetch(vertex);
+    __builtin_prefetch(vertex + 64);
+  }
+  void prefetch_corners(std::uint32_t slot) const;
   void replace_corner(CornerRef from, CornerRef to);
   void copy_triangle(Part from, std::uint32_t source, Part to, std::uint32_t target);
   std::uint32_t* slots_of(CornerRef corner) {
@@ -151,7 +170,13 @@ class ActiveCut {
   ChangeSet vertex_changes_;
   std::vector<CornerAt> leaving_;            // scratch of one move
   std::vector<RelativeAttribute> arriving_;  // scratch of one triangle
-  std::vector<std::uint32_t> collapsed_;     // scratch of one merge: triangle keys
+  // Scratch of one split: per attribute above, its first one below, and whether it has more.
+  struct Below {
+    RelativeAttribute first = kRemoved;
+    bool has_more = false;
+  };
+  std::vector<Below> below_;
+  std::vector<std::uint32_t> collapsed_;  // scratch of one merge: triangle keys
 };
 
 }  // namespace crease

@@ -7,14 +7,13 @@
 
 namespace crease {
 
-namespace {
-
-std::size_t value_of(const AttributeHierarchy& layer, NodeId node, RelativeAttribute a) {
-  const std::size_t i = std::size_t(layer.attribute_ranges.begin(index_of(node))) + a;
-  return layer.value_of_attribute.empty() ? i : layer.value_of_attribute[i];
+std::size_t ActiveCut::value_of(std::size_t l, std::uint32_t slot, RelativeAttribute a) const {
+  const AttributeHierarchy& layer = hierarchy_.layers[l];
+  const ActiveVertex& v = vertices_[slot];
+  const std::size_t begin =
+      l == normal_layer_ ? v.normal_begin : layer.attribute_ranges.begin(index_of(v.node));
+  return layer.value_of_attribute.empty() ? begin + a : layer.value_of_attribute[begin + a];
 }
-
-}  // namespace
 
 Part ActiveCut::kind_of(TriangleId t, std::span<const std::uint32_t, 3> slots,
                         std::span<const RelativeAttribute> relative) const {
@@ -28,13 +27,12 @@ Part ActiveCut::kind_of(TriangleId t, std::span<const std::uint32_t, 3> slots,
   const auto has_one = [&](std::uint32_t slot) { return vertices_[slot].one_normal != 0; };
   // A derived one without area shows what it stores, for as long as its corners stay: no SN.
   if (!derived && std::all_of(slots.begin(), slots.end(), has_one)) return kSnPart;
-  const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
   const std::uint32_t place = place_of_layer_[normal_layer_];
   std::size_t values[3];
   for (std::size_t k = 0; k < 3; ++k) {
     const RelativeAttribute a =
         place == kNone ? RelativeAttribute{0} : relative[k * tracked_.size() + place];
-    values[k] = value_of(layer, vertices_[slots[k]].node, a);
+    values[k] = value_of(normal_layer_, slots[k], a);
   }
   return values[0] == values[1] && values[1] == values[2] ? kFnPart : kNsnPart;
 }
@@ -51,7 +49,7 @@ std::size_t ActiveCut::value_index(const ActiveTriangles& part, std::uint32_t co
   const std::uint32_t place = place_of_layer_[layer];
   const RelativeAttribute a =
       place == kNone ? RelativeAttribute{0} : part.relative[tracked_.size() * corner_index + place];
-  return value_of(hierarchy_.layers[layer], vertices_[part.slots[corner_index]].node, a);
+  return value_of(layer, part.slots[corner_index], a);
 }
 
 SplitId ActiveCut::introducing_split(TriangleId t) const {

@@ -40,6 +40,8 @@ struct ActiveTriangles {
   std::size_t size() const { return ids.size(); }
   std::size_t count() const { return ids.size() - hole_count; }
 
+  static constexpr std::size_t kMoreAtOnce = 255;
+
   // A place for a triangle, in a hole or at the end.
   std::uint32_t add(TriangleId id, std::size_t relative_per_triangle) {
     while (hole_count > 0) {
@@ -51,12 +53,14 @@ struct ActiveTriangles {
       return hole;
     }
     holes.clear();
-    const std::size_t size = ids.size() + 1;
     ids.push_back(id);
-    slots.resize(3 * size);
-    relative.resize(relative_per_triangle * size);
-    for (ChangeSet* set : {&moved, &touched, &shaded}) set->grow(size);
-    return static_cast<std::uint32_t>(size - 1);
+    if (slots.size() < 3 * ids.size()) {  // too large until the holes are filled
+      const std::size_t size = ids.size() + kMoreAtOnce;
+      slots.resize(3 * size);
+      relative.resize(relative_per_triangle * size);
+      for (ChangeSet* set : {&moved, &touched, &shaded}) set->grow(size);
+    }
+    return static_cast<std::uint32_t>(ids.size() - 1);
   }
 
   void remove(std::uint32_t triangle) {

@@ -5,7 +5,7 @@
 //   for (CornerAt& at : lists.of(list)) ...
 //
 // A corner comes with its wedge, so that a split reads one run of memory and no triangle to tell
-// which corners go to v_u. Up to 11 stand in the list itself, beside what else a move needs of the
+// which corners go to v_u. Up to 10 stand in the list itself, beside what else a move needs of the
 // vertex; more of them in a block of 16, 32, 64, ... corners in a pool that all lists share.
 #pragma once
 
@@ -44,7 +44,7 @@ struct CornerAt {
 };
 
 struct CornerList {
-  static constexpr std::uint32_t kOwn = 11;
+  static constexpr std::uint32_t kOwn = 10;
 
   std::uint32_t count = 0;
   std::uint32_t block = kNone;  // in the pool, or kNone: in `own`
@@ -68,6 +68,10 @@ class CornerLists {
     list.count = static_cast<std::uint32_t>(count);
   }
   void push_back(CornerList& list, const CornerAt& at) {
+    if (list.block == kNone && list.count < CornerList::kOwn) {
+      list.own[list.count++] = at;
+      return;
+    }
     resize(list, list.count + 1);
     of(list).back() = at;
   }
@@ -77,7 +81,11 @@ class CornerLists {
     for (CornerAt& at : all) {
       if (!(at.corner == corner)) continue;
       at = all.back();
-      resize(list, list.count - 1);
+      if (list.block == kNone) {
+        --list.count;
+      } else {
+        resize(list, list.count - 1);
+      }
       return;
     }
   }

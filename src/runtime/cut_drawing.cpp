@@ -74,8 +74,8 @@ void CutDrawing::refresh_vertices(ActiveCut& cut) {
     positions_[slot] = draw_position(hierarchy.vertices.grid, v.position);
     if (v.one_normal == 0) return;
     const AttributeHierarchy& layer = hierarchy.layers[cut.normal_layer()];
-    if (layer.attribute_count(v.node) == 0) return;  // no triangle of now shows one
-    const std::uint32_t i = layer.attribute_ranges.begin(index_of(v.node));
+    if (v.normal_count == 0) return;  // no triangle of now shows one
+    const std::size_t i = v.normal_begin;
     const std::size_t index = layer.value_of_attribute.empty() ? i : layer.value_of_attribute[i];
     vertex_normals_[slot] = normal_of(layer, index);
   };

@@ -14,11 +14,22 @@ constexpr std::uint32_t kMovesPerClock = 64;
 
 }  // namespace
 
+template <typename Later>
+Refiner::Wish Refiner::take(Queue& queue, Later later) const {
+  if (!is_ordered_) return queue.wishes[queue.next++];
+  std::vector<Wish>& wishes = queue.wishes;
+  const Wish wish = wishes.front();
+  std::pop_heap(wishes.begin(), wishes.end(), later);
+  wishes.pop_back();
+  return wish;
+}
+
 UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
   report_ = {};
   if (!has_view_ || !(view == view_)) {
     look_from(cut, view);
-    evaluate_due(cut);
+    find_merges(cut);
+    finds_splits_ = true;
   }
   stop_at_ = view.clock == nullptr ? std::numeric_limits<double>::infinity()
                                    : view.clock(view.clock_context) + view.max_seconds;
@@ -27,6 +38,10 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
     keep_to_budget(cut, {std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot}, 0);
   }
   do_merges(cut);
+  if (finds_splits_ && merges_.empty()) {
+    find_splits(cut);
+    finds_splits_ = false;
+  }
   do_splits(cut);
   return report_;
 }
@@ -78,48 +93,75 @@ bool Refiner::out_of_time() {
   return false;
 }
 
+// Of moves to come.
+void Refiner::fetch_merges(const ActiveCut& cut) const {
+  const std::vector<Wish>& wishes = merges_.wishes;
+  const std::size_t i = merges_.next, count = wishes.size();
+  if (i + 12 < count) cut.prefetch_merge(wishes[i + 12].slot, wishes[i + 12].split);
+  if (i + 8 < count) cut.prefetch_merge_further(wishes[i + 8].slot, wishes[i + 8].split);
+  if (i + 4 < count) cut.prefetch_siblings(wishes[i + 4].split);
+}
+
+void Refiner::fetch_splits(const ActiveCut& cut) const {
+  const std::vector<Wish>& wishes = splits_.wishes;
+  const std::size_t i = splits_.next, count = wishes.size();
+  if (i + 12 < count) cut.prefetch_split(wishes[i + 12].slot, wishes[i + 12].split);
+  if (i + 8 < count) cut.prefetch_split_further(wishes[i + 8].slot, wishes[i + 8].split);
+}
+
 void Refiner::do_merges(ActiveCut& cut) {
-  while (!merges_.empty() && merges_.front().excess <= merge_below_ && !out_of_time()) {
-    const Wish wish = merges_.front();
-    std::pop_heap(merges_.begin(), merges_.end(),
-                  [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
-    merges_.pop_back();
-    if (cut.can_merge(wish.split) && !is_needed(cut, wish.split)) merge(cut, wish.split);
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  while (!merges_.empty() && !out_of_time()) {
+    const Wish wish =
+        take(merges_, [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
+    const NodeId node = cut.vertices()[wish.slot].node;
+    if (node == kNoNode || h.is_root(node) || h.split_above(node) != wish.split) continue;
+    if (!cut.can_merge(wish.split)) {
+      drop_pair(wish.slot);
+    } else if (!is_needed(cut, wish.split)) {
+      merge(cut, wish.split);
+    }
   }
+  if (merges_.empty()) merges_.clear();
 }
 
 void Refiner::do_splits(ActiveCut& cut) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
+  const auto less_visible = [](const Wish& a, const Wish& b) { return a.excess < b.excess; };
   while (!splits_.empty() && !out_of_time()) {
-    const Wish wish = splits_.front();
-    if (cut.vertices()[wish.slot].split == wish.split) {
-      const std::size_t gain = h.triangles_of(wish.split).size();
-      if (cut.triangle_count() + gain > view_.max_triangles) {
-        keep_to_budget(cut, wish, gain);
+    if (is_ordered_) {
+      const Wish wish = splits_.wishes.front();
+      if (cut.vertices()[wish.slot].split == wish.split) {
+        const std::size_t gain = h.triangles_of(wish.split).size();
         if (cut.triangle_count() + gain > view_.max_triangles) {
-          if (report_.complete) splits_.clear();  // nothing is less visible: this is it
-          return;
+          keep_to_budget(cut, wish, gain);
+          if (cut.triangle_count() + gain > view_.max_triangles) {
+            if (report_.complete) splits_.clear();  // nothing is less visible: this is it
+            return;
+          }
         }
       }
     }
-    std::pop_heap(splits_.begin(), splits_.end(),
-                  [](const Wish& a, const Wish& b) { return a.excess < b.excess; });
-    splits_.pop_back();
+    if (!is_ordered_) fetch_splits(cut);
+    const Wish wish = take(splits_, less_visible);
     if (cut.vertices()[wish.slot].split != wish.split) continue;
     view_.consistent ? split_consistently(cut, wish.slot) : split(cut, wish.slot);
   }
+  if (splits_.empty()) splits_.clear();
 }
 
 // Merges what is less visible than `wish`, least visible first, until there is room.
 void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t room) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
+  const auto more_visible = [](const Wish& a, const Wish& b) { return a.excess > b.excess; };
   if (!counts_all_merges_) {
     counts_all_merges_ = true;
-    merges_.clear();
-    for (const ActiveVertex& v : cut.vertices()) {
-      if (v.node == kNoNode || h.is_root(v.node)) continue;
-      evaluate_merge(cut, v, h.split_above(v.node));
+    least_visible_.clear();
+    for (const Pair& pair : pairs_) {
+      const float excess = excess_above(cut, cut.vertices()[pair.slot], pair.split);
+      least_visible_.push_back({excess, pair.split, pair.slot});
     }
+    std::make_heap(least_visible_.begin(), least_visible_.end(), more_visible);
   }
   // Rounding may find a vertex less visible than its child; to merge it would not help the child.
   SplitId above = kNoSplit;
@@ -127,40 +169,66 @@ void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t roo
     const NodeId node = h.node_of_split[index_of(wanted.split)];
     if (!h.is_root(node)) above = h.split_above(node);
   }
-  while (!merges_.empty() && cut.triangle_count() + room > view_.max_triangles) {
-    const Wish wish = merges_.front();
+  while (!least_visible_.empty() && cut.triangle_count() + room > view_.max_triangles) {
+    const Wish wish = least_visible_.front();
     const bool is_least =
         static_cast<double>(wish.excess) * view_.hysteresis < static_cast<double>(wanted.excess);
     if (!is_least || out_of_time()) return;
-    std::pop_heap(merges_.begin(), merges_.end(),
-                  [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
-    merges_.pop_back();
+    std::pop_heap(least_visible_.begin(), least_visible_.end(), more_visible);
+    least_visible_.pop_back();
     if (wish.split == above) continue;
     if (cut.can_merge(wish.split) && !is_needed(cut, wish.split)) merge(cut, wish.split);
   }
 }
 
+// What is below something that is wrong may be as wrong, and nothing of it is to be merged.
 void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  const SplitId s = cut.vertices()[slot].split;
+  const Vec3f position = error_.position(cut.vertices()[slot].position);
   const std::uint32_t other = cut.split(slot);
   ++report_.splits;
-  due_.resize(cut.vertices().size());
-  evaluate(cut, slot);
-  if (other != kNoSlot) evaluate(cut, other);
+  if (cut.vertices().size() > pair_of_slot_.size()) {
+    pair_of_slot_.resize(cut.vertices().size(), kNone);
+    wrong_.resize(cut.vertices().size(), error_.uses_cones());
+  }
+  watch_pair(slot, s, error_.watch(h.bounds[index_of(s)], position, merge_below_));
+  for (const std::uint32_t child : {slot, other}) {
+    if (child == kNoSlot) continue;
+    watch_vertex(cut, child);
+    if (error_.is_wrong(wrong_.get(child))) wish_split(cut, child);
+  }
+  if (counts_all_merges_) count_merge(cut, s, slot);
 }
 
 void Refiner::merge(ActiveCut& cut, SplitId s) {
+  const VertexHierarchy& h = cut.hierarchy().vertices;
   const ActiveCut::Children children = cut.children(s);
-  cut.merge(s);
+  cut.merge(s, children);
   ++report_.merges;
+  for (const std::uint32_t slot : {children.first, children.second}) {
+    if (slot == kNoSlot) continue;
+    drop_pair(slot);
+    wrong_.turn_off(slot);
+  }
   const std::uint32_t slot = children.first != kNoSlot ? children.first : children.second;
   if (slot == kNoSlot) return;
-  evaluate(cut, slot);
-  const VertexHierarchy& h = cut.hierarchy().vertices;
-  const NodeId node = cut.vertices()[slot].node;
-  // Where v_u was the last to become whole, it is v_t that watches over their merge.
-  if (h.is_root(node) || !h.is_second(node)) return;
-  const ActiveCut::Children around = cut.children(h.split_above(node));
-  if (around.first != kNoSlot && around.first != slot) evaluate(cut, around.first);
+  watch_vertex(cut, slot);
+  const ActiveVertex& v = cut.vertices()[slot];
+  if (counts_all_merges_ && error_.is_wrong(wrong_.get(slot))) wish_split(cut, slot);
+  if (h.is_root(v.node)) return;
+  const SplitId above = h.split_above(v.node);
+  if (!cut.can_merge(above)) return;
+  const Watch watch = watch_above(cut, v, above);
+  watch_pair(slot, above, watch);
+  if (!error_.is_wrong(watch)) wish_merge(cut, above, slot);
+  if (counts_all_merges_) count_merge(cut, above, slot);
+}
+
+void Refiner::count_merge(const ActiveCut& cut, SplitId s, std::uint32_t slot) {
+  least_visible_.push_back({excess_above(cut, cut.vertices()[slot], s), s, slot});
+  std::push_heap(least_visible_.begin(), least_visible_.end(),
+                 [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
 }
 
 // A third vertex of what s brings whose own error is larger.

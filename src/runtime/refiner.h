@@ -1,16 +1,21 @@
 // Which splits and merges a view needs, in which order, within budgets.
 //
-// Each active vertex is evaluated once and then again only when the camera may have changed the
-// answer: evaluation also tells how far the camera may go until then (ViewError::Sight), which
-// gives two dates, one on an odometer of lengths travelled and one on an odometer that turns for
-// travels and turns together. A frame compares the dates of all active vertices (8 bytes each, in a
-// row) with the odometers and evaluates those that are due. Queues: splits by what is most visible,
-// merges by what is least.
+// A frame asks two questions, each in one pass over memory (WatchList): which active vertices are
+// seen to be wrong, and which pairs of siblings stand for one that is not. Between the passes and
+// after them only what moved is looked at. A pair is watched by the slot of one of its vertices,
+// the one that came to be a leaf of the cut last, until it merges or that vertex is split; where
+// the other one has been split meanwhile, the answer is of no use and the watch is dropped then.
+//
+// Without a budget the cut that is reached does not depend on the order, so moves are done as they
+// are found, and what the next ones need is fetched meanwhile. With one, heaps order them: splits
+// by what is most visible, merges by what is least.
+//
+// Memory: a watch per slot and per pair, 4 bytes a slot and 8 a pair.
 #pragma once
 
 #include "crease/adaptive_mesh.h"
 #include "runtime/active_cut.h"
-#include "runtime/view_error.h"
+#include "runtime/watch_list.h"
 
 #include <cstdint>
 #include <vector>
@@ -22,29 +27,51 @@ class Refiner {
   UpdateReport update(ActiveCut& cut, const ViewParameters& view);
   UpdateReport set_error(ActiveCut& cut, float error);
   std::size_t bytes() const {
-    return sizeof(Dates) * due_.capacity() +
+    return wrong_.bytes() + merged_.bytes() + 4 * pair_of_slot_.capacity() +
+           sizeof(Pair) * pairs_.capacity() +
            sizeof(Wish) * (splits_.capacity() + merges_.capacity());
   }
 
  private:
   struct Wish {
-    float excess;  // of what is to be split, or merged
+    float excess;  // of what is to be split, or merged; 0 where the order is of no consequence
     SplitId split;
-    std::uint32_t slot;  // of its vertex, for splits
+    std::uint32_t slot;  // of its vertex, or for merges of the one that watches
   };
+  // Moves to be done, first come first served, or a heap.
+  struct Queue {
+    std::vector<Wish> wishes;
+    std::size_t next = 0;
 
-  // On the odometers. Now, if it has to be looked at again by any other camera.
-  struct Dates {
-    float travel = 0, swing = 0;
+    bool empty() const { return next == wishes.size(); }
+    void clear() {
+      wishes.clear();
+      next = 0;
+    }
+    std::size_t capacity() const { return wishes.capacity(); }
+  };
+  struct Pair {
+    SplitId split;
+    std::uint32_t slot;
   };
 
   void look_from(const ActiveCut& cut, const ViewParameters& view);
-  void evaluate_due(const ActiveCut& cut);
-  void evaluate(const ActiveCut& cut, std::uint32_t slot);
-  Dates evaluate_split(const ActiveCut& cut, const ActiveVertex& v, std::uint32_t slot);
-  Dates evaluate_merge(const ActiveCut& cut, const ActiveVertex& v, SplitId above);
-  Dates dates_of(const ViewError::Sight& sight) const;
+  void watch_all(const ActiveCut& cut);
+  void watch_vertex(const ActiveCut& cut, std::uint32_t slot);
+  void watch_pair(std::uint32_t slot, SplitId s, const Watch& watch);
+  void drop_pair(std::uint32_t slot);
+  Watch watch_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const;
+  void find_merges(const ActiveCut& cut);
+  void find_splits(const ActiveCut& cut);
+  void wish_split(const ActiveCut& cut, std::uint32_t slot);
+  void wish_merge(const ActiveCut& cut, SplitId s, std::uint32_t slot);
+  float excess_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const;
 
+  template <typename Later>
+  Wish take(Queue& queue, Later later) const;
+  void count_merge(const ActiveCut& cut, SplitId s, std::uint32_t slot);
+  void fetch_merges(const ActiveCut& cut) const;
+  void fetch_splits(const ActiveCut& cut) const;
   bool out_of_time();
   void do_merges(ActiveCut& cut);
   void do_splits(ActiveCut& cut);
@@ -58,12 +85,19 @@ class Refiner {
   ViewParameters view_;
   ViewError error_;
   bool has_view_ = false;
+  bool is_ordered_ = false;
   float merge_below_ = 1;
-  double travelled_ = 0, swung_ = 0;  // the odometers
-  double radians_per_length_ = 1;
-  std::vector<Dates> due_;             // per slot
-  std::vector<Wish> splits_, merges_;  // heaps: most visible first, least visible first
-  bool counts_all_merges_ = false;     // merges_ has every possible one (a triangle budget binds)
+  Odometer odometer_;
+  int frames_on_odometer_ = 0;
+  WatchList wrong_;                          // per slot
+  WatchList merged_;                         // per pair
+  std::vector<Pair> pairs_;                  // in no order
+  std::vector<std::uint32_t> pair_of_slot_;  // or kNone
+  Queue splits_, merges_;
+  bool finds_splits_ = false;  // still to be done for this view
+  std::vector<Wish>
+      least_visible_;  // a heap of every possible merge, while a triangle budget binds
+  bool counts_all_merges_ = false;
   std::vector<std::uint32_t> pending_;
   UpdateReport report_;
   double stop_at_ = 0;

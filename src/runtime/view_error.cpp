@@ -1,77 +1,99 @@
 #include "runtime/view_error.h"
 
+#include <algorithm>
+
 namespace crease {
 
-namespace {
-
-Vec3f as_float(const Vec3d& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-}  // namespace
-
 ViewError::ViewError(const ViewParameters& view, const Grid& grid)
-    : eye_(as_float(view.camera.position - grid.origin)),
-      step_(grid.step),
+    : step_(grid.step),
       per_degree_(view.degrees > 0 ? static_cast<float>(1 / view.degrees) : 0.0f),
       silhouette_weight_(static_cast<float>(view.silhouette_weight)),
-      coarse_outside_(view.coarse_outside),
       coarse_backfaces_(view.coarse_backfaces),
-      uses_cones_(view.coarse_backfaces || view.silhouette_weight != 1),
-      uses_more_(uses_cones_ || view.degrees > 0) {
+      uses_cones_(view.coarse_backfaces || view.silhouette_weight != 1) {
   const Camera& camera = view.camera;
   const double half = std::tan(radians(camera.vertical_fov_deg) / 2);
   const double wide = half * camera.width_px / camera.height_px;
-  pixels_per_radian_ = static_cast<float>(camera.height_px / (2 * half));
-  pixels_at_one_ = pixels_per_radian_ / static_cast<float>(std::max(view.camera.pixels, 1e-12));
+  const auto pixels_per_radian = static_cast<float>(camera.height_px / (2 * half));
+  pixels_at_one_ = pixels_per_radian / static_cast<float>(std::max(view.camera.pixels, 1e-12));
+  full_size_at_one_ = 2 * pixels_per_radian / kFullSizePixels;
   const Vec3d forward = normalized(camera.target - camera.position);
   const Vec3d right = normalized(cross(forward, camera.up));
   const Vec3d up = cross(right, forward);
-  planes_ = {as_float(forward), as_float(normalized(forward * wide + right)),
-             as_float(normalized(forward * wide - right)),
-             as_float(normalized(forward * half + up)), as_float(normalized(forward * half - up))};
+  const auto set = [](std::array<float, 3>& to, const Vec3d& from) {
+    to = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
+  };
+  // The distance from a side is dot(forward * wide + right, to) / |forward * wide + right|.
+  const double wide_length = std::hypot(wide, 1), high_length = std::hypot(half, 1);
+  frame_ = {camera.position, forward, right, up};
+  set(gaze_.eye, camera.position - grid.origin);
+  set(gaze_.forward, forward);
+  set(gaze_.right, right * (1 / wide_length));
+  set(gaze_.up, up * (1 / high_length));
+  gaze_.wide_forward = static_cast<float>(wide / wide_length);
+  gaze_.high_forward = static_cast<float>(half / high_length);
+  gaze_.outside = view.coarse_outside ? 0 : kNever;
+  const auto spread = [](float x) { return Float4{x, x, x, x}; };
+  for (std::size_t i = 0; i < 3; ++i) {
+    gaze4_.eye[i] = spread(gaze_.eye[i]);
+    gaze4_.forward[i] = spread(gaze_.forward[i]);
+    gaze4_.right[i] = spread(gaze_.right[i]);
+    gaze4_.up[i] = spread(gaze_.up[i]);
+  }
+  gaze4_.wide_forward = spread(gaze_.wide_forward);
+  gaze4_.high_forward = spread(gaze_.high_forward);
+  gaze4_.outside = spread(gaze_.outside);
 }
 
-// For every camera up to `leeway` away: the largest if it is positive, the smallest if negative.
-float ViewError::excess_within(const SplitBounds& bounds, const Vec3f& to, float distance,
-                               float leeway) const {
-  const float true_radius = decoded(bounds.radius);
-  const float radius = true_radius + leeway;
-  const float nearest = std::max(distance - radius, 1e-20f);
+Watch ViewError::watch(const SplitBounds& bounds, const Vec3f& position, float limit) const {
+  Watch watch;
+  const float radius = decoded(bounds.radius);
+  watch.center = position;
+  watch.radius = radius;
+  const float error = std::max(decoded(bounds.surface), decoded(bounds.line)) * pixels_at_one_;
+  const float turned = decoded(bounds.degrees) * per_degree_;
+  const auto reach_for = [&](float weight) {
+    float reach = error * weight / limit;
+    if (turned * weight > limit) {
+      reach = std::max(reach, turned * weight / limit * radius * full_size_at_one_);
+    }
+    return reach > 0 ? reach + radius : -kNever;
+  };
+  watch.reach = reach_for(1);
+  if (!uses_cones_) return watch;
+  watch.reach_aside = reach_for(silhouette_weight_);
+  if (bounds.cone_angle >= 128) return watch;
+  const NormalCone cone = bounds.cone();
+  watch.axis = cone.axis;
+  watch.sine = std::sin(cone.half_angle_rad);
+  watch.cosine = std::max(0.0f, std::cos(cone.half_angle_rad));
+  return watch;
+}
+
+// Directions change by at most the root of the sum of squares that the frame's three do, over the
+// root of 2.
+ViewError::Motion ViewError::motion_from(const ViewError& before) const {
+  double sum = 0;
+  for (std::size_t i = 1; i < frame_.size(); ++i) {
+    const Vec3d change = frame_[i] - before.frame_[i];
+    sum += dot(change, change);
+  }
+  return {length(frame_[0] - before.frame_[0]), std::sqrt(sum / 2)};
+}
+
+float ViewError::of(const SplitBounds& bounds, const Vec3f& position) const {
+  const Watch w = watch(bounds, position, 1);
+  const Vec3f& c = w.center;
+  if (inside(c.x, c.y, c.z) + w.radius < 0) return 0;
+  const float nearest = std::max(distance(c.x, c.y, c.z) - w.radius, 1e-20f);
   const float error = std::max(decoded(bounds.surface), decoded(bounds.line));
   float excess = error > 0 ? std::min(error * pixels_at_one_ / nearest, kMost) : 0;
-  if (per_degree_ > 0) {
-    const float pixels = 2 * true_radius * pixels_per_radian_ / nearest;
-    const float size = std::min(1.0f, pixels / kFullSizePixels);
-    excess = std::max(excess, decoded(bounds.degrees) * per_degree_ * size);
-  }
-  if (uses_cones_ && excess > 0) excess *= weight_of_facing(bounds, to, distance, radius);
-  return excess;
-}
-
-float ViewError::see_more(const SplitBounds& bounds, const Vec3f& to, float distance, float limit,
-                          float& excess) const {
-  excess = excess_within(bounds, to, distance, 0);
-  const bool is_more = excess > limit;
-  for (const float share : {0.3f, 0.1f, 0.03f, 0.01f}) {
-    const float leeway = is_more ? -share * distance : share * distance;
-    if ((excess_within(bounds, to, distance, leeway) > limit) == is_more) return share * distance;
-  }
-  return 0;
-}
-
-float ViewError::weight_of_facing(const SplitBounds& bounds, const Vec3f& to, float distance,
-                                  float radius) const {
-  const float sine_of_sphere = radius / distance;
-  if (bounds.cone_angle >= 128 || !(sine_of_sphere < 1)) return silhouette_weight_;
-  // All directions from the eye to the sphere and all normals differ from the axes by this much.
-  const NormalCone cone = bounds.cone();
-  const float spread = cone.half_angle_rad + std::asin(std::max(sine_of_sphere, -1.0f));
-  if (spread >= static_cast<float>(kPi) / 2) return silhouette_weight_;
-  const float sine = std::sin(spread);
-  const float facing = dot(cone.axis, to) / distance;
-  if (facing > sine) return coarse_backfaces_ ? 0.0f : 1.0f;
-  return facing < -sine ? 1.0f : silhouette_weight_;
+  const float size = std::min(1.0f, w.radius * full_size_at_one_ / nearest);
+  excess = std::max(excess, decoded(bounds.degrees) * per_degree_ * size);
+  if (!uses_cones_) return excess;
+  // Which of three reaches is chosen tells the weight.
+  const float weight = facing_reach(c.x, c.y, c.z, 1.0f, w.radius, w.axis.x, w.axis.y, w.axis.z,
+                                    w.sine, w.cosine, silhouette_weight_);
+  return excess * std::max(weight, 0.0f);
 }
 
 }  // namespace crease

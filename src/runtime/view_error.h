@@ -1,7 +1,14 @@
-// How visible a split is from a camera: the criteria of DESIGN 8 as one number.
+// How wrong a vertex is seen to be from a camera: the criteria of DESIGN 8 as one number, and as a
+// question that takes a few instructions.
 //
 //   ViewError error(view, grid);
-//   if (error.of(bounds, position) > 1) split
+//   error.of(bounds, position)                              // 1: just what is allowed
+//   const Watch watch = error.watch(bounds, position, 1);   // good while only the camera moves
+//   if (error.is_wrong(watch)) split
+//
+// A surface that is off by e is seen to be off by more than what is allowed iff the eye is nearer
+// to the sphere that holds it than some length, which depends on e and on the sizes of pixels
+// alone; so is shading. Hence a watch: the sphere, and how far around its centre it reaches.
 //
 // Like the bounds it is made of, the number never grows on the way down: errors shrink, spheres and
 // cones are nested. So what is split because of it is split from the root on.
@@ -9,14 +16,63 @@
 
 #include "crease/adaptive_mesh.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 namespace crease {
+
+using Float4 [[gnu::vector_size(16)]] = float;
+using Int4 [[gnu::vector_size(16)]] = std::int32_t;
+
+inline bool any(const Int4& lanes) {
+  using Long2 [[gnu::vector_size(16)]] = std::int64_t;
+  const auto halves = std::bit_cast<Long2>(lanes);
+  return (halves[0] | halves[1]) != 0;
+}
+
+inline float magnitude(float x) {
+  return std::fabs(x);
+}
+inline Float4 magnitude(const Float4& x) {
+  return std::bit_cast<Float4>(std::bit_cast<Int4>(x) & 0x7fffffff);
+}
+
+template <typename Real>
+Real smaller(const Real& a, const Real& b) {
+  return a < b ? a : b;
+}
+
+inline Float4 root(const Float4& x) {
+#if defined(__SSE__)
+  return _mm_sqrt_ps(x);
+#else
+  return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+#endif
+}
+inline float root(float x) {
+  return std::sqrt(x);
+}
+
+inline constexpr float kNever = std::numeric_limits<float>::infinity();
+
+// Never wrong, as it is here.
+struct Watch {
+  Vec3f center;
+  float reach = -kNever;  // it is wrong for eyes within this distance
+  float radius = 0;       // of the sphere that has to be in view
+  // Where facing counts: normals are within an angle of so much sine and cosine around the axis.
+  // Cosine 0: any direction.
+  Vec3f axis;
+  float sine = 1, cosine = 0;
+  float reach_aside = -kNever;  // in place of reach for what may be a silhouette
+};
 
 class ViewError {
  public:
@@ -24,33 +80,49 @@ class ViewError {
   ViewError(const ViewParameters& view, const Grid& grid);
 
   // `position` in model units from the grid's origin. 1: just what is allowed.
-  float of(const SplitBounds& bounds, const Vec3f& position) const {
-    return see(bounds, position, 1).excess;
-  }
+  float of(const SplitBounds& bounds, const Vec3f& position) const;
 
-  // The same, and how far the camera may go before the answer to "is it more than `limit`?" can
-  // change: either way, `travel` by moving alone, `swing` by moving and turning together, where to
-  // turn moves a point by the angle times its distance.
-  struct Sight {
-    float excess, distance, travel, swing;
+  // For the question "is it more than `limit`?".
+  Watch watch(const SplitBounds& bounds, const Vec3f& position, float limit) const;
+
+  bool is_wrong(const Watch& watch) const;
+
+  // The same for a number or for four, in parts: wrong is what is nearer than its reach and whose
+  // sphere is in view, that is, not in front of any of five planes through the eye by more than the
+  // radius.
+  template <typename Real>
+  Real distance(const Real& x, const Real& y, const Real& z) const {
+    const Gaze<Real>& g = gaze_for(Real{});
+    const Real to_x = x - g.eye[0], to_y = y - g.eye[1], to_z = z - g.eye[2];
+    return root(to_x * to_x + to_y * to_y + to_z * to_z);
+  }
+  // How far inside the nearest plane, or outside the farthest one if negative.
+  template <typename Real>
+  Real inside(const Real& x, const Real& y, const Real& z) const {
+    const Gaze<Real>& g = gaze_for(Real{});
+    const Real to_x = x - g.eye[0], to_y = y - g.eye[1], to_z = z - g.eye[2];
+    const auto along = [&](const std::array<Real, 3>& axis) {
+      return Real(to_x * axis[0] + to_y * axis[1] + to_z * axis[2]);
+    };
+    const Real ahead = along(g.forward);
+    const Real across = g.wide_forward * ahead - magnitude(along(g.right));
+    const Real upright = g.high_forward * ahead - magnitude(along(g.up));
+    return g.outside + smaller(ahead, smaller(across, upright));
+  }
+  template <typename Real>
+  Real facing_reach(const Real& x, const Real& y, const Real& z, const Real& reach,
+                    const Real& radius, const Real& axis_x, const Real& axis_y, const Real& axis_z,
+                    const Real& sine, const Real& cosine, const Real& reach_aside) const;
+
+  // What moves between two views that differ in the camera's place and direction alone: the eye,
+  // and any direction that is fixed in the picture, at most.
+  struct Motion {
+    double travel, turn;
   };
-  Sight see(const SplitBounds& bounds, const Vec3f& position, float limit) const {
-    const Vec3f to = position - eye_;
-    const float distance = length(to);
-    const float radius = decoded(bounds.radius);
-    const float error = std::max(decoded(bounds.surface), decoded(bounds.line));
-    const float nearest = std::max(distance - radius, 1e-20f);
-    float excess = error > 0 ? std::min(error * pixels_at_one_ / nearest, kMost) : 0;
-    float travel = std::fabs(distance - radius - error * pixels_at_one_ / limit);
-    if (uses_more_) travel = std::min(travel, see_more(bounds, to, distance, limit, excess));
-    if (!coarse_outside_ || excess <= limit) return {excess, distance, travel, kNever};
-    float inside = kNever;  // of the plane that is nearest
-    for (const Vec3f& inwards : planes_) inside = std::min(inside, dot(inwards, to) + radius);
-    if (inside >= 0) return {excess, distance, travel, inside};
-    return {0, distance, kNever, -inside};
-  }
+  Motion motion_from(const ViewError& before) const;
+  float eye_length() const { return std::hypot(gaze_.eye[0], gaze_.eye[1], gaze_.eye[2]); }
 
-  float distance(const Vec3f& position) const { return length(position - eye_); }
+  bool uses_cones() const { return uses_cones_; }
   Vec3f position(const Vec3i& g) const {
     return {static_cast<float>(step_ * g.x), static_cast<float>(step_ * g.y),
             static_cast<float>(step_ * g.z)};
@@ -59,26 +131,66 @@ class ViewError {
  private:
   static constexpr float kFullSizePixels = 16;
   static constexpr float kMost = 1e30f;  // where the camera is inside the sphere
-  static constexpr float kNever = std::numeric_limits<float>::infinity();
 
   // As RoundedUp::value(), here for speed.
   static float decoded(RoundedUp f) { return std::bit_cast<float>(std::uint32_t(f.bits) << 15); }
 
-  // Shading and normal cones: corrects `excess`, returns the travel.
-  float see_more(const SplitBounds& bounds, const Vec3f& to, float distance, float limit,
-                 float& excess) const;
-  float excess_within(const SplitBounds& bounds, const Vec3f& to, float distance,
-                      float leeway) const;
-  // 0 if all of it faces away, more than 1 if it faces both ways.
-  float weight_of_facing(const SplitBounds& bounds, const Vec3f& to, float distance,
-                         float radius) const;
+  // The view as numbers to compute with. The frustum has five planes through the eye: four sides
+  // and what is behind it. Those that are opposite differ in a sign; `right` and `up` are scaled so
+  // that the differences below are distances from the planes.
+  template <typename Real>
+  struct Gaze {
+    std::array<Real, 3> eye{}, forward{}, right{}, up{};
+    Real wide_forward{}, high_forward{};
+    Real outside{};  // 0, or infinity if what is outside counts as well
+  };
+  const Gaze<float>& gaze_for(float) const { return gaze_; }
+  const Gaze<Float4>& gaze_for(const Float4&) const { return gaze4_; }
 
-  Vec3f eye_;
-  std::array<Vec3f, 5> planes_{};  // through the eye: four sides and what is behind it
+  Gaze<float> gaze_;
+  Gaze<Float4> gaze4_;
+  std::array<Vec3d, 4> frame_{};  // eye, forward, right, up
   double step_ = 1;
   float pixels_at_one_ = 1;  // a length of 1 at distance 1, in pixels that are allowed
-  float pixels_per_radian_ = 1, per_degree_ = 0, silhouette_weight_ = 1;
-  bool coarse_outside_ = true, coarse_backfaces_ = false, uses_cones_ = false, uses_more_ = false;
+  // Shading of a sphere at distance 1 that is off by one degree, per radius and degree allowed,
+  // while it is smaller than its full size.
+  float full_size_at_one_ = 1;
+  float per_degree_ = 0, silhouette_weight_ = 1;
+  bool coarse_backfaces_ = false, uses_cones_ = false;
 };
+
+inline bool ViewError::is_wrong(const Watch& w) const {
+  const Vec3f& c = w.center;
+  const float reach = uses_cones_
+                          ? facing_reach(c.x, c.y, c.z, w.reach, w.radius, w.axis.x, w.axis.y,
+                                         w.axis.z, w.sine, w.cosine, w.reach_aside)
+                          : w.reach;
+  return distance(c.x, c.y, c.z) < reach && inside(c.x, c.y, c.z) + w.radius >= 0;
+}
+
+// Which of the two reaches counts, by how the sphere's normals face the eye. All directions from
+// the eye to the sphere and all normals differ from the axes by half_angle + asin(radius /
+// distance) at most; here by sines and cosines of these angles, times the distance.
+template <typename Real>
+Real ViewError::facing_reach(const Real& x, const Real& y, const Real& z, const Real& reach,
+                             const Real& radius, const Real& axis_x, const Real& axis_y,
+                             const Real& axis_z, const Real& sine, const Real& cosine,
+                             const Real& reach_aside) const {
+  const Gaze<Real>& g = gaze_for(Real{});
+  const Real to_x = x - g.eye[0], to_y = y - g.eye[1], to_z = z - g.eye[2];
+  const Real behind2 = to_x * to_x + to_y * to_y + to_z * to_z - radius * radius;
+  const Real tangent2 = behind2 > 0 ? behind2 : behind2 * 0;  // to where a ray touches the sphere
+  const Real facing = to_x * axis_x + to_y * axis_y + to_z * axis_z;
+  // facing > sin(a + b) * distance, without a root: what is squared is positive.
+  const Real more = facing - cosine * radius, less = -facing - cosine * radius;
+  const Real sine2 = sine * sine * tangent2;
+  // a + b < 90 degrees.
+  const auto is_narrow =
+      (behind2 > 0) & (cosine > 0) & (cosine * cosine * tangent2 > sine * sine * (radius * radius));
+  const auto is_away = is_narrow & (more > 0) & (more * more > sine2);
+  const auto is_towards = is_narrow & (less > 0) & (less * less > sine2);
+  const Real away = coarse_backfaces_ ? Real{} - kNever : reach;
+  return is_away ? away : is_towards ? reach : reach_aside;
+}
 
 }  // namespace crease

@@ -58,6 +58,11 @@ class WedgeMap {
 
   std::uint32_t slot_at(WedgeId wedge) const { return slot_of_begin_[begin_before(wedge)]; }
 
+  void prefetch(WedgeId wedge) const {
+    __builtin_prefetch(&levels_[0][index_of(wedge) / 64]);
+    __builtin_prefetch(&slot_of_begin_[index_of(wedge)]);
+  }
+
   std::size_t bytes() const {
     std::size_t sum = 4 * wedge_count_;
     for (const std::vector<std::uint64_t>& level : levels_) sum += 8 * level.size();
