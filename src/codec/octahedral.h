@@ -7,15 +7,14 @@
 // A direction goes to the octahedron |x| + |y| + |z| = m and, seen from +z, to the square: the
 // upper half is the diamond inside, the lower half is folded out over the diamond's four sides.
 //
-//      *-------*-------*       With integers x, y in [-m, m] the point is (x, y, m - |x| - |y|),
-//      or, |  -z / | \ -z  |       where that is below zero, (m - |y|, m - |x|) with the signs of x
-//      and |   /  +z   \   |       y. So every code is an integer vector of integer squared length,
-//      and
-//      * - - - o - - - *       decoding is one correctly rounded root and three quotients: the same
-//      |   \  +z   /   |       bits with every compiler and on every processor.
-//      |  -z \ | / -z  |
-//      *-------*-------*       m is the largest multiple of 6 below 2^(bits - 1), so that the axes,
-//                              the diagonals of sides (1,1,0) and of space (1,1,1) are codes.
+//      *-------*-------*     With integers x, y in [-m, m] the point is (x, y, m - |x| - |y|) or,
+//      | -z  / | \  -z |     where that is below zero, (m - |y|, m - |x|) with the signs of x and
+//      |   / +z| +z\   |     y. So every code is an integer vector of integer squared length, and
+//      *-------o-------*     decoding is one correctly rounded root and three quotients: the same
+//      |   \ +z| +z/   |     bits with every compiler and on every processor.
+//      | -z  \ | /  -z |
+//      *-------*-------*     m is the largest multiple of 6 below 2^(bits - 1), so that the axes
+//                            and the diagonals (1,1,0) and (1,1,1) are codes.
 //
 // The two halves of each side of the square are one curve, its corners one point: such directions
 // have several codes. The canonical one has y >= 0 where |x| = m and x >= 0 where |y| = m. There

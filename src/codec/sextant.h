@@ -6,16 +6,14 @@
 //   const SextantCode code = coding.encode({0, 0.6, 0.8});
 //   const Vec3f n = coding.decode(code);                  // unit length, within 0.65 degrees
 //
-//        (1,1,1)        Sorted, absolute components x >= z >= y are the triangle on the left. With
-//          .            N = 2^bits and f = atan(1 / sqrt 2), angle `phi` is f * phi / N and `theta`
-//         /|  phi       is asin(tan(f * (N - theta) / N)); direction (cos theta cos phi, sin phi,
-//        / |            sin theta cos phi). The slanted side, z = y, is then phi = N - theta, so
-//        the
-//       /  |            codes fill the triangle 0 <= phi <= N - theta.
-//      .---.
-//  (1,0,0) (1,0,1)      Three bits of signs, six orders, two angles: 18 bits with bits = 6, or 17,
-//  as
-//   theta = N ... 0     the angles fill half a square. There are 24 N^2 + 2 directions: 98306.
+//           (1,1,1)     Sorted, absolute components x >= z >= y are the triangle on the left. With
+//              /|       N = 2^bits and f = atan(1 / sqrt 2), the angle phi is f * phi_code / N, and
+//            /  | phi   theta is asin(tan(f * (N - theta_code) / N)). The direction is (cos theta
+//          /    |       cos phi, sin phi, sin theta cos phi). On the slanted side z = y, which is
+//        *------*       phi_code = N - theta_code, so the codes fill the triangle.
+//   (1,0,0)  (1,0,1)
+//     theta = N..0      Three bits of signs, six orders, two angles: 18 bits with bits = 6; or 17,
+//                       as the angles fill half a square. There are 24 N^2 + 2 directions: 98306.
 //
 // Directions on the sides of the triangle have several codes. The canonical one names the lower
 // axis first where components are equal and has no sign where one is zero. Sines and tangents come
