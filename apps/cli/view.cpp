@@ -44,6 +44,7 @@ Result<ViewedModel> load_viewed(const std::filesystem::path& path, const ReadOpt
     full = *std::move(mesh);
     grid = make_grid(full, build->precision);
     snap(full, grid);
+    snap_attributes(full, build->attributes);
   }
   if (full.triangle_count() == 0) {
     return fail(Error::NoTriangles, path.string() + ": no triangles");
