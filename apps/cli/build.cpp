@@ -34,6 +34,31 @@ Result<Imported> import_inputs(const BuildArguments& options, const Common& comm
   return imported;
 }
 
+std::string snapped_lines(const std::vector<SnappedLayer>& layers) {
+  std::string lines;
+  for (const SnappedLayer& layer : layers) {
+    lines += (lines.empty() ? "  " : "\n  ") + layer.layer + ": " + layer.precision;
+    if (layer.error_max > 0) {
+      lines += ", off by " + in_length(layer.error_max) + " at most, " +
+               in_length(layer.error_mean) + " on average";
+    }
+    if (layer.joined > 0) lines += "; " + grouped(layer.joined) + " values became another's";
+  }
+  return lines;
+}
+
+Json snapped_json(const std::vector<SnappedLayer>& layers) {
+  Json all = Json::array();
+  for (const SnappedLayer& layer : layers) {
+    all.push_back({{"layer", layer.layer},
+                   {"precision", layer.precision},
+                   {"error_max", layer.error_max},
+                   {"error_mean", layer.error_mean},
+                   {"joined", layer.joined}});
+  }
+  return all;
+}
+
 Result<Report> run_build(const BuildArguments& options, const Common& common) {
   const Stopwatch watch;
   for (const std::filesystem::path& input : options.inputs) {
@@ -53,6 +78,7 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
 
   const Result<Built> built = build_model(std::move(imported->mesh), *build);
   if (!built.ok()) return built.failure();
+  log(common, snapped_lines(built->snapped));
   const double build_seconds = watch.seconds() - import_seconds;
   if (interrupted()) return interrupted_failure();
   const Status written = write_crease(options.output, built->file_bytes);
@@ -74,6 +100,7 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
                  {"bits_per_vertex", bits},
                  {"bands", built->statistics.bands.size()},
                  {"blocks", blocks},
+                 {"snapped", snapped_json(built->snapped)},
                  {"import", to_json(imported->report)}};
   report.text = options.output.string() + ": " + grouped(triangles) + " triangles, " +
                 grouped(vertices) + " vertices, " + in_bytes(bytes) + ", " +

@@ -39,7 +39,60 @@ void add_build_options(CLI::App& command, ReadOptions& options) {
       ->check(CLI::IsMember({"optimal", "endpoint"}))
       ->type_name("WHERE")
       ->capture_default_str();
+  command
+      .add_option("--normal-bits", options.normal_bits,
+                  "precision of normals: 8 to 16 bits a component, default 10 (off by 0.16 degrees "
+                  "at most), or 4 to 12 an angle with deering, default 6; exact: as they are")
+      ->type_name("N|exact");
+  command
+      .add_option("--normal-coding", options.normal_coding,
+                  "how directions become integers: octahedral | deering")
+      ->check(CLI::IsMember({"octahedral", "deering"}))
+      ->type_name("HOW")
+      ->capture_default_str();
+  command
+      .add_option("--texcoord-bits", options.texcoord_bits,
+                  "precision of texture coordinates: 4 to 16 bits over their range, default 12; "
+                  "exact: as they are")
+      ->type_name("N|exact");
+  command
+      .add_option("--color-bits", options.color_bits,
+                  "precision of colours: 4 to 16 bits over their range, default 8; exact: as they "
+                  "are")
+      ->type_name("N|exact");
 }
+
+namespace {
+
+constexpr int kDeeringBits = 6;  // what G03 uses
+
+Result<AttributePrecision> attribute_precision(const ReadOptions& options) {
+  AttributePrecision precision;
+  const bool deering = options.normal_coding == "deering";
+  if (deering) {
+    precision.normal_coding = NormalCoding::Deering;
+    precision.normal_bits = kDeeringBits;
+  }
+  struct Asked {
+    const char* option;
+    const std::string& text;
+    int low, high;
+    int& bits;
+  };
+  for (const Asked& asked :
+       {Asked{"--normal-bits", options.normal_bits, deering ? 4 : 8, deering ? 12 : 16,
+              precision.normal_bits},
+        Asked{"--texcoord-bits", options.texcoord_bits, 4, 16, precision.texcoord_bits},
+        Asked{"--color-bits", options.color_bits, 4, 16, precision.color_bits}}) {
+    if (asked.text.empty()) continue;
+    Result<int> bits = parse_bits(asked.option, asked.text, asked.low, asked.high);
+    if (!bits.ok()) return bits.failure();
+    asked.bits = *bits;
+  }
+  return precision;
+}
+
+}  // namespace
 
 Result<ImportOptions> import_options(const ReadOptions& options, const Common& common) {
   Result<NormalPolicy> normals = parse_normal_policy(options.normals);
@@ -58,6 +111,9 @@ Result<BuildOptions> build_options(const ReadOptions& options, const Common& com
     if (!precision.ok()) return precision.failure();
     build.precision = *precision;
   }
+  Result<AttributePrecision> attributes = attribute_precision(options);
+  if (!attributes.ok()) return attributes.failure();
+  build.attributes = *attributes;
   build.simplify.placement =
       options.placement == "endpoint" ? Placement::Endpoint : Placement::Optimal;
   build.simplify.threads = common.threads;

@@ -21,11 +21,13 @@ struct ReadOptions {
   double same_normal_deg = 0;
   std::string precision;  // empty: the library's default
   std::string placement = "optimal";
+  std::string normal_coding = "octahedral";
+  std::string normal_bits, texcoord_bits, color_bits;  // empty: the library's default
 };
 
 // --normals and --same-normal, for commands that read meshes.
 void add_import_options(CLI::App& command, ReadOptions& options);
-// Those, --precision and --placement, for commands that build.
+// Those, --precision, --placement and the attributes' bits, for commands that build.
 void add_build_options(CLI::App& command, ReadOptions& options);
 
 Result<ImportOptions> import_options(const ReadOptions& options, const Common& common);

@@ -1,5 +1,7 @@
 #include "cli/text.h"
 
+#include "crease/attribute_precision.h"
+
 #include <charconv>
 #include <cmath>
 #include <cstdarg>
@@ -83,6 +85,15 @@ Result<Precision> parse_precision(std::string_view text) {
             "' is neither a length above 0 (0.001) nor bits over the longest side (14bits)");
   }
   return Precision{.length = *length};
+}
+
+Result<int> parse_bits(std::string_view option, std::string_view text, int low, int high) {
+  if (text == "exact" || text == "0") return kExactBits;
+  const auto bits = parse_int(text, low, high);
+  if (bits) return *bits;
+  return fail(Error::CommandLine, std::string(option) + ": '" + std::string(text) +
+                                      "' is neither bits from " + std::to_string(low) + " to " +
+                                      std::to_string(high) + " nor 'exact'");
 }
 
 Result<std::vector<double>> parse_ratios(std::string_view text) {

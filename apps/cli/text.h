@@ -25,6 +25,8 @@ std::optional<double> parse_number(std::string_view text);
 
 // "0.001": a length in model units. "14bits": bits over the longest side.
 Result<Precision> parse_precision(std::string_view text);
+// "12": from `low` to `high`. "0" and "exact": kExactBits. `option` appears in the message.
+Result<int> parse_bits(std::string_view option, std::string_view text, int low, int high);
 // "1,0.2,0.02": shares of the triangles, each in (0, 1].
 Result<std::vector<double>> parse_ratios(std::string_view text);
 // "1920x1080".

@@ -43,6 +43,7 @@ Result<ModelHierarchy> load_hierarchy(const std::filesystem::path& path, const R
     full = *std::move(mesh);
     grid = make_grid(full, build->precision);
     snap(full, grid);
+    snap_attributes(full, build->attributes);
   }
   if (full.triangle_count() == 0) {
     return fail(Error::NoTriangles, path.string() + ": no triangles");

@@ -4,24 +4,42 @@
 //   write_crease("model.crease", built->file_bytes);
 #pragma once
 
+#include "crease/attribute_precision.h"
 #include "crease/file.h"
 #include "crease/mesh.h"
 #include "crease/progress.h"
 #include "crease/simplify.h"
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace crease {
 
 struct BuildOptions {
   Precision precision;
+  AttributePrecision attributes;
   SimplifyOptions simplify;
 };
+
+// What snapping did to the values of one attribute layer.
+struct SnappedLayer {
+  std::string layer;      // its name
+  std::string precision;  // in words: "octahedral, 10 bits a component", "exact"
+  double error_max = 0;   // by how much values were off, degrees for normals, else units
+  double error_mean = 0;
+  std::size_t joined = 0;  // values that became equal to another at a vertex, and one with it
+};
+
+// Snaps the values of every attribute layer in place, as build_model() does before simplification.
+// Corners that share a value go on sharing it; values that meet at a vertex and became equal to the
+// bit become one. One report a layer.
+std::vector<SnappedLayer> snap_attributes(Mesh& mesh, const AttributePrecision& precision);
 
 struct Built {
   ProgressiveArraysPtr arrays;
   SimplifyStatistics statistics;
+  std::vector<SnappedLayer> snapped;  // one a layer
   std::vector<std::byte> file_bytes;
 };
 
@@ -29,7 +47,8 @@ struct Built {
 ProgressiveArraysPtr build_progressive_arrays(const Mesh& snapped,
                                               const ContractionSequence& sequence);
 
-// `mesh` must hold check_mesh() and have normals. Fails only when interrupted.
+// `mesh` must hold check_mesh() and have normals, and the bits be in their ranges. Fails only when
+// interrupted.
 Result<Built> build_model(Mesh mesh, const BuildOptions& options);
 
 }  // namespace crease

@@ -1,5 +1,7 @@
 #include "crease/build.h"
 
+#include "pipeline/snap_attributes.h"
+
 #include <utility>
 
 namespace crease {
@@ -25,8 +27,11 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
   const Grid grid = make_grid(mesh, options.precision);
   snap(mesh, grid);
   Built built;
+  const std::vector<LayerCoding> codings = codings_of(mesh, options.attributes);
+  built.snapped = snap_to_codings(mesh, codings);
   Result<ContractionSequence> sequence = simplify(mesh, grid, options.simplify, &built.statistics);
   if (!sequence.ok()) return sequence.failure();
+  snap_new_values(*sequence, mesh, codings);
   if (!goes_on(options, "arrange", 0)) return interrupted;
   built.arrays = build_progressive_arrays(mesh, *sequence);
   mesh = {};

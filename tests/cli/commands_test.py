@@ -98,6 +98,50 @@ class Commands(tool.Case):
             else:
                 self.assertTrue(1 / 8 <= got <= 1 / 6, got)
 
+    def deviation_at_full(self, *options):
+        out, full = self.path("bits.crease"), self.path("bits.ply")
+        built = self.json("build", self.city(), "-o", out, *options)
+        self.json("extract", out, "-o", full)
+        return built, self.json("compare", self.city(), full, "--samples", 5000)["normal_deviation"]
+
+    def test_normal_bits_bound_the_deviation_at_full_resolution(self):
+        for options, words, most in (([], "octahedral, 10 bits", 0.16),
+                                     (["--normal-bits", 8], "octahedral, 8 bits", 0.65),
+                                     (["--normal-bits", 16], "octahedral, 16 bits", 0.003),
+                                     (["--normal-coding", "deering"], "Deering, 6 bits", 0.65),
+                                     (["--normal-coding", "deering", "--normal-bits", 9],
+                                      "Deering, 9 bits", 0.081)):
+            built, deviation = self.deviation_at_full(*options)
+            layer = built["snapped"][0]
+            self.assertIn(words, layer["precision"])
+            self.assertLess(layer["error_max"], most)
+            self.assertGreater(layer["error_mean"], 0)
+            self.assertLess(deviation["max"], most + 0.02)
+
+    def test_exact_normals_are_kept(self):
+        for exact in ("exact", 0):
+            built, deviation = self.deviation_at_full("--normal-bits", exact)
+            self.assertEqual(built["snapped"][0]["precision"], "exact")
+            self.assertEqual(built["snapped"][0]["error_max"], 0)
+            self.assertLess(deviation["max"], 1e-3)
+
+    def test_texture_coordinates_and_colours_have_bits_of_their_own(self):
+        rows = "".join(f"v {x} {y} 0 {(x + y / 77) / 40:.5f} {x * y / 777:.5f} 0.3\n"
+                       f"vt {(x + y / 77) / 39:.6f} {(y + x / 77) / 38:.6f}\n" for y in range(20) for x in range(20))
+        faces = "".join(f"f {i}/{i} {i + 1}/{i + 1} {i + 21}/{i + 21}\n"
+                        for i in (20 * y + x + 1 for y in range(19) for x in range(19)))
+        model = self.write("patch.obj", rows + faces)
+        for bits, steps in (((), (2**-13, 2**-9)), ((6, 4), (2**-7, 2**-5))):
+            options = ("--texcoord-bits", bits[0], "--color-bits", bits[1]) if bits else ()
+            built = self.json("build", model, "-o", self.path("patch.crease"), *options)
+            errors = {s["layer"]: s["error_max"] for s in built["snapped"]}
+            texture = next(errors[name] for name in errors if name.startswith("uv"))
+            self.assertTrue(0 < texture <= steps[0] * 2**0.5, errors)
+            self.assertTrue(0 < errors["color"] <= steps[1] * 3**0.5, errors)
+        built = self.json("build", model, "-o", self.path("patch.crease"), "--texcoord-bits", "exact",
+                          "--color-bits", "exact", "--normal-bits", "exact")
+        self.assertEqual([s["precision"] for s in built["snapped"]], ["exact"] * 3)
+
     def test_normal_policies_change_the_kinds(self):
         model = self.write("t.obj", tool.TETRAHEDRON)
         flat = self.json("info", model, "--normals", "flat")

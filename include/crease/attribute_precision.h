@@ -1,0 +1,32 @@
+// How finely attribute values are kept: what --normal-bits, --texcoord-bits and --color-bits ask
+// for.
+//
+//   BuildOptions options;
+//   options.attributes.normal_bits = 12;
+//
+// Values are snapped once, before simplification, as positions are; from there on they are exact.
+#pragma once
+
+#include <cstdint>
+
+namespace crease {
+
+enum class NormalCoding : std::uint8_t {
+  Octahedral,  // bits a component, 8 to 16
+  Deering,     // G03's sextants: bits an angle, 4 to 12; 6 are its 17 bits a normal
+};
+
+inline constexpr int kExactBits = 0;  // values as they are, floats
+
+struct AttributePrecision {
+  NormalCoding normal_coding = NormalCoding::Octahedral;
+  // 10: normals are off by 0.16 degrees at most, so shading that grows with the cosine by 0.7 of a
+  // step of an 8-bit display (docs/attributes.md).
+  int normal_bits = 10;
+  // Over the range of each component: off by at most its 2^-(bits + 1). Values that already lie on
+  // a lattice as coarse, or are few, are kept exactly.
+  int texcoord_bits = 12;
+  int color_bits = 8;
+};
+
+}  // namespace crease

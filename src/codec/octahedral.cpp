@@ -1,0 +1,180 @@
+#include "codec/octahedral.h"
+
+#include "base/assert.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace crease {
+
+namespace {
+
+std::int32_t with_sign_of(std::int32_t size, std::int64_t sign) {
+  return sign < 0 ? -size : size;
+}
+
+// A vector as integers of up to 30 bits, which changes its direction by less than 1e-9.
+struct ScaledVector {
+  std::int64_t x = 0, y = 0, z = 0;
+  std::int64_t sum() const { return std::abs(x) + std::abs(y) + std::abs(z); }
+};
+
+ScaledVector scaled(const Vec3d& d) {
+  const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  if (largest == 0) return {};
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  const auto integer = [&](double c) { return std::llround(std::ldexp(c, 30 - exponent)); };
+  return {integer(d.x), integer(d.y), integer(d.z)};
+}
+
+// round(m * part / whole), halves away from zero.
+std::int32_t rounded_share(std::int32_t m, std::int64_t part, std::int64_t whole) {
+  const std::int64_t size = (2 * m * std::abs(part) + whole) / (2 * whole);
+  return with_sign_of(static_cast<std::int32_t>(size), part);
+}
+
+}  // namespace
+
+OctahedralCoding::OctahedralCoding(int bits) : m_(((1 << (bits - 1)) - 1) / 6 * 6) {
+  CREASE_ASSERT(bits >= kMinBits && bits <= kMaxBits);
+}
+
+OctahedralCoding::Point OctahedralCoding::point_of(OctahedralCode code) const {
+  return {static_cast<std::int32_t>(code.u) - m_, static_cast<std::int32_t>(code.v) - m_};
+}
+
+OctahedralCode OctahedralCoding::code_of(Point p) const {
+  return {static_cast<std::uint32_t>(p.x + m_), static_cast<std::uint32_t>(p.y + m_)};
+}
+
+// Over the diamond's sides: the point with -z instead of z. Its own inverse on canonical points.
+OctahedralCoding::Point OctahedralCoding::folded(Point p) const {
+  return {with_sign_of(m_ - std::abs(p.y), p.x), with_sign_of(m_ - std::abs(p.x), p.y)};
+}
+
+Vec3i OctahedralCoding::vector_of(Point p) const {
+  const std::int32_t z = m_ - std::abs(p.x) - std::abs(p.y);
+  if (z < 0) p = folded(p);
+  return {p.x, p.y, z};
+}
+
+// One step beyond the square's side is inside its other half.
+OctahedralCoding::Point OctahedralCoding::inside(Point p) const {
+  if (std::abs(p.x) > m_) p = {with_sign_of(2 * m_ - std::abs(p.x), p.x), -p.y};
+  if (std::abs(p.y) > m_) p = {-p.x, with_sign_of(2 * m_ - std::abs(p.y), p.y)};
+  return p;
+}
+
+OctahedralCoding::Point OctahedralCoding::settled(Point p) const {
+  if (std::abs(p.x) == m_) p.y = std::abs(p.y);
+  if (std::abs(p.y) == m_) p.x = std::abs(p.x);
+  return p;
+}
+
+OctahedralCode OctahedralCoding::canonical(OctahedralCode code) const {
+  return code == kZero ? code : code_of(settled(point_of(code)));
+}
+
+bool OctahedralCoding::is_canonical(OctahedralCode code) const {
+  return code.u <= max_component() && code.v <= max_component() && canonical(code) == code;
+}
+
+OctahedralCode OctahedralCoding::encode(const Vec3d& direction) const {
+  const ScaledVector d = scaled(direction);
+  const std::int64_t sum = d.sum();
+  if (sum == 0) return kZero;
+  Point near{rounded_share(m_, d.x, sum), rounded_share(m_, d.y, sum)};
+  if (d.z < 0) {
+    near = {with_sign_of(m_ - std::abs(near.y), d.x), with_sign_of(m_ - std::abs(near.x), d.y)};
+  }
+  // On a face of the octahedron the codes are a lattice of equilateral triangles, which the square
+  // shears: the nearest is the rounded one or one of its eight neighbours.
+  OctahedralCode best{};
+  double best_cosine = -1e300;
+  for (std::int32_t dy = -1; dy <= 1; ++dy) {
+    for (std::int32_t dx = -1; dx <= 1; ++dx) {
+      const Point p = settled(inside({near.x + dx, near.y + dy}));
+      const Vec3i n = vector_of(p);
+      const std::int64_t along = d.x * n.x + d.y * n.y + d.z * n.z;  // 47 bits: exact as a double
+      const std::int64_t squared =
+          std::int64_t(n.x) * n.x + std::int64_t(n.y) * n.y + std::int64_t(n.z) * n.z;
+      const double cosine = static_cast<double>(along) / std::sqrt(static_cast<double>(squared));
+      const OctahedralCode code = code_of(p);
+      const bool first = code.v != best.v ? code.v < best.v : code.u < best.u;
+      if (cosine < best_cosine || (cosine == best_cosine && !first)) continue;
+      best = code;
+      best_cosine = cosine;
+    }
+  }
+  return best;
+}
+
+Vec3f OctahedralCoding::decode(OctahedralCode code) const {
+  CREASE_ASSERT(code.u <= max_component() && code.v <= max_component());
+  if (code == kZero) return {};
+  const Vec3i n = vector_of(point_of(code));
+  const std::int64_t squared =
+      std::int64_t(n.x) * n.x + std::int64_t(n.y) * n.y + std::int64_t(n.z) * n.z;
+  const double size = std::sqrt(static_cast<double>(squared));
+  return {static_cast<float>(n.x / size), static_cast<float>(n.y / size),
+          static_cast<float>(n.z / size)};
+}
+
+namespace {
+
+template <typename Point>
+Point turned(Point p, int quarter_turns) {
+  for (int i = 0; i < quarter_turns; ++i) p = {-p.y, p.x};
+  return p;
+}
+
+}  // namespace
+
+OctahedralCoding::Frame OctahedralCoding::frame_of(OctahedralCode predicted) const {
+  Frame frame;
+  frame.predicted = predicted == kZero ? Point{0, 0} : point_of(predicted);
+  frame.flip = std::abs(frame.predicted.x) + std::abs(frame.predicted.y) > m_;
+  if (frame.flip) frame.predicted = folded(frame.predicted);
+  while (frame.turns < 4 && !(frame.predicted.x > 0 && frame.predicted.y >= 0) &&
+         !(frame.predicted.x == 0 && frame.predicted.y == 0)) {
+    frame.predicted = turned(frame.predicted, 1);
+    ++frame.turns;
+  }
+  return frame;
+}
+
+// Into [-m, m], around the square.
+std::int32_t OctahedralCoding::wrapped(std::int64_t x) const {
+  const std::int64_t span = 2 * std::int64_t(m_) + 1;
+  const std::int64_t rest = (x + m_) % span;
+  return static_cast<std::int32_t>((rest < 0 ? rest + span : rest) - m_);
+}
+
+// In the turned frame canonical codes have the sign of the prediction at the square's sides: of two
+// codes of one direction it is the nearer one. The zero vector keeps the corner that no canonical
+// code has.
+OctahedralResidual OctahedralCoding::residual(OctahedralCode code, OctahedralCode predicted) const {
+  const Frame frame = frame_of(predicted);
+  Point p = point_of(code);
+  if (code != kZero) {
+    if (frame.flip) p = folded(p);
+    p = settled(turned(p, frame.turns));
+  }
+  return {wrapped(std::int64_t(p.x) - frame.predicted.x),
+          wrapped(std::int64_t(p.y) - frame.predicted.y)};
+}
+
+OctahedralCode OctahedralCoding::restore(OctahedralResidual residual,
+                                         OctahedralCode predicted) const {
+  const Frame frame = frame_of(predicted);
+  Point p{wrapped(std::int64_t(residual.x) + frame.predicted.x),
+          wrapped(std::int64_t(residual.y) + frame.predicted.y)};
+  if (code_of(p) == kZero) return kZero;
+  p = settled(turned(settled(p), 4 - frame.turns));
+  if (frame.flip) p = folded(p);
+  return code_of(settled(p));
+}
+
+}  // namespace crease

@@ -1,0 +1,94 @@
+// Octahedral direction codes: the sphere as a square of integers.
+//
+//   const OctahedralCoding coding(10);                    // bits a component
+//   const OctahedralCode code = coding.encode({0, 0.6, 0.8});
+//   const Vec3f n = coding.decode(code);                  // unit length, within 0.16 degrees
+//
+// A direction goes to the octahedron |x| + |y| + |z| = m and, seen from +z, to the square: the
+// upper half is the diamond inside, the lower half is folded out over the diamond's four sides.
+//
+//      *-------*-------*     With integers x, y in [-m, m] the point is (x, y, m - |x| - |y|) or,
+//      | -z  / | \  -z |     where that is below zero, (m - |y|, m - |x|) with the signs of x and
+//      |   / +z| +z\   |     y. So every code is an integer vector of integer squared length, and
+//      *-------o-------*     decoding is one correctly rounded root and three quotients: the same
+//      |   \ +z| +z/   |     bits with every compiler and on every processor.
+//      | -z  \ | /  -z |
+//      *-------*-------*     m is the largest multiple of 6 below 2^(bits - 1), so that the axes
+//                            and the diagonals (1,1,0) and (1,1,1) are codes.
+//
+// The two halves of each side of the square are one curve, its corners one point: such directions
+// have several codes. The canonical one has y >= 0 where |x| = m and x >= 0 where |y| = m. There
+// are 4 m^2 + 2 directions. One code that is not canonical, (0, 0), stands for the zero vector,
+// which is no direction but occurs among normals.
+#pragma once
+
+#include "crease/vec.h"
+
+#include <cstdint>
+
+namespace crease {
+
+struct OctahedralCode {
+  std::uint32_t u = 0, v = 0;  // x + m and y + m
+  bool operator==(const OctahedralCode&) const = default;
+};
+
+struct OctahedralResidual {
+  std::int32_t x = 0, y = 0;  // each in [-m, m]
+  bool operator==(const OctahedralResidual&) const = default;
+};
+
+class OctahedralCoding {
+ public:
+  static constexpr int kMinBits = 4, kMaxBits = 16;
+
+  explicit OctahedralCoding(int bits);
+
+  // The largest component of a code, 2 m.
+  std::uint32_t max_component() const { return 2 * static_cast<std::uint32_t>(m_); }
+  std::uint64_t direction_count() const { return 4 * std::uint64_t(m_) * std::uint64_t(m_) + 2; }
+
+  // The canonical code whose direction is nearest, of any finite vector. Zero gives kZero, which
+  // decodes to zero. Integers throughout but for the candidates' lengths.
+  OctahedralCode encode(const Vec3d& direction) const;
+  OctahedralCode encode(const Vec3f& d) const {
+    return encode(Vec3d{double(d.x), double(d.y), double(d.z)});
+  }
+  // Both components must be in range; the code need not be canonical.
+  Vec3f decode(OctahedralCode code) const;
+
+  static constexpr OctahedralCode kZero{0, 0};
+  // Canonical or kZero: what encode() gives, and what a file may hold.
+  bool is_canonical(OctahedralCode code) const;
+  OctahedralCode canonical(OctahedralCode code) const;
+
+  // What is left of a code where another is expected, small where the directions are near: both are
+  // turned so that the expected one lies inside the diamond, away from the folds, in the quadrant
+  // x > 0, y >= 0. Then it is a difference, taken around the square. Both codes canonical.
+  OctahedralResidual residual(OctahedralCode code, OctahedralCode predicted) const;
+  // The inverse. Any numbers give a canonical code, so a file's need no check.
+  OctahedralCode restore(OctahedralResidual residual, OctahedralCode predicted) const;
+
+ private:
+  struct Point {
+    std::int32_t x, y;
+  };
+  struct Frame {  // how a prediction is turned
+    bool flip = false;
+    int turns = 0;
+    Point predicted{};
+  };
+
+  Point point_of(OctahedralCode code) const;
+  OctahedralCode code_of(Point p) const;
+  Vec3i vector_of(Point p) const;
+  Point folded(Point p) const;
+  Point inside(Point p) const;
+  Point settled(Point p) const;  // canonical
+  Frame frame_of(OctahedralCode predicted) const;
+  std::int32_t wrapped(std::int64_t x) const;
+
+  std::int32_t m_;
+};
+
+}  // namespace crease
