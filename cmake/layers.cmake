@@ -26,7 +26,7 @@ set(CREASE_HEADERS_io        import.h export.h)
 set(CREASE_HEADERS_generate  generate.h)
 set(CREASE_HEADERS_measure   compare.h)
 set(CREASE_HEADERS_simplify  simplify.h)
-set(CREASE_HEADERS_codec     file.h)
+set(CREASE_HEADERS_codec     file.h byte_source.h block_file.h)
 set(CREASE_HEADERS_pipeline  attribute_precision.h build.h build_hierarchy.h)
 set(CREASE_HEADERS_runtime   camera.h draw_list.h draw_changes.h progressive_mesh.h
                            adaptive_mesh.h)

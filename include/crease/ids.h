@@ -13,6 +13,7 @@ enum class TriangleId : std::uint32_t {};
 enum class AttributeId : std::uint32_t {};  // a value of one attribute layer
 enum class MaterialId : std::uint32_t {};
 enum class PartId : std::uint32_t {};
+enum class BlockId : std::uint32_t {};  // a block of a file, in the order in which they lie
 
 template <typename Id>
 constexpr std::size_t index_of(Id id) {

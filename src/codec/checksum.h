@@ -6,6 +6,11 @@
 
 namespace crease {
 
+enum class Checksums {
+  Verify,
+  Ignore,  // for fuzzing: bytes that lie about everything but their layout
+};
+
 // XXH3-64 with seed 0, of `first` followed by `second`.
 std::uint64_t checksum(std::span<const std::byte> first, std::span<const std::byte> second = {});
 

@@ -1,4 +1,4 @@
-// The tables of docs/format.md as constants.
+// The tables of docs/format-1.md (version 1) as constants.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 #include "codec/section_table.h"
 
 #include "base/bytes.h"
-#include "codec/checksum.h"
+#include "codec/file_version.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,12 +9,6 @@
 namespace crease {
 
 namespace {
-
-constexpr const char* kBuildAgain = "; the file was cut or changed, build it again";
-
-std::string at_byte(std::uint64_t offset) {
-  return " at byte " + std::to_string(offset);
-}
 
 Result<SectionTable> decode_entries(ByteReader& in, std::uint32_t count, std::uint64_t file_bytes) {
   SectionTable table;
@@ -73,28 +67,21 @@ std::span<const std::byte> SectionTable::find(std::span<const std::byte> file, f
 
 Result<SectionTable> decode_section_table(std::span<const std::byte> file,
                                           const DecodeLimits& limits, Checksums checksums) {
-  const std::size_t known = std::min(file.size(), format::kMagic.size());
-  const auto* given = reinterpret_cast<const std::uint8_t*>(file.data());
-  if (!std::equal(given, given + known, format::kMagic.begin())) {
-    return fail(Error::NotCrease, "its first bytes are not those of a .crease file");
+  const Result<std::uint16_t> version = decode_version(file);
+  if (!version.ok()) return version.failure();
+  if (*version != format::kVersion) {
+    return fail(Error::NotSupported, "version " + std::to_string(*version) +
+                                         " holds blocks, which are not read as arrays");
   }
-  if (file.empty()) return fail(Error::NotCrease, "the file is empty");
   ByteReader in(file);
   in.u64();  // the magic
-  const std::uint16_t version = in.u16();
-  if (file.size() >= 10 && version > format::kVersion) {
-    return fail(Error::VersionTooNew, "version " + std::to_string(version) +
-                                          " is newer than this program, which reads up to " +
-                                          std::to_string(format::kVersion));
-  }
-  const std::uint16_t reserved = in.u16();
+  in.u32();  // version and flags
   const std::uint32_t count = in.u32();
   const std::uint64_t file_bytes = in.u64();
   const std::uint64_t header_checksum = in.u64();
   if (in.truncated()) {
     return fail(Error::Truncated, std::string("it ends within the header") + kBuildAgain);
   }
-  if (version == 0 || reserved != 0) return fail(Error::BadFormat, "version at byte 8");
   if (file_bytes > limits.max_bytes) {
     return fail(Error::OverLimit, "it says that it has " + std::to_string(file_bytes) +
                                       " bytes, more than the limit of " +

@@ -1,6 +1,7 @@
 // The header of a file and its section table.
 #pragma once
 
+#include "codec/checksum.h"
 #include "codec/format.h"
 #include "crease/file.h"
 #include "crease/result.h"
@@ -28,11 +29,6 @@ struct SectionTable {
   // The bytes of a section of `file`; empty if it is not there.
   std::span<const std::byte> find(std::span<const std::byte> file, format::Kind kind,
                                   std::uint32_t layer = 0) const;
-};
-
-enum class Checksums {
-  Verify,
-  Ignore,  // for fuzzing: bytes that lie about everything but their layout
 };
 
 Result<SectionTable> decode_section_table(std::span<const std::byte> file,

@@ -113,8 +113,10 @@ TEST_CASE("other files, newer versions and too large ones are told apart") {
   other[1] = std::byte('c');
   CHECK(error_of(other) == Error::NotCrease);
   Bytes newer = whole;
-  newer[8] = std::byte(2);
+  newer[8] = std::byte(3);
   CHECK(error_of(newer) == Error::VersionTooNew);
+  newer[8] = std::byte(2);
+  CHECK(error_of(newer) == Error::NotSupported);
   CHECK(error_of(whole, {.max_bytes = whole.size() - 1}) == Error::OverLimit);
   CHECK(error_of(whole, {.max_bytes = whole.size()}) == Error{});
 }

@@ -1,0 +1,56 @@
+// The tables of docs/format.md (version 2, the container) as constants.
+#pragma once
+
+#include "crease/block_file.h"
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace crease::format {
+
+inline constexpr std::uint16_t kContainerVersion = 2;
+
+// The head; its first 32 bytes are read before any other.
+inline constexpr std::uint32_t kMaxHeadBytes = 65'536;
+inline constexpr std::uint32_t kHeadStartBytes = 32;
+inline constexpr std::uint32_t kHeadChecksumOffset = 24;
+inline constexpr std::uint32_t kFixedHeadBytes = 144;
+inline constexpr std::uint32_t kLayerBytes = 32;  // beside the name's bytes
+inline constexpr std::uint32_t kBandBytes = 36;
+inline constexpr std::uint32_t kPageReferenceBytes = 12;
+inline constexpr std::uint8_t kMaxGridBits = 31;
+
+// Names.
+inline constexpr std::uint32_t kMinMaterialBytes = 24;
+inline constexpr std::uint32_t kMinPartBytes = 4;
+
+// A page of the directory.
+inline constexpr std::uint32_t kMaxPageBytes = 4u << 20;
+inline constexpr std::uint32_t kPageHeadBytes = 16;
+inline constexpr std::uint32_t kBlockEntryBytes = 76;
+
+constexpr std::uint32_t page_count(std::uint32_t blocks) {
+  return blocks / kBlocksPerPage + (blocks % kBlocksPerPage == 0 ? 0 : 1);
+}
+constexpr std::uint32_t blocks_of_page(std::uint32_t blocks, std::uint32_t page) {
+  const std::uint32_t before = page * kBlocksPerPage;
+  return blocks - before < kBlocksPerPage ? blocks - before : kBlocksPerPage;
+}
+constexpr std::uint64_t page_bytes(std::uint32_t blocks, std::uint64_t dependencies) {
+  return kPageHeadBytes + std::uint64_t(kBlockEntryBytes) * blocks + 4 * dependencies;
+}
+
+// Errors of blocks: the upper half of an f32 without its sign.
+inline constexpr std::uint16_t kMaxErrorCode = 0xfeff;
+
+constexpr float error_of_code(std::uint16_t code) {
+  return std::bit_cast<float>(std::uint32_t(code) << 15);
+}
+// The least code whose error is not below this one, which is 0 to error_of_code(kMaxErrorCode).
+constexpr std::uint16_t code_of_error(float error) {
+  const float positive = error + 0.0f;  // -0 is no less than 0, but its bits are
+  return static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(positive) + 0x7fffu) >> 15);
+}
+
+}  // namespace crease::format

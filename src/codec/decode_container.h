@@ -1,0 +1,31 @@
+// The parts of a version 2 file, from bytes that were read already. BlockFile reads them from a
+// ByteSource; who fetches bytes another way calls these.
+#pragma once
+
+#include "codec/checksum.h"
+#include "crease/block_file.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+// `start`: the first bytes of a file that has `size` bytes so far: 65,536 of them, or all.
+Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_t size,
+                                  Checksums checksums);
+
+// `bytes`: all of head.pages[page].
+Result<DirectoryPage> decode_page(std::span<const std::byte> bytes, const BlockFileHead& head,
+                                  std::uint32_t page, Checksums checksums);
+
+// `bytes`: all of the section, whose checksum is right; none: there are no names.
+Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes);
+Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes);
+
+std::string page_name(const BlockFileHead& head, std::uint32_t page);  // "page 3 at byte 81920"
+std::string block_name(const BlockEntry& entry);                       // "block 17 at byte 81920"
+
+}  // namespace crease

@@ -1,0 +1,189 @@
+#include "codec/decode_container.h"
+
+#include "base/bytes.h"
+#include "codec/container.h"
+#include "codec/container_rules.h"
+#include "codec/file_version.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace crease {
+
+namespace {
+
+Failure bad_head(const std::string& what) {
+  return fail(Error::BadFormat, "head: " + what);
+}
+
+LevelError decode_errors(ByteReader& in) {
+  LevelError e;
+  for (float* f : {&e.surface, &e.line, &e.degrees, &e.texture}) *f = in.f32();
+  return e;
+}
+
+std::uint8_t decode_reserved(ByteReader& in, int count) {
+  std::uint8_t any = 0;
+  for (int i = 0; i < count; ++i) any |= in.u8();
+  return any;
+}
+
+LayerSchema decode_layer(ByteReader& in, std::uint8_t& reserved) {
+  LayerSchema layer;
+  layer.name = in.text();
+  layer.role = static_cast<AttributeRole>(in.u8());
+  layer.interpolation = static_cast<Interpolation>(in.u8());
+  layer.dimension = in.u8();
+  layer.coding = static_cast<AttributeCoding>(in.u8());
+  layer.bits = in.u8();
+  reserved |= decode_reserved(in, 3);
+  for (float& f : layer.origin) f = in.f32();
+  layer.step = in.f32();
+  return layer;
+}
+
+// What is behind the first 32 bytes. `in` ends where the head does.
+Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head) {
+  ModelFacts& facts = head.facts;
+  head.block_count = in.u32();
+  const std::uint16_t band_count = in.u16(), layer_count = in.u16();
+  facts.vertex_count = in.u64();
+  facts.triangle_count = in.u64();
+  for (int i = 0; i < 3; ++i) facts.grid.origin[i] = in.f64();
+  facts.grid.step = in.f64();
+  facts.grid_bits = in.u8();
+  std::uint8_t reserved = decode_reserved(in, 7);
+  std::uint64_t end = head.head_bytes;
+  for (auto* section : {&head.materials, &head.parts, &head.tables}) {
+    section->range = {end, in.u64()};
+    section->checksum = in.u64();
+    if (section->range.bytes > head.file_bytes - end) {
+      return bad_head("names or tables that end after the file");
+    }
+    if (section->range.bytes == 0 && section->checksum != 0) {
+      return bad_head("the checksum of what is absent");
+    }
+    end += section->range.bytes;
+  }
+  const std::uint32_t pages = format::page_count(head.block_count);
+  if (std::uint64_t(layer_count) * format::kLayerBytes +
+          std::uint64_t(band_count) * format::kBandBytes +
+          std::uint64_t(pages) * format::kPageReferenceBytes >
+      in.remaining()) {
+    return bad_head("too short for its layers, bands and pages");
+  }
+  for (std::uint16_t l = 0; l < layer_count; ++l) {
+    facts.layers.push_back(decode_layer(in, reserved));
+  }
+  for (std::uint16_t b = 0; b < band_count; ++b) {
+    BandFacts band;
+    band.patches = in.u32();
+    band.contractions = in.u64();
+    band.triangles_after = in.u64();
+    band.error = decode_errors(in);
+    facts.bands.push_back(band);
+  }
+  for (std::uint32_t p = 0; p < pages; ++p) {
+    FileRange page;
+    page.offset = in.u64();
+    page.bytes = in.u32();
+    const std::uint64_t least = format::page_bytes(format::blocks_of_page(head.block_count, p), 0);
+    const std::string name = "page " + std::to_string(p);
+    if (p == 0 ? page.offset != end : page.offset < end) {
+      return bad_head(name + " is not behind what comes before it");
+    }
+    if (page.bytes < least || (page.bytes - least) % 4 != 0 || page.bytes > format::kMaxPageBytes) {
+      return bad_head(name + " has a size that no such page has");
+    }
+    if (page.offset > head.file_bytes || page.bytes > head.file_bytes - page.offset) {
+      return bad_head(name + " ends after the file");
+    }
+    end = page.offset + page.bytes;
+    head.pages.push_back(page);
+  }
+  if (in.truncated() || in.remaining() != 0) return bad_head("it is not as long as it says");
+  if (reserved != 0) return bad_head("a reserved byte is not 0");
+  if (pages == 0 && end != head.file_bytes) return bad_head("bytes behind a file without blocks");
+  if (std::string wrong = broken_rule(facts); !wrong.empty()) return bad_head(wrong);
+  return head;
+}
+
+}  // namespace
+
+Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_t size,
+                                  Checksums checksums) {
+  const Result<std::uint16_t> version = decode_version(start);
+  if (!version.ok()) return version.failure();
+  if (*version != format::kContainerVersion) {
+    return fail(Error::NotSupported,
+                "version " + std::to_string(*version) + " has no blocks and is read whole");
+  }
+  const auto cut = [] {
+    return fail(Error::Truncated, std::string("it ends within the head") + kBuildAgain);
+  };
+  ByteReader in(start);
+  in.u64();  // the magic
+  in.u32();  // version and flags
+  BlockFileHead head;
+  head.head_bytes = in.u32();
+  head.file_bytes = in.u64();
+  const std::uint64_t told = in.u64();
+  if (in.truncated()) return cut();
+  if (head.head_bytes < format::kFixedHeadBytes || head.head_bytes > format::kMaxHeadBytes ||
+      head.head_bytes > head.file_bytes) {
+    return bad_head("its size at byte 12");
+  }
+  if (head.head_bytes > start.size()) return cut();
+  const auto fields = start.first(head.head_bytes).subspan(format::kHeadStartBytes);
+  if (checksums == Checksums::Verify &&
+      checksum(start.first(format::kHeadChecksumOffset), fields) != told) {
+    return fail(Error::BadChecksum, std::string("head at byte 0: checksum differs") + kBuildAgain);
+  }
+  if (size > head.file_bytes) {
+    return fail(Error::BadFormat, "bytes behind its end" + at_byte(head.file_bytes));
+  }
+  ByteReader rest(fields);
+  return decode_head_fields(rest, std::move(head));
+}
+
+Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes) {
+  std::vector<Material> materials;
+  if (bytes.empty()) return materials;
+  const auto bad = [](const std::string& what) {
+    return fail(Error::BadFormat, "materials: " + what);
+  };
+  ByteReader in(bytes);
+  const std::uint32_t count = in.u32();
+  if (count == 0 || count > in.remaining() / format::kMinMaterialBytes) {
+    return bad("their number is not as many as there are");
+  }
+  materials.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Material material;
+    material.name = in.text();
+    for (float& f : material.base_color) f = in.f32();
+    material.base_color_texture = in.text();
+    if (std::string wrong = broken_rule(material); !wrong.empty()) return bad(wrong);
+    materials.push_back(std::move(material));
+  }
+  if (in.truncated() || in.remaining() != 0) return bad("they do not end with their bytes");
+  return materials;
+}
+
+Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes) {
+  std::vector<std::string> parts;
+  if (bytes.empty()) return parts;
+  ByteReader in(bytes);
+  const std::uint32_t count = in.u32();
+  if (count == 0 || count > in.remaining() / format::kMinPartBytes) {
+    return fail(Error::BadFormat, "part names: their number is not as many as there are");
+  }
+  parts.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) parts.push_back(in.text());
+  if (in.truncated() || in.remaining() != 0) {
+    return fail(Error::BadFormat, "part names: they do not end with their bytes");
+  }
+  return parts;
+}
+
+}  // namespace crease

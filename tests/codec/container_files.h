@@ -1,0 +1,126 @@
+// Files of version 2 for tests and fuzzers: random ones, read back and written again.
+#pragma once
+
+#include "codec/encode_container.h"
+#include "crease/block_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+struct WrittenBlock {
+  BlockFacts facts;
+  std::vector<BlockId> dependencies;
+  std::vector<std::byte> payload;
+};
+
+struct WrittenFile {
+  ContainerContent content;
+  std::vector<WrittenBlock> blocks;
+};
+
+inline Status write_container(const WrittenFile& file, ByteSink& sink) {
+  std::vector<std::uint32_t> counts;
+  for (const WrittenBlock& block : file.blocks) {
+    counts.push_back(static_cast<std::uint32_t>(block.dependencies.size()));
+  }
+  Result<ContainerWriter> writer = ContainerWriter::begin(sink, file.content, counts);
+  if (!writer.ok()) return writer.failure();
+  for (const WrittenBlock& block : file.blocks) {
+    Status status = writer->add(block.facts, block.dependencies, block.payload);
+    if (!status.ok()) return status;
+  }
+  return writer->finish();
+}
+
+// Empty where the writer refuses the file.
+inline std::vector<std::byte> bytes_of(const WrittenFile& file) {
+  MemorySink sink;
+  return write_container(file, sink).ok() ? sink.bytes() : std::vector<std::byte>();
+}
+
+// What a file says, as if it had not been written yet. The file must be valid.
+inline WrittenFile read_whole(const BlockFile& file) {
+  WrittenFile result;
+  result.content = {file.facts(), *file.read_materials(), *file.read_parts(), *file.read_tables()};
+  for (std::uint32_t p = 0; p < file.page_count(); ++p) {
+    const DirectoryPage page = *file.read_page(p);
+    for (const BlockEntry& entry : page.blocks) {
+      const auto needed = page.dependencies_of(entry.id);
+      result.blocks.push_back(
+          {entry.facts, {needed.begin(), needed.end()}, *file.read_block(entry)});
+    }
+  }
+  return result;
+}
+
+inline ContainerContent some_content() {
+  ContainerContent content;
+  ModelFacts& facts = content.facts;
+  facts.grid = {{1.5, -2e6, 0.25}, 0.125};
+  facts.grid_bits = 20;
+  facts.vertex_count = 5'000'000'000;
+  facts.triangle_count = 9'999'999'999;
+  facts.layers = {
+      {"normal", AttributeRole::Normal, Interpolation::Direction, 3, AttributeCoding::Sextant, 17},
+      {"bent", AttributeRole::Other, Interpolation::Direction, 3, AttributeCoding::Octahedral, 10},
+      {"uv",
+       AttributeRole::TexCoord,
+       Interpolation::Linear,
+       2,
+       AttributeCoding::Grid,
+       12,
+       {-1, 0.5f},
+       0.25f},
+      {"kind", AttributeRole::Other, Interpolation::Categorical, 1}};
+  facts.bands = {{7, 4000, 2000, {0.5f, 0.25f, 3, 0}}, {2, 1990, 10, {2, 1, 40, 0.125f}}};
+  content.materials = {{"brick", {0.5f, 0.25f, 0.125f, 1}, "brick.png"}, {"", {1, 1, 1, 1}, ""}};
+  content.parts = {"house", "", "shed"};
+  content.tables = {std::byte{1}, std::byte{2}, std::byte{3}};
+  return content;
+}
+
+// Numbers of every size, among them the largest.
+inline WrittenFile random_file(std::uint64_t seed, std::size_t block_count,
+                               std::size_t max_payload) {
+  std::mt19937_64 random(seed);
+  const auto any = [&random] {
+    return static_cast<std::uint32_t>((random() & 0xffffffffu) >> (random() % 32));
+  };
+  const auto error = [&random] {
+    return random() % 4 == 0 ? 0 : std::ldexp(float(random() % 65536), int(random() % 60) - 40);
+  };
+  WrittenFile file{some_content(), {}};
+  for (std::size_t b = 0; b < block_count; ++b) {
+    WrittenBlock block;
+    BlockFacts& facts = block.facts;
+    facts.band = static_cast<std::uint16_t>(random() % 3);
+    facts.patch = any();
+    for (int i = 0; i < 3; ++i) facts.center[i] = static_cast<std::int32_t>(any());
+    for (std::uint32_t* n : {&facts.radius, &facts.splits, &facts.vertices, &facts.triangles_coarse,
+                             &facts.triangles_fine, &facts.decoded_bytes}) {
+      *n = any();
+    }
+    facts.fine = {error(), error(), error(), error()};
+    facts.coarse = {facts.fine.surface + error(), facts.fine.line, facts.fine.degrees + error(),
+                    facts.fine.texture * 2};
+    // Mostly a few, at times hundreds, and none twice.
+    const std::size_t wanted = random() % 64 == 0 ? 300 : random() % 9;
+    for (std::size_t i = 0; i < std::min(wanted, b); ++i) {
+      block.dependencies.push_back(BlockId(static_cast<std::uint32_t>(random() % b)));
+    }
+    std::sort(block.dependencies.begin(), block.dependencies.end());
+    block.dependencies.erase(std::unique(block.dependencies.begin(), block.dependencies.end()),
+                             block.dependencies.end());
+    block.payload.resize(random() % (max_payload + 1));
+    for (std::byte& byte : block.payload) byte = std::byte(random() % 256);
+    file.blocks.push_back(std::move(block));
+  }
+  return file;
+}
+
+}  // namespace crease

@@ -1,0 +1,338 @@
+#include "codec/container.h"
+#include "codec/container_files.h"
+#include "codec/repair_checksums.h"
+#include "support/sanitized.h"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <new>
+#include <random>
+
+namespace {
+
+std::size_t largest_allocation = 0;
+
+}  // namespace
+
+// The tests below ask how much memory a call wanted.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  largest_allocation = std::max(largest_allocation, size);
+  void* memory = std::malloc(std::max<std::size_t>(size, 1));
+  if (memory == nullptr) std::abort();
+  return memory;
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace crease {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+Bytes small_file() {
+  return bytes_of(random_file(3, 4, 24));
+}
+
+// Where the head says that pages lie.
+BlockFileHead head_of(const Bytes& bytes) {
+  return *decode_head(bytes, bytes.size(), Checksums::Ignore);
+}
+
+// The failure of opening and reading all of it; none: empty message.
+Failure failure_of(const Bytes& bytes, const BlockFileLimits& limits = {}) {
+  const Result<BlockFile> file = BlockFile::open(memory_source(bytes), limits);
+  if (!file.ok()) return file.failure();
+  const std::vector<std::string> wrong = file->validate();
+  return wrong.empty() ? Failure{} : fail(Error::Invalid, wrong.front());
+}
+
+void put_u32(Bytes& bytes, std::uint64_t at, std::uint32_t value) {
+  for (int i = 0; i < 4; ++i) {
+    bytes[static_cast<std::size_t>(at) + i] = std::byte(value >> (8 * i) & 0xff);
+  }
+}
+
+TEST_CASE("every flipped bit of a file of blocks is noticed") {
+  const Bytes whole = small_file();
+  REQUIRE(failure_of(whole).message.empty());
+  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+    Bytes flipped = whole;
+    flipped[bit / 8] ^= std::byte(1 << (bit % 8));
+    CAPTURE(bit);
+    REQUIRE(!failure_of(flipped).message.empty());
+  }
+}
+
+TEST_CASE("bytes behind the end of a file of blocks are refused") {
+  Bytes longer = small_file();
+  longer.push_back({});
+  CHECK(failure_of(longer).error == Error::BadFormat);
+}
+
+// Cuts the file and asks for every block, those that are there and the next one.
+void check_prefix(const Bytes& whole, const WrittenFile& file, const std::vector<BlockEntry>& all,
+                  std::size_t cut) {
+  CAPTURE(cut);
+  const Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(cut));
+  const Result<BlockFile> got = BlockFile::open(memory_source(part));
+  const BlockFileHead head = head_of(whole);
+  REQUIRE(got.ok() == (cut >= head.head_bytes));
+  if (!got.ok()) {
+    REQUIRE(got.failure().error == (cut == 0 ? Error::NotCrease : Error::Truncated));
+    return;
+  }
+  std::uint32_t expected = 0;
+  while (expected < all.size() && all[expected].offset + all[expected].bytes <= cut &&
+         head.pages[page_of(BlockId{expected})].offset +
+                 head.pages[page_of(BlockId{expected})].bytes <=
+             cut) {
+    ++expected;
+  }
+  const Result<std::uint32_t> complete = got->complete_blocks();
+  REQUIRE(complete.ok());
+  REQUIRE(*complete == expected);
+  if (expected > 0) {  // then the names are there as well
+    REQUIRE(got->read_materials().ok());
+    REQUIRE(got->read_tables().ok());
+    const auto last = got->read_block(all[expected - 1]);
+    REQUIRE(last.ok());
+    REQUIRE((*last == file.blocks[expected - 1].payload));
+  }
+  if (expected == all.size()) return;
+  const Result<DirectoryPage> page = got->read_page(page_of(BlockId{expected}));
+  const Error error =
+      page.ok() ? got->read_block(all[expected]).failure().error : page.failure().error;
+  REQUIRE(error == Error::Truncated);
+}
+
+std::vector<BlockEntry> entries_of(const Bytes& whole) {
+  std::vector<BlockEntry> all;
+  const Result<BlockFile> file = BlockFile::open(memory_source(whole));
+  for (std::uint32_t p = 0; p < file->page_count(); ++p) {
+    const DirectoryPage page = *file->read_page(p);
+    all.insert(all.end(), page.blocks.begin(), page.blocks.end());
+  }
+  return all;
+}
+
+TEST_CASE("a file cut anywhere opens from its head on and tells which blocks are there") {
+  const WrittenFile few = random_file(3, 5, 24);
+  const Bytes small = bytes_of(few);
+  const std::vector<BlockEntry> small_entries = entries_of(small);
+  for (std::size_t cut = 0; cut <= small.size(); ++cut) {
+    check_prefix(small, few, small_entries, cut);
+  }
+  const WrittenFile many = random_file(4, 1100, 5);
+  const Bytes large = bytes_of(many);
+  const std::vector<BlockEntry> large_entries = entries_of(large);
+  std::vector<std::size_t> cuts;
+  for (const FileRange& page : head_of(large).pages) {
+    const auto at = static_cast<std::size_t>(page.offset);
+    for (std::size_t near : {at - 1, at, at + 1}) cuts.push_back(near);
+    const auto end = static_cast<std::size_t>(page.offset + page.bytes);
+    for (std::size_t near : {end - 1, end, end + 1, end + 300}) cuts.push_back(near);
+  }
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 200; ++i) cuts.push_back(random() % large.size());
+  for (std::size_t cut : cuts) {
+    check_prefix(large, many, large_entries, std::min(cut, large.size()));
+  }
+}
+
+TEST_CASE("a harmed page is named, and the others are read") {
+  const Bytes whole = bytes_of(random_file(5, 2000, 30));
+  const BlockFileHead head = head_of(whole);
+  REQUIRE(head.pages.size() == 4);
+  std::mt19937_64 random(1);
+  for (int trial = 0; trial < 100; ++trial) {
+    const auto p = static_cast<std::uint32_t>(random() % head.pages.size());
+    const FileRange& page = head.pages[p];
+    Bytes harmed = whole;
+    for (std::uint64_t i = 0; i < 1 + random() % 5; ++i) {
+      harmed[static_cast<std::size_t>(page.offset + random() % page.bytes)] ^=
+          std::byte(1 + random() % 255);
+    }
+    const Result<BlockFile> file = BlockFile::open(memory_source(harmed, "town.crease"));
+    REQUIRE(file.ok());
+    for (std::uint32_t other = 0; other < head.pages.size(); ++other) {
+      if (other != p) REQUIRE(file->read_page(other).ok());
+    }
+    const Result<DirectoryPage> got = file->read_page(p);
+    if (harmed == whole) continue;  // two changes that undo each other
+    REQUIRE(!got.ok());
+    CHECK(got.failure().error == Error::BadChecksum);
+    CHECK(got.failure().message.starts_with("town.crease: page " + std::to_string(p) + " at byte " +
+                                            std::to_string(page.offset) + ": checksum differs"));
+  }
+}
+
+TEST_CASE("a harmed block or section is named with its byte") {
+  const Bytes whole = bytes_of(random_file(5, 600, 30));
+  for (const BlockEntry& entry : entries_of(whole)) {
+    if (entry.bytes == 0) continue;
+    Bytes harmed = whole;
+    harmed[static_cast<std::size_t>(entry.offset) + entry.bytes / 2] ^= std::byte(4);
+    const Result<BlockFile> file = BlockFile::open(memory_source(harmed));
+    REQUIRE(file.ok());
+    const auto got = file->read_block(entry);
+    REQUIRE(!got.ok());
+    CHECK(got.failure().message ==
+          "block " + std::to_string(index_of(entry.id)) + " at byte " +
+              std::to_string(entry.offset) +
+              ": checksum differs; the file was cut or changed, build it again");
+  }
+  const BlockFileHead head = head_of(whole);
+  const std::pair<FileRange, const char*> sections[] = {{head.materials.range, "materials"},
+                                                        {head.parts.range, "part names"},
+                                                        {head.tables.range, "model tables"}};
+  for (const auto& [range, name] : sections) {
+    Bytes harmed = whole;
+    harmed[static_cast<std::size_t>(range.offset)] ^= std::byte(1);
+    CHECK(failure_of(harmed).message.starts_with(std::string(name) + " at byte " +
+                                                 std::to_string(range.offset)));
+  }
+}
+
+TEST_CASE("hostile counts are refused without the memory that they ask for") {
+  const Bytes whole = small_file();
+  const BlockFileHead head = head_of(whole);
+  const std::uint64_t page = head.pages[0].offset;
+  struct Lie {
+    const char* what;
+    std::uint64_t at;
+    std::uint32_t value;
+  };
+  const Lie lies[] = {
+      {"head bytes", 12, 0xffffffff},
+      {"head bytes", 12, 65'536},
+      {"head bytes", 12, 0},
+      {"file bytes, low half", 16, 0xffffffff},
+      {"file bytes, high half", 20, 0xffffffff},
+      {"blocks", 32, 0xffffffff},
+      {"blocks", 32, 512},
+      {"blocks", 32, 513},
+      {"blocks", 32, 0},
+      {"bands and layers", 36, 0xffffffff},
+      {"bytes of materials", 96, 0xffffffff},
+      {"bytes of materials, high half", 100, 0xffffffff},
+      {"bytes of part names", 112, 0xffffffff},
+      {"bytes of tables, high half", 132, 0x7fffffff},
+      {"length of a layer's name", 144, 0xffffffff},
+      {"offset of the page, high half", head.head_bytes - 8, 0xffffffff},
+      {"bytes of the page", head.head_bytes - 4, 0xffffffff},
+      {"bytes of the page", head.head_bytes - 4, 4u << 20},
+      {"materials", head.materials.range.offset, 0xffffffff},
+      {"part names", head.parts.range.offset, 0xffffffff},
+      {"page", page + 8, 1},
+      {"dependencies", page + 12, 0xffffffff},
+      {"bytes of a block", page + 16 + 8, 0xffffffff},
+      {"end of dependencies", page + 16 + 72, 0xffffffff},
+  };
+  for (const Lie& lie : lies) {
+    CAPTURE(lie.what);
+    CAPTURE(lie.value);
+    Bytes harmed = whole;
+    put_u32(harmed, lie.at, lie.value);
+    repair_checksums(harmed);
+    largest_allocation = 0;
+    const Failure failure = failure_of(harmed);
+    CHECK(largest_allocation <= 20 * whole.size());
+    CHECK(!failure.message.empty());
+    CHECK(failure.message.find("checksum differs") == std::string::npos);
+  }
+}
+
+TEST_CASE("what the container promises is looked at behind the checksums") {
+  const Bytes whole = small_file();
+  const BlockFileHead head = head_of(whole);
+  const std::uint64_t page = head.pages[0].offset;
+  const std::uint64_t dependencies = page + 16 + 4 * 76;
+  REQUIRE(entries_of(whole).size() == 4);
+  REQUIRE(dependencies < page + head.pages[0].bytes);  // so block 1, 2 or 3 needs another one
+  struct Lie {
+    std::uint64_t at;
+    std::uint32_t value;
+    const char* message;
+  };
+  const Lie lies[] = {
+      {8, 0x00010002, "version or flags at byte 8"},
+      {80, 0, "head: grid"},  // the step's lower half; its upper one follows
+      {88, 32, "head: grid: more than 31 bits"},
+      {89, 1, "head: a reserved byte is not 0"},
+      {144 + 4 + 6, 4, "head: layer 0: unknown role"},
+      {page + 16 + 16, 3, "block 0: there is no such band"},
+      {page + 16 + 18, 1, "block 0: a reserved byte is not 0"},
+      {page + 16 + 56, 0x0000ff00, "block 0: an error is no finite number from 0 on"},
+      {page + 16 + 64, 0xfefffeff, "block 0: its fine end has the greater error"},
+      {page + 16 + 72, 1, "block 0: it needs a block that is not before it"},
+      {dependencies, 4, "it needs a block that is not before it"},
+  };
+  for (const Lie& lie : lies) {
+    CAPTURE(lie.message);
+    Bytes harmed = whole;
+    put_u32(harmed, lie.at, lie.value);
+    if (lie.at == 80) put_u32(harmed, 84, 0);
+    repair_checksums(harmed);
+    const std::string message = failure_of(harmed).message;
+    CAPTURE(message);
+    CHECK(message.find(lie.message) != std::string::npos);
+  }
+}
+
+TEST_CASE("random words under right checksums give a failure or a file that is written again") {
+  std::mt19937_64 random(1);
+  const Bytes whole = small_file();
+  std::size_t accepted = 0;
+  for (int trial = 0; trial < (kSanitized ? 3000 : 20'000); ++trial) {
+    Bytes harmed = whole;
+    for (std::uint64_t i = 0; i < 1 + random() % 3; ++i) {
+      const auto word = static_cast<std::uint32_t>(random() % 3 == 0 ? random() : random() % 20);
+      put_u32(harmed, 12 + random() % (whole.size() - 15), word);
+    }
+    repair_checksums(harmed);
+    const Result<BlockFile> file = BlockFile::open(memory_source(harmed));
+    if (!file.ok() || !file->validate().empty()) continue;
+    ++accepted;
+    REQUIRE((bytes_of(read_whole(*file)) == harmed));
+  }
+  CHECK(accepted > 100);
+}
+
+TEST_CASE("a limit of memory is kept") {
+  const Bytes whole = bytes_of(random_file(3, 400, 24));
+  CHECK(failure_of(whole, {.max_bytes = 3 * head_of(whole).pages[0].bytes}).message.empty());
+  const Result<BlockFile> file = BlockFile::open(memory_source(whole), {.max_bytes = 10});
+  REQUIRE(file.ok());
+  CHECK(file->read_page(0).failure().error == Error::OverLimit);
+  CHECK(file->read_materials().failure().error == Error::OverLimit);
+  for (const BlockEntry& entry : entries_of(whole)) {
+    CHECK(file->read_block(entry).ok() == (entry.bytes <= 10));
+  }
+}
+
+TEST_CASE("opening and reading pages and names takes no more memory than is stated") {
+  WrittenFile file = random_file(8, 1000, 3);
+  file.content.parts.assign(5000, "");
+  file.content.materials.assign(1000, {});
+  const Bytes whole = bytes_of(file);
+  REQUIRE(!whole.empty());
+  largest_allocation = 0;
+  const Result<BlockFile> read = BlockFile::open(memory_source(whole));
+  REQUIRE(read.ok());
+  CHECK(largest_allocation <= 65'536);
+  largest_allocation = 0;
+  REQUIRE(read->read_page(0).ok());
+  CHECK(largest_allocation <= 2 * read->head().pages[0].bytes);
+  largest_allocation = 0;
+  REQUIRE(read->read_parts().ok());
+  CHECK(largest_allocation <= 11 * read->head().parts.range.bytes);
+  CHECK(largest_allocation >= read->head().parts.range.bytes);  // the watch itself works
+}
+
+}  // namespace
+}  // namespace crease

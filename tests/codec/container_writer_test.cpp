@@ -1,0 +1,188 @@
+#include "codec/atomic_file.h"
+#include "codec/container.h"
+#include "codec/container_files.h"
+#include "codec/small_file.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <limits>
+
+#include <unistd.h>
+
+namespace crease {
+namespace {
+
+struct OwnFolder {
+  std::filesystem::path path = std::filesystem::temp_directory_path() /
+                               ("crease-container-test-" + std::to_string(::getpid()));
+  OwnFolder() { std::filesystem::create_directories(path); }
+  ~OwnFolder() { std::filesystem::remove_all(path); }
+};
+
+TEST_CASE("a file of blocks on the disk has the bytes of one in memory") {
+  const OwnFolder folder;
+  const std::filesystem::path path = folder.path / "a.crease";
+  const WrittenFile file = random_file(2, 700, 200);
+  Result<AtomicFile> out = AtomicFile::create(path);
+  REQUIRE(out.ok());
+  REQUIRE(write_container(file, *out).ok());
+  CHECK(!std::filesystem::exists(path));  // not before commit
+  REQUIRE(out->commit().ok());
+
+  const Result<ByteSourcePtr> source = open_file_source(path);
+  REQUIRE(source.ok());
+  const Result<BlockFile> read = BlockFile::open(*source);
+  REQUIRE(read.ok());
+  CHECK(read->source().bytes_read() <= 65'536);
+  CHECK((bytes_of(read_whole(*read)) == bytes_of(file)));
+  std::vector<std::byte> bytes(static_cast<std::size_t>((*source)->size()));
+  REQUIRE((*source)->read(0, bytes).ok());
+  CHECK((bytes == bytes_of(file)));
+}
+
+TEST_CASE("a file that is not committed leaves nothing behind") {
+  const OwnFolder folder;
+  {
+    Result<AtomicFile> out = AtomicFile::create(folder.path / "a.crease");
+    REQUIRE(out.ok());
+    REQUIRE(write_container(random_file(2, 3, 20), *out).ok());
+    CHECK(!std::filesystem::is_empty(folder.path));
+  }
+  CHECK(std::filesystem::is_empty(folder.path));
+}
+
+TEST_CASE("a source that is missing or a folder says so") {
+  const OwnFolder folder;
+  CHECK(open_file_source(folder.path / "no.crease").failure().error == Error::NotFound);
+  CHECK(open_file_source(folder.path).failure().error == Error::ReadFailed);
+}
+
+TEST_CASE("a source gives what it has, and counts it") {
+  const std::vector<std::byte> bytes(10);
+  const ByteSourcePtr source = memory_source(bytes);
+  std::vector<std::byte> into(4);
+  CHECK(source->read(6, into).ok());
+  CHECK(source->read(7, into).failure().error == Error::Truncated);
+  CHECK(source->read(~std::uint64_t(0), into).failure().error == Error::Truncated);
+  CHECK(source->bytes_read() == 4);
+  CHECK(source->read_count() == 1);
+}
+
+// A disk that is full after some writes.
+struct FullSink final : ByteSink {
+  int writes_left;
+  explicit FullSink(int writes) : writes_left(writes) {}
+  Status write(std::uint64_t, std::span<const std::byte>) override {
+    if (writes_left-- > 0) return Done{};
+    return fail(Error::WriteFailed, "full");
+  }
+};
+
+TEST_CASE("every failed write is told") {
+  const WrittenFile file = random_file(2, 600, 20);
+  // Three sections, the blocks, two pages, the head.
+  const int needed = 3 + 600 + 2 + 1;
+  for (int writes : {0, 1, 2, 3, 4, 514, 515, 516, 604, 605}) {
+    CAPTURE(writes);
+    FullSink sink(writes);
+    CHECK(!write_container(file, sink).ok());
+  }
+  FullSink enough(needed);
+  CHECK(write_container(file, enough).ok());
+  CHECK(enough.writes_left == 0);
+}
+
+// Both as the writer sees it.
+std::string refusal(const WrittenFile& file) {
+  MemorySink sink;
+  const Status status = write_container(file, sink);
+  return status.ok() ? "" : status.failure().message;
+}
+
+TEST_CASE("a writer refuses what a reader would") {
+  const WrittenFile good = random_file(2, 3, 20);
+  CHECK(refusal(good).empty());
+  const auto with = [&good](auto change) {
+    WrittenFile file = good;
+    change(file);
+    return refusal(file);
+  };
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kMax = std::numeric_limits<float>::max();
+  CHECK(with([](WrittenFile& f) { f.blocks[1].facts.fine.line = kNan; }) ==
+        "block 1: an error is no finite number from 0 on");
+  CHECK(with([](WrittenFile& f) { f.blocks[1].facts.coarse.line = -1; }) ==
+        "block 1: an error is no finite number from 0 on");
+  CHECK(with([](WrittenFile& f) { f.blocks[1].facts.coarse.line = kMax; }) ==
+        "block 1: an error is no finite number from 0 on");
+  CHECK(with([](WrittenFile& f) { f.blocks[0].facts.fine.line = 1e30f; }) ==
+        "block 0: its fine end has the greater error");
+  CHECK(with([](WrittenFile& f) { f.blocks[0].facts.band = 3; }) ==
+        "block 0: there is no such band");
+  CHECK(with([](WrittenFile& f) { f.blocks[2].dependencies = {BlockId{2}}; }) ==
+        "block 2: it needs a block that is not before it");
+  CHECK(with([](WrittenFile& f) {
+          f.blocks[2].dependencies = {BlockId{1}, BlockId{0}};
+        }) == "block 2: what it needs does not ascend");
+  CHECK(with([](WrittenFile& f) { f.content.facts.grid.step = 0; }).starts_with("grid"));
+  CHECK(with([](WrittenFile& f) { f.content.facts.layers[1].role = AttributeRole::Normal; }) ==
+        "layer 1: a second layer of normals");
+  CHECK(with([](WrittenFile& f) { f.content.facts.layers[1].dimension = 2; }) ==
+        "layer 1: a coding of directions for what is none");
+  CHECK(with([](WrittenFile& f) { f.content.facts.layers[2].step = 0; }) ==
+        "layer 2: its grid is none");
+  CHECK(with([](WrittenFile& f) { f.content.facts.layers[3].bits = 8; }) ==
+        "layer 3: bits out of range");
+  CHECK(with([](WrittenFile& f) { f.content.facts.layers[0].origin[3] = 1; }) ==
+        "layer 0: a grid where there is none");
+  CHECK(with([](WrittenFile& f) { f.content.materials[0].base_color[2] = kNan; }) ==
+        "materials: a colour is not finite");
+  CHECK(with([](WrittenFile& f) {
+          f.content.facts.layers[0].name.resize(70'000);
+        }).starts_with("layers, bands and pages take "));
+}
+
+TEST_CASE("a writer holds its caller to what was announced") {
+  MemorySink sink;
+  const std::vector<std::uint32_t> counts{0, 1};
+  const BlockFacts facts;
+  const BlockId first[] = {BlockId{0}};
+  Result<ContainerWriter> writer = ContainerWriter::begin(sink, some_content(), counts);
+  REQUIRE(writer.ok());
+  CHECK(writer->finish().failure().message == "0 of 2 blocks were written");
+  REQUIRE(writer->add(facts, {}, {}).ok());
+  CHECK(writer->add(facts, {}, {}).failure().error == Error::Invalid);  // one fewer
+  REQUIRE(writer->add(facts, first, {}).ok());
+  CHECK(writer->add(facts, {}, {}).failure().message == "block 2: more blocks than announced");
+  REQUIRE(writer->finish().ok());
+  CHECK(BlockFile::open(memory_source(sink.bytes())).ok());
+}
+
+TEST_CASE("more blocks or dependencies than a head or a page has room for are refused") {
+  MemorySink sink;
+  const std::vector<std::uint32_t> many(3'000'000);
+  CHECK(ContainerWriter::begin(sink, some_content(), many).failure().error == Error::OverLimit);
+  const std::vector<std::uint32_t> several(2'600'000);
+  CHECK(ContainerWriter::begin(sink, some_content(), several).ok());
+  std::vector<std::uint32_t> wide(600);
+  wide[599] = 1u << 20;
+  const Result<ContainerWriter> refused = ContainerWriter::begin(sink, some_content(), wide);
+  REQUIRE(!refused.ok());
+  CHECK(refused.failure().message.starts_with("page 1: "));
+}
+
+TEST_CASE("each version is read by what reads it, and newer ones by nothing") {
+  const std::vector<std::byte> first = encode_crease(*small_arrays(), kBands);
+  std::vector<std::byte> second = bytes_of(random_file(2, 3, 20));
+  CHECK(decode_crease(first, {}).ok());
+  CHECK(BlockFile::open(memory_source(first)).failure().error == Error::NotSupported);
+  CHECK(BlockFile::open(memory_source(second)).ok());
+  CHECK(decode_crease(second, {}).failure().error == Error::NotSupported);
+  second[8] = std::byte(3);
+  CHECK(BlockFile::open(memory_source(second)).failure().error == Error::VersionTooNew);
+  CHECK(decode_crease(second, {}).failure().error == Error::VersionTooNew);
+}
+
+}  // namespace
+}  // namespace crease

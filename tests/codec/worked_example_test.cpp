@@ -1,0 +1,120 @@
+// The example of docs/format.md, byte by byte, and the golden file of version 2.
+#include "codec/atomic_file.h"
+#include "codec/container_files.h"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace crease {
+namespace {
+
+std::filesystem::path test_folder() {
+  return std::filesystem::path(__FILE__).parent_path();
+}
+
+std::vector<std::byte> bytes_of_text(const char* text) {
+  std::vector<std::byte> bytes;
+  for (; *text != '\0'; ++text) bytes.push_back(std::byte(*text));
+  return bytes;
+}
+
+WrittenFile example() {
+  WrittenFile file;
+  ModelFacts& facts = file.content.facts;
+  facts.grid = {{0, 0, 0}, 0.5};
+  facts.grid_bits = 4;
+  facts.vertex_count = 5;
+  facts.triangle_count = 6;
+  facts.layers = {{"normal", AttributeRole::Normal, Interpolation::Direction, 3,
+                   AttributeCoding::Octahedral, 10}};
+  facts.bands = {{1, 1, 4, {0.75f, 0, 12.5f, 0}}};
+  file.content.materials = {{"red", {1, 0, 0, 1}, ""}};
+  file.content.tables = bytes_of_text("prim");
+  BlockFacts base;
+  base.band = 1;
+  base.center = {1, -1, 0};
+  base.radius = 9;
+  base.vertices = 4;
+  base.triangles_fine = 4;
+  base.coarse = base.fine = {0.75f, 0, 12.5f, 0};
+  base.decoded_bytes = 256;
+  BlockFacts finer = base;
+  finer.band = 0;
+  finer.splits = 1;
+  finer.vertices = 5;
+  finer.triangles_coarse = 4;
+  finer.triangles_fine = 6;
+  finer.fine = {};
+  file.blocks = {{base, {}, bytes_of_text("base")}, {finer, {BlockId{0}}, bytes_of_text("split")}};
+  return file;
+}
+
+// Sixteen bytes a line: offset, bytes, and what of them is a letter.
+std::string hex_dump(const std::vector<std::byte>& bytes) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string dump;
+  for (std::size_t line = 0; line < bytes.size(); line += 16) {
+    for (int shift = 12; shift >= 0; shift -= 4) dump += kDigits[line >> shift & 15];
+    dump += ' ';
+    std::string letters;
+    for (std::size_t i = line; i < std::min(line + 16, bytes.size()); ++i) {
+      const auto value = std::to_integer<unsigned char>(bytes[i]);
+      dump += {' ', kDigits[value >> 4], kDigits[value & 15]};
+      letters += value > 32 && value < 127 ? static_cast<char>(value) : '.';
+    }
+    dump.append(3 * (16 - letters.size()) + 2, ' ');
+    dump += letters + '\n';
+  }
+  return dump;
+}
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_CASE("the example of docs/format.md is what is written") {
+  const std::string text = read_text(test_folder() / "../../docs/format.md");
+  const std::size_t heading = text.find("\n## Example\n");
+  REQUIRE(heading != std::string::npos);
+  const std::size_t begin = text.find("```\n", heading) + 4;
+  const std::string documented = text.substr(begin, text.find("```", begin) - begin);
+  const std::vector<std::byte> bytes = bytes_of(example());
+  REQUIRE(!bytes.empty());
+  CHECK(documented == hex_dump(bytes));
+  CHECK(BlockFile::open(memory_source(bytes))->validate().empty());
+}
+
+TEST_CASE("the golden file of version 2 is read, and written to the byte") {
+  const std::filesystem::path path = test_folder() / "golden" / "version_2.crease";
+  if (std::getenv("CREASE_WRITE_GOLDEN") != nullptr) {
+    Result<AtomicFile> out = AtomicFile::create(path);
+    REQUIRE(write_container(random_file(1, 6, 24), *out).ok());
+    REQUIRE(out->commit().ok());
+  }
+  const Result<ByteSourcePtr> source = open_file_source(path);
+  REQUIRE(source.ok());
+  const Result<BlockFile> file = BlockFile::open(*source);
+  REQUIRE_MESSAGE(file.ok(), (file.ok() ? "" : file.failure().message));
+  CHECK(file->block_count() == 6);
+  CHECK(file->facts().triangle_count == 9'999'999'999);
+  REQUIRE(file->facts().layers.size() == 4);
+  CHECK(file->facts().layers[2].name == "uv");
+  CHECK(file->facts().layers[2].step == 0.25f);
+  REQUIRE(file->facts().bands.size() == 2);
+  CHECK(file->facts().bands[1].error.degrees == 40);
+  CHECK((*file->read_parts() == std::vector<std::string>{"house", "", "shed"}));
+  CHECK(file->validate().empty());
+  const std::vector<std::byte> again = bytes_of(read_whole(*file));
+  std::vector<std::byte> golden(static_cast<std::size_t>((*source)->size()));
+  REQUIRE((*source)->read(0, golden).ok());
+  CHECK((again == golden));
+}
+
+}  // namespace
+}  // namespace crease
