@@ -40,9 +40,10 @@ void add_build_options(CLI::App& command, ReadOptions& options) {
       ->type_name("WHERE")
       ->capture_default_str();
   command
-      .add_option("--normal-bits", options.normal_bits,
-                  "precision of normals: 8 to 16 bits a component, default 10 (off by 0.16 degrees "
-                  "at most), or 4 to 12 an angle with deering, default 6; exact: as they are")
+      .add_option(
+          "--normal-bits", options.normal_bits,
+          "precision of normals: 8 to 16 bits a component (10: off by 0.16 degrees at most), "
+          "or 4 to 12 an angle with deering, default 6; exact, the default: as they are")
       ->type_name("N|exact");
   command
       .add_option("--normal-coding", options.normal_coding,
@@ -52,13 +53,13 @@ void add_build_options(CLI::App& command, ReadOptions& options) {
       ->capture_default_str();
   command
       .add_option("--texcoord-bits", options.texcoord_bits,
-                  "precision of texture coordinates: 4 to 16 bits over their range, default 12; "
-                  "exact: as they are")
+                  "precision of texture coordinates: 4 to 16 bits over their range; exact, the "
+                  "default: as they are")
       ->type_name("N|exact");
   command
       .add_option("--color-bits", options.color_bits,
-                  "precision of colours: 4 to 16 bits over their range, default 8; exact: as they "
-                  "are")
+                  "precision of colours: 4 to 16 bits over their range; exact, the default: as "
+                  "they are")
       ->type_name("N|exact");
 }
 

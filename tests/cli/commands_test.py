@@ -105,7 +105,7 @@ class Commands(tool.Case):
         return built, self.json("compare", self.city(), full, "--samples", 5000)["normal_deviation"]
 
     def test_normal_bits_bound_the_deviation_at_full_resolution(self):
-        for options, words, most in (([], "octahedral, 10 bits", 0.16),
+        for options, words, most in ((["--normal-bits", 10], "octahedral, 10 bits", 0.16),
                                      (["--normal-bits", 8], "octahedral, 8 bits", 0.65),
                                      (["--normal-bits", 16], "octahedral, 16 bits", 0.003),
                                      (["--normal-coding", "deering"], "Deering, 6 bits", 0.65),
@@ -119,8 +119,8 @@ class Commands(tool.Case):
             self.assertLess(deviation["max"], most + 0.02)
 
     def test_exact_normals_are_kept(self):
-        for exact in ("exact", 0):
-            built, deviation = self.deviation_at_full("--normal-bits", exact)
+        for options in ((), ("--normal-bits", "exact"), ("--normal-bits", 0)):
+            built, deviation = self.deviation_at_full(*options)
             self.assertEqual(built["snapped"][0]["precision"], "exact")
             self.assertEqual(built["snapped"][0]["error_max"], 0)
             self.assertLess(deviation["max"], 1e-3)
@@ -131,8 +131,8 @@ class Commands(tool.Case):
         faces = "".join(f"f {i}/{i} {i + 1}/{i + 1} {i + 21}/{i + 21}\n"
                         for i in (20 * y + x + 1 for y in range(19) for x in range(19)))
         model = self.write("patch.obj", rows + faces)
-        for bits, steps in (((), (2**-13, 2**-9)), ((6, 4), (2**-7, 2**-5))):
-            options = ("--texcoord-bits", bits[0], "--color-bits", bits[1]) if bits else ()
+        for bits, steps in (((12, 8), (2**-13, 2**-9)), ((6, 4), (2**-7, 2**-5))):
+            options = ("--texcoord-bits", bits[0], "--color-bits", bits[1])
             built = self.json("build", model, "-o", self.path("patch.crease"), *options)
             errors = {s["layer"]: s["error_max"] for s in built["snapped"]}
             texture = next(errors[name] for name in errors if name.startswith("uv"))

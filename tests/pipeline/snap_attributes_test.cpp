@@ -30,12 +30,16 @@ std::vector<AttributePrecision> precisions() {
   coarse.normal_bits = 8;
   coarse.texcoord_bits = 4;
   coarse.color_bits = 4;
+  AttributePrecision fine;
+  fine.normal_bits = 10;
+  fine.texcoord_bits = 12;
+  fine.color_bits = 8;
   AttributePrecision deering;
   deering.normal_coding = NormalCoding::Deering;
   deering.normal_bits = 6;
   AttributePrecision exact;
   exact.normal_bits = exact.texcoord_bits = exact.color_bits = kExactBits;
-  return {{}, coarse, deering, exact};
+  return {fine, coarse, deering, exact};
 }
 
 struct Snapped {
@@ -166,7 +170,9 @@ TEST_CASE("a crease that no code can tell vanishes, one that is seen stays") {
         normals.of_corner[3 * t + c] = AttributeId{static_cast<std::uint32_t>(3 * t)};
       }
     }
-    const Snapped snapped = snap_all(mesh, {});
+    AttributePrecision precision;
+    precision.normal_bits = 10;
+    const Snapped snapped = snap_all(mesh, precision);
     const std::set<AttributeId> used(mesh.normals()->of_corner.begin(),
                                      mesh.normals()->of_corner.end());
     CHECK(used.size() == (angle < 0.1 ? normals_before : 2 * normals_before));
