@@ -14,4 +14,5 @@ cmake --preset "$preset" $launcher > "/tmp/crease-configure.$$" 2>&1 || {
   exit 1
 }
 rm -f "/tmp/crease-configure.$$"
+export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1  # so that another checkout finds the same
 exec cmake --build --preset "$preset" ${1:+--target} "$@"
