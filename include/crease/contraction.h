@@ -60,6 +60,20 @@ struct Contraction {
   std::uint32_t derived_count = 0;
 };
 
+// A band of the simplification (DESIGN 4): its contractions follow those of the band before. Each
+// contraction touches triangles of one patch only, and only vertices that no other patch has.
+struct Band {
+  std::uint32_t contraction_count = 0;
+  std::vector<TriangleId> triangles;          // live at its start, patch after patch
+  std::vector<std::uint32_t> first_triangle;  // patch_count + 1 offsets into `triangles`
+
+  std::size_t patch_count() const { return first_triangle.size() - 1; }
+  std::span<const TriangleId> triangles_of(std::size_t patch) const {
+    return std::span(triangles).subspan(first_triangle[patch],
+                                        first_triangle[patch + 1] - first_triangle[patch]);
+  }
+};
+
 struct ContractionSequence {
   Grid grid;
   Placement placement = Placement::Optimal;
@@ -67,6 +81,9 @@ struct ContractionSequence {
   std::vector<AttributeChange> changes;
   std::vector<TriangleId> derived;             // input triangles; each appears at most once
   std::vector<std::vector<float>> new_values;  // per layer: values that follow the input's
+  // If they were recorded, else empty.
+  std::vector<Band> bands;                          // finest first
+  std::vector<std::uint32_t> patch_of_contraction;  // in its band
 
   std::span<const AttributeChange> changes_of(const Contraction& c) const {
     return std::span<const AttributeChange>(changes).subspan(c.first_change, c.change_count);

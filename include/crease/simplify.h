@@ -22,6 +22,7 @@ struct SimplifyOptions {
   // How much a wrong normal costs beside a wrong distance: a normal that is off by one radian over
   // an area costs as much as a distance of normal_weight mean edge lengths there.
   double normal_weight = 0.9;
+  bool record_bands = false;  // ContractionSequence::bands, which a file needs: 14 bytes a triangle
   ProgressCallback progress;
 };
 

@@ -33,6 +33,12 @@ float raised(float base, double own) {
 // Stable. Costs are not negative, so their bits are in their order; eleven bits at a time.
 template <class Ordered>
 void sort_by_cost(std::vector<Ordered>& entries, std::vector<Ordered>& scratch) {
+  constexpr std::size_t kFew = 1000;  // the tables below would cost more than they save
+  if (entries.size() < kFew) {
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const Ordered& x, const Ordered& y) { return x.cost < y.cost; });
+    return;
+  }
   constexpr std::uint32_t kBits = 11, kDigits = 1u << kBits;
   std::array<std::array<std::uint32_t, kDigits>, 3> first{};
   const auto digit_of = [](const Ordered& e, std::uint32_t i) {

@@ -252,6 +252,7 @@ class Simplifier {
         return fail(Error::Interrupted, "simplify: interrupted");
       }
       if (statistics) statistics->bands.push_back(band_statistics());
+      if (options_.record_bands) record_band();
       if (last) break;
 
       // Steer: a power law through the last band says which limit leaves kBandShare.
@@ -371,6 +372,9 @@ class Simplifier {
                                   : a.index < b.index;
     });
     contractions_in_band_ = static_cast<std::uint32_t>(order.size());
+    if (options_.record_bands) {
+      for (const At& at : order) sequence_.patch_of_contraction.push_back(at.patch);
+    }
     for (const At& at : order) {
       const PatchResult& from = results_[at.patch];
       Contraction contraction = from.contractions[at.index].contraction;
@@ -390,6 +394,13 @@ class Simplifier {
       }
     }
     results_.clear();
+  }
+
+  void record_band() {
+    Band& band = sequence_.bands.emplace_back();
+    band.contraction_count = contractions_in_band_;
+    for (std::uint32_t t : patches_.triangles) band.triangles.push_back(TriangleId{t});
+    band.first_triangle = std::move(patches_.first);
   }
 
   BandStatistics band_statistics() const {
