@@ -1,0 +1,259 @@
+// What triangles and corners have at a block's fine end; included by block_coder.h.
+#pragma once
+
+#include "codec/block_coder.h"
+
+namespace crease::codec {
+
+// Over each edge of t a triangle with a smaller number, or kNone. Only so many triangles at a
+// vertex are looked at: more would take square time.
+template <class Coder, class Guide>
+std::array<std::uint32_t, 3> BlockCoder<Coder, Guide>::neighbours_before(std::uint32_t t) const {
+  std::array<std::uint32_t, 3> result{kNone, kNone, kNone};
+  const Corners& corners = mesh_.triangles[t];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::uint32_t v = corners[c], w = corners[(c + 1) % 3];
+    const std::size_t count = std::min(around_[v].size(), kLargestRing);
+    for (const std::uint32_t other : std::span(around_[v]).first(count)) {
+      if (other >= t) continue;
+      const Corners& o = mesh_.triangles[other];
+      if (o[0] == w || o[1] == w || o[2] == w) {
+        result[c] = other;
+        break;
+      }
+    }
+  }
+  return result;
+}
+
+// One of them, or kNone.
+template <class Coder, class Guide>
+std::uint32_t BlockCoder<Coder, Guide>::neighbour_before(std::uint32_t t) const {
+  const std::array<std::uint32_t, 3> beside = neighbours_before(t);
+  return *std::min_element(beside.begin(), beside.end());
+}
+
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::code_categories() {
+  mesh_.category.resize(mesh_.triangles.size(), 0);
+  if (coding_.category_count < 2) return;
+  for (std::uint32_t t = coarse_triangles_; t < mesh_.triangles.size(); ++t) {
+    const std::uint32_t beside = neighbour_before(t);
+    const std::uint32_t expected = beside == kNone ? 0 : mesh_.category[beside];
+    std::uint32_t category = 0;
+    if constexpr (Coder::kEncodes) category = guide_.category(t);
+    if (coder_.bit(same_category_[beside == kNone], category == expected)) {
+      category = expected;
+    } else {
+      category = code_below(coding_.category_count, category);
+    }
+    mesh_.category[t] = category;
+  }
+}
+
+// Once a triangle shows its stored normal it does so at all finer ends.
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::code_derived() {
+  mesh_.derived.assign(mesh_.triangles.size(), 0);
+  bool any = false;
+  if constexpr (Coder::kEncodes) {
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) any = any || guide_.derived(t);
+  }
+  if (!coder_.bit(any_derived_, any)) return;
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (!is_new(t) && !was_derived_[t]) continue;
+    bool derived = false;
+    if constexpr (Coder::kEncodes) derived = guide_.derived(t);
+    mesh_.derived[t] = coder_.bit(is_derived_[is_new(t)], derived);
+  }
+}
+
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::code_layer(const BlockLayer& layer, std::vector<CodedValue>& values,
+                                          std::size_t l) {
+  LayerModels models;
+  is_known_.assign(values.size(), 0);
+  for (std::uint32_t t = 0; t < coarse_triangles_; ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      is_known_[3 * t + c] =
+          !was_split(mesh_.triangles[t][c]) && !(layer.is_normal && was_derived_[t]);
+    }
+  }
+  for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v)
+    code_vertex(layer, values, l, models, v);
+}
+
+// The corners at one vertex. Mostly they share one value; else each is told to be like one that is
+// known: beside it, at the coarse end, or at another corner of the triangle.
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<CodedValue>& values,
+                                           std::size_t l, LayerModels& models, std::uint32_t v) {
+  const auto shows = [&](std::uint32_t t) { return !(layer.is_normal && mesh_.derived[t]); };
+  corners_.clear();
+  const bool fan = find_ring(mesh_.triangles, around_[v], v, ring_);
+  std::size_t unknown = 0;
+  CodedValue known{};
+  std::size_t known_values = 0;  // distinct ones, up to two
+  for (std::uint32_t t : fan ? ring_.triangles : around_[v]) {
+    if (!shows(t)) continue;
+    const std::uint32_t corner = 3 * t + std::uint32_t(corner_of(mesh_.triangles[t], v));
+    corners_.push_back(corner);
+    if (!is_known_[corner]) {
+      ++unknown;
+    } else if (known_values == 0) {
+      known = values[corner];
+      known_values = 1;
+    } else if (values[corner] != known) {
+      known_values = 2;
+    }
+  }
+  if (unknown == 0) return;
+  const auto value_of = [&](std::uint32_t corner) {
+    CodedValue value{};
+    if constexpr (Coder::kEncodes) value = guide_.value(l, corner / 3, corner % 3);
+    return value;
+  };
+  const auto had_value = [&](std::uint32_t corner) {
+    return !is_new(corner / 3) && !(layer.is_normal && was_derived_[corner / 3]);
+  };
+
+  if (known_values < 2) {
+    bool uniform = true;
+    if constexpr (Coder::kEncodes) {
+      const CodedValue first = value_of(corners_[0]);
+      for (std::uint32_t corner : corners_) uniform = uniform && value_of(corner) == first;
+    }
+    if (coder_.bit(models.is_uniform[known_values], uniform)) {
+      CodedValue value = known;
+      if (known_values == 0) {
+        CodedValue predicted{};
+        for (std::uint32_t corner : corners_) {
+          if (had_value(corner)) predicted = values[corner];
+        }
+        predicted = expected_value(layer, corners_, predicted);
+        value = code_value(layer, models, value_of(corners_[0]), predicted);
+      }
+      for (std::uint32_t corner : corners_) {
+        values[corner] = value;
+        is_known_[corner] = 1;
+      }
+      return;
+    }
+  }
+
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const std::uint32_t corner = corners_[i], t = corner / 3;
+    if (is_known_[corner]) continue;
+    const CodedValue value = value_of(corner);
+    tried_.clear();
+    bool found = false;
+    const auto try_value = [&](std::size_t kind, const CodedValue& candidate) {
+      if (found || std::find(tried_.begin(), tried_.end(), candidate) != tried_.end()) return;
+      if (coder_.bit(models.same_as[kind][tried_.size() > 0], candidate == value)) {
+        values[corner] = candidate;
+        found = true;
+      }
+      tried_.push_back(candidate);
+    };
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      if (3 * t + c != corner && is_known_[3 * t + c]) try_value(0, values[3 * t + c]);
+    }
+    const std::size_t last = corners_.size() - 1;
+    const std::uint32_t previous = corners_[i > 0 ? i - 1 : last];
+    const std::uint32_t next = corners_[i < last ? i + 1 : 0];
+    if (previous != corner && is_known_[previous]) try_value(1, values[previous]);
+    if (next != corner && is_known_[next]) try_value(1, values[next]);
+    if (had_value(corner)) try_value(2, values[corner]);
+    for (std::size_t k = 0; k < std::min(corners_.size(), kLargestRing) && !found; ++k) {
+      if (tried_.size() >= kMostTried) break;
+      if (is_known_[corners_[k]]) try_value(3, values[corners_[k]]);
+    }
+    if (!found) {
+      values[corner] =
+          code_value(layer, models, value, tried_.empty() ? CodedValue{} : tried_.front());
+    }
+    is_known_[corner] = 1;
+  }
+}
+
+// A normal is expected to be that of the triangles, if they have one, any other value near `near`.
+template <class Coder, class Guide>
+CodedValue BlockCoder<Coder, Guide>::expected_value(const BlockLayer& layer,
+                                                    std::span<const std::uint32_t> corners,
+                                                    const CodedValue& near) const {
+  if (layer.octahedral_bits == 0) return near;
+  Vec3d normal{};
+  for (const std::uint32_t corner : corners) {
+    const Corners& t = mesh_.triangles[corner / 3];
+    const auto step = [&](std::size_t c) {
+      const Vec3i &p = mesh_.positions[t[c]], &from = mesh_.positions[t[0]];
+      return Vec3d{double(p.x) - from.x, double(p.y) - from.y, double(p.z) - from.z};
+    };
+    normal += cross(step(1), step(2));
+  }
+  if (normal == Vec3d{}) return near;
+  return coded(OctahedralCoding(layer.octahedral_bits).encode(normal));
+}
+
+template <class Coder, class Guide>
+CodedValue BlockCoder<Coder, Guide>::code_value(const BlockLayer& layer, LayerModels& models,
+                                                const CodedValue& value,
+                                                const CodedValue& predicted) {
+  CodedValue result{};
+  if (layer.octahedral_bits > 0) {
+    const OctahedralCoding coding(layer.octahedral_bits);
+    const OctahedralCode expected = octahedral_code(predicted);
+    OctahedralResidual residual;
+    if constexpr (Coder::kEncodes) residual = coding.residual(octahedral_code(value), expected);
+    residual.x = code_signed(coder_, models.residual[0], residual.x);
+    residual.y = code_signed(coder_, models.residual[1], residual.y);
+    return coded(coding.restore(residual, expected));
+  }
+  for (std::size_t k = 0; k < std::size_t(layer.dimension); ++k) {
+    if (layer.is_raw) {
+      const std::uint32_t bits = static_cast<std::uint32_t>(value[k]);
+      const std::uint32_t high = coder_.uniform(1u << 16, bits >> 16);
+      const std::uint32_t low = coder_.uniform(1u << 16, bits & 0xffff);
+      result[k] = static_cast<std::int32_t>(high << 16 | low);
+    } else {
+      result[k] = wrapped_sum(
+          predicted[k],
+          code_signed(coder_, models.residual[k], wrapped_difference(value[k], predicted[k])));
+    }
+  }
+  return result;
+}
+
+// The patch of the next finer band that each triangle is in: mostly that of its neighbours.
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::code_labels() {
+  labels_.assign(mesh_.triangles.size(), 0);
+  std::uint32_t last = 0;
+  for (std::uint32_t t = 0; t < labels_.size(); ++t) {
+    tried_labels_.clear();
+    std::size_t agreeing = 0;
+    for (const std::uint32_t beside : neighbours_before(t)) {
+      if (beside == kNone) continue;
+      tried_labels_.push_back(labels_[beside]);
+      agreeing += labels_[beside] == tried_labels_[0];
+    }
+    if (tried_labels_.empty()) tried_labels_.push_back(last);
+    std::uint32_t label = 0;
+    if constexpr (Coder::kEncodes) label = guide_.label(t);
+    const bool differ = agreeing < tried_labels_.size() && agreeing > 0;
+    bool found = false;
+    for (std::size_t i = 0; i < tried_labels_.size() && !found; ++i) {
+      const std::uint32_t candidate = tried_labels_[i];
+      if (std::find(tried_labels_.begin(), tried_labels_.begin() + std::ptrdiff_t(i), candidate) !=
+          tried_labels_.begin() + std::ptrdiff_t(i)) {
+        continue;
+      }
+      found = coder_.bit(same_label_[differ ? 4 : agreeing], label == candidate);
+      if (found) label = candidate;
+    }
+    if (!found) label = code_magnitude(coder_, label_, label);
+    labels_[t] = last = label;
+  }
+}
+
+}  // namespace crease::codec

@@ -1,0 +1,210 @@
+// A block, written once for both directions: with a RangeEncoder and a guide that knows the answers
+// it writes, with a RangeDecoder it finds them. What is decided in which order is docs/format.md's
+// chapter on blocks.
+//
+//   BlockCoder coder(range_decoder, no_guide, coding, limits, coarse_mesh);
+//   if (coder.run()) use(coder.take_end(block, names), coder.take_splits());
+//
+// A guide has, for local ids (vertices and triangles in the order in which the coder knows them):
+//   is_split(v), goes_to_second(v, t), introduced(v), position(v, second)   of the node at v
+//   name_children(swapped)          from now on the present split's children change their names
+//   did_split(v, u, order)          v is the first child now, u the second; triangles were added
+//   roots(), root_triangles()       vertices without a coarse triangle, and triangles of the base
+//   category(t), derived(t), label(t), value(layer, t, c)    at the fine end
+#pragma once
+
+#include "codec/block_end.h"
+#include "codec/coded_numbers.h"
+#include "codec/patch_mesh.h"
+#include "codec/predict_position.h"
+#include "codec/ring.h"
+#include "codec/stream.h"
+#include "crease/ids.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease::codec {
+
+// A triangle that a split of v into t and u introduces: (t, u, third) or (u, t, third).
+struct Introduced {
+  std::uint32_t third = 0;
+  bool first_leads = false;  // (t, u, third)
+};
+
+struct Split {
+  std::uint32_t vertex = 0;          // becomes the first child; the second is the next new vertex
+  std::uint32_t first_triangle = 0;  // those introduced are the next ones from here
+  std::uint32_t triangle_count = 0;
+  Vec3i parent_position{};  // grid units
+};
+
+struct BlockLimits {
+  std::uint32_t vertices = 0, triangles = 0;  // at the fine end
+};
+
+struct NoGuide {};
+
+template <class Coder, class Guide>
+class BlockCoder {
+ public:
+  BlockCoder(Coder& coder, Guide& guide, const BlockCoding& coding, const BlockLimits& limits,
+             PatchMesh coarse)
+      : coder_(coder), guide_(guide), coding_(coding), limits_(limits), mesh_(std::move(coarse)) {
+    coarse_triangles_ = static_cast<std::uint32_t>(mesh_.triangles.size());
+    coarse_vertices_ = static_cast<std::uint32_t>(mesh_.positions.size());
+    was_derived_ = mesh_.derived;
+    around_.resize(mesh_.positions.size());
+    for (std::uint32_t t = 0; t < coarse_triangles_; ++t) {
+      for (std::uint32_t v : mesh_.triangles[t]) around_[v].push_back(t);
+    }
+  }
+
+  // False: the bytes are not a block of these limits.
+  bool run() {
+    coder_.enter(Stream::Roots);
+    if (!code_roots() || !code_splits()) return false;
+    coder_.enter(Stream::Categories);
+    code_categories();
+    code_derived();
+    coder_.enter(Stream::Values);
+    mesh_.values.resize(coding_.layers.size());
+    for (std::size_t l = 0; l < coding_.layers.size(); ++l) {
+      mesh_.values[l].resize(3 * mesh_.triangles.size());
+      code_layer(coding_.layers[l], mesh_.values[l], l);
+    }
+    coder_.enter(Stream::Labels);
+    code_labels();
+    return !coder_.failed() && !corrupt_;
+  }
+
+  const PatchMesh& mesh() const { return mesh_; }
+
+  // Once, after run(). `names`: of the vertices at the coarse end.
+  FineEnd take_end(std::uint32_t block, std::vector<VertexName> names) {
+    names.resize(mesh_.positions.size());
+    for (std::uint32_t v = 0; v < names.size(); ++v) {
+      if (was_split(v)) names[v] = {block, v};
+    }
+    return {std::move(mesh_), std::move(names), std::move(labels_)};
+  }
+  std::vector<Split> take_splits() { return std::move(splits_); }
+
+ private:
+  // An index below `count`.
+  std::uint32_t code_below(std::uint32_t count, std::uint32_t value) {
+    const std::uint32_t index = code_index(coder_, count, value);
+    if (index < count) return index;
+    corrupt_ = true;
+    return 0;
+  }
+
+  // Roots.
+  bool code_roots();
+  std::uint32_t add_vertex(const Vec3i& position) {
+    mesh_.positions.push_back(position);
+    around_.emplace_back();
+    return static_cast<std::uint32_t>(mesh_.positions.size() - 1);
+  }
+  std::uint32_t add_triangle(const Corners& corners) {
+    const std::uint32_t t = static_cast<std::uint32_t>(mesh_.triangles.size());
+    mesh_.triangles.push_back(corners);
+    for (std::uint32_t v : corners) around_[v].push_back(t);
+    return t;
+  }
+
+  // Splits.
+  struct Shape {                           // of one split
+    std::vector<std::uint32_t> triangles;  // those at the vertex
+    std::vector<char> to_second;           // per triangle
+    std::vector<Introduced> introduced;    // in the order in which they are added
+  };
+  struct Fan {  // the shape where the triangles are one fan: see make_fan()
+    std::uint32_t first = 0, last = 0;
+    bool single = false;
+  };
+  bool code_splits();
+  bool split(std::uint32_t v, bool fan);
+  void code_shape(std::uint32_t v, bool fan);
+  void ask_shape(std::uint32_t v);
+  bool find_fan(Fan& fan);
+  void make_fan(const Fan& fan);
+  void code_fan(Fan fan);
+  void code_general(std::uint32_t v);
+  void apply(std::uint32_t v, std::uint32_t u);
+  void code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s);
+  Vec3i code_position(const Vec3i& position, const Vec3i& predicted, const Surroundings& around,
+                      std::size_t kind);
+
+  // What triangles and corners have at the fine end.
+  struct LayerModels {
+    std::array<AdaptiveBit, 3> is_uniform;
+    std::array<std::array<AdaptiveBit, 2>, 4> same_as;
+    std::array<SignedModel, 4> residual;
+  };
+  void code_categories();
+  void code_derived();
+  void code_layer(const BlockLayer& layer, std::vector<CodedValue>& values, std::size_t l);
+  void code_vertex(const BlockLayer& layer, std::vector<CodedValue>& values, std::size_t l,
+                   LayerModels& models, std::uint32_t v);
+  CodedValue code_value(const BlockLayer& layer, LayerModels& models, const CodedValue& value,
+                        const CodedValue& predicted);
+  CodedValue expected_value(const BlockLayer& layer, std::span<const std::uint32_t> corners,
+                            const CodedValue& near) const;
+  void code_labels();
+  std::uint32_t neighbour_before(std::uint32_t t) const;
+  std::array<std::uint32_t, 3> neighbours_before(std::uint32_t t) const;
+  bool is_new(std::uint32_t t) const { return t >= coarse_triangles_; }
+  bool was_split(std::uint32_t v) const { return v >= coarse_vertices_ || generation_[v] > 0; }
+
+  static int corner_of(const Corners& t, std::uint32_t v) {
+    return t[0] == v ? 0 : t[1] == v ? 1 : 2;
+  }
+
+  Coder& coder_;
+  Guide& guide_;
+  const BlockCoding& coding_;
+  BlockLimits limits_;
+  PatchMesh mesh_;
+  std::uint32_t coarse_triangles_ = 0, coarse_vertices_ = 0;
+  bool corrupt_ = false;
+  std::vector<std::vector<std::uint32_t>> around_;  // triangles, per vertex
+  std::vector<std::uint8_t> generation_;            // splits above, per vertex
+  std::vector<Split> splits_;
+  std::vector<std::uint32_t> labels_;
+
+  Ring ring_;
+  Shape shape_;
+  std::vector<std::uint32_t> ring_vertices_;  // scratch
+  std::vector<char> was_derived_;             // per coarse triangle
+  std::vector<char> is_known_;                // per corner, of the present layer
+  std::vector<std::uint32_t> corners_;        // of the present vertex
+  std::vector<CodedValue> tried_;
+  std::vector<std::uint32_t> tried_labels_;
+
+  static constexpr std::size_t kMostTried = 6;
+  static constexpr std::size_t kGenerations = 8, kScales = 32;
+  MagnitudeModel root_count_, root_triangle_count_;
+  std::array<SignedModel, 3> root_position_;
+  std::array<std::array<std::array<AdaptiveBit, 4>, 3>, kGenerations> is_split_;
+  std::array<AdaptiveBit, 3> is_fan_;
+  AdaptiveBit is_single_;
+  MagnitudeModel introduced_count_;
+  AdaptiveBit is_in_ring_, first_leads_;
+  std::array<AdaptiveBit, 3> to_second_;
+  std::array<std::array<AdaptiveBit, 2>, 2> stays_;
+  std::array<std::array<std::array<SignedModel, 3>, kScales>, 3> residual_;
+  std::array<AdaptiveBit, 2> same_category_;
+  AdaptiveBit any_derived_;
+  std::array<AdaptiveBit, 2> is_derived_;
+  std::array<AdaptiveBit, 5> same_label_;
+  MagnitudeModel label_;
+};
+
+}  // namespace crease::codec
+
+#include "codec/block_attributes.h"
+#include "codec/block_splits.h"

@@ -1,0 +1,294 @@
+// The roots and the splits of a block; included by block_coder.h.
+#pragma once
+
+#include "codec/block_coder.h"
+
+namespace crease::codec {
+
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::code_roots() {
+  std::uint32_t roots = 0, triangles = 0;
+  if constexpr (Coder::kEncodes) {
+    roots = static_cast<std::uint32_t>(guide_.roots().size());
+    triangles = static_cast<std::uint32_t>(guide_.root_triangles().size());
+  }
+  roots = code_magnitude(coder_, root_count_, roots);
+  triangles = code_magnitude(coder_, root_triangle_count_, triangles);
+  if (roots > limits_.vertices || triangles > limits_.triangles) return false;
+  Vec3i last = mesh_.positions.empty() ? Vec3i{} : mesh_.positions[0];
+  for (std::uint32_t i = 0; i < roots; ++i) {
+    Vec3i position{};
+    if constexpr (Coder::kEncodes) position = guide_.roots()[i];
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t step = wrapped_difference(position[k], last[k]);
+      last[k] = wrapped_sum(last[k], code_signed(coder_, root_position_[std::size_t(k)], step));
+    }
+    if (coder_.failed()) return false;
+    add_vertex(last);
+  }
+  const std::uint32_t vertices = static_cast<std::uint32_t>(mesh_.positions.size());
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    Corners corners{};
+    if constexpr (Coder::kEncodes) corners = guide_.root_triangles()[i];
+    for (std::uint32_t& v : corners) v = code_below(vertices, v);
+    if (corrupt_ || corners[0] == corners[1] || corners[1] == corners[2] ||
+        corners[2] == corners[0]) {
+      return false;
+    }
+    add_triangle(corners);
+  }
+  return true;
+}
+
+// Breadth first: every vertex is asked once, and its children again.
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::code_splits() {
+  generation_.assign(mesh_.positions.size(), 0);
+  std::vector<std::uint32_t> queue(mesh_.positions.size());
+  for (std::uint32_t v = 0; v < queue.size(); ++v) queue[v] = v;
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const std::uint32_t v = queue[i];
+    const bool fan = find_ring(mesh_.triangles, around_[v], v, ring_);
+    const std::size_t kind = !fan ? 0 : ring_.closed ? 1 : 2;
+    const std::size_t valence = std::min<std::size_t>(around_[v].size() / 2, 3);
+    bool splits = false;
+    if constexpr (Coder::kEncodes) splits = guide_.is_split(v);
+    coder_.enter(Stream::Flags);
+    splits = coder_.bit(
+        is_split_[std::min<std::size_t>(generation_[v], kGenerations - 1)][kind][valence], splits);
+    if (!splits) continue;
+    if (!split(v, fan)) return false;
+    queue.push_back(v);
+    queue.push_back(static_cast<std::uint32_t>(mesh_.positions.size() - 1));
+  }
+  return true;
+}
+
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::split(std::uint32_t v, bool fan) {
+  if (mesh_.positions.size() >= limits_.vertices) return false;
+  const Vec3i s = mesh_.positions[v];
+  coder_.enter(Stream::Shapes);
+  code_shape(v, fan);
+  if (coder_.failed() || corrupt_) return false;
+  if (shape_.introduced.size() > limits_.triangles - mesh_.triangles.size()) return false;
+  const std::uint32_t u = add_vertex(s);
+  generation_[v] = static_cast<std::uint8_t>(std::min(generation_[v] + 1, 255));
+  generation_.push_back(generation_[v]);
+  splits_.push_back({v, static_cast<std::uint32_t>(mesh_.triangles.size()),
+                     static_cast<std::uint32_t>(shape_.introduced.size()), s});
+  apply(v, u);
+  coder_.enter(Stream::Positions);
+  code_positions(v, u, s);
+  if constexpr (Coder::kEncodes) guide_.did_split(v, u, shape_.introduced);
+  return true;
+}
+
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
+  shape_.introduced.clear();
+  if (fan) {
+    shape_.triangles = ring_.triangles;
+  } else {
+    shape_.triangles = around_[v];
+  }
+  shape_.to_second.assign(shape_.triangles.size(), 0);
+  if constexpr (Coder::kEncodes) ask_shape(v);
+  if (fan) {
+    Fan found;
+    bool is_fan = false;
+    if constexpr (Coder::kEncodes) {
+      // Which child comes first is free; in a fan it is the one outside.
+      is_fan = find_fan(found);
+      if (!is_fan) {
+        guide_.name_children(true);
+        ask_shape(v);
+        is_fan = find_fan(found);
+      }
+    }
+    if (coder_.bit(is_fan_[ring_.closed], is_fan)) {
+      code_fan(found);
+      return;
+    }
+  }
+  code_general(v);
+}
+
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::ask_shape(std::uint32_t v) {
+  for (std::size_t i = 0; i < shape_.triangles.size(); ++i) {
+    shape_.to_second[i] = guide_.goes_to_second(v, shape_.triangles[i]);
+  }
+  shape_.introduced = guide_.introduced(v);
+}
+
+// The encoder's shape as a fan, if it is one.
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::find_fan(Fan& fan) {
+  const Shape wanted = shape_;
+  const std::vector<Introduced>& b = wanted.introduced;
+  if (b.empty() || b.size() > 2 || (ring_.closed && b.size() != 2)) return false;
+  const auto at = [&](std::uint32_t third) {
+    const auto found = std::find(ring_.vertices.begin(), ring_.vertices.end(), third);
+    return static_cast<std::uint32_t>(found - ring_.vertices.begin());
+  };
+  const std::uint32_t i = at(b.front().third), j = at(b.back().third);
+  if (std::max(i, j) >= ring_.vertices.size() || (b.size() == 2 && i == j)) return false;
+  fan = {b.size() == 1 ? 0 : std::min(i, j), std::max(i, j), b.size() == 1};
+  make_fan(fan);
+  const auto same = [](const Introduced& x, const Introduced& y) {
+    return x.third == y.third && x.first_leads == y.first_leads;
+  };
+  const std::vector<Introduced>& a = shape_.introduced;
+  if (shape_.to_second == wanted.to_second &&
+      ((same(a.front(), b.front()) && same(a.back(), b.back())) ||
+       (same(a.front(), b.back()) && same(a.back(), b.front())))) {
+    return true;
+  }
+  shape_ = wanted;
+  return false;
+}
+
+// Triangles [first, last) of the ring go to the second child. One new triangle stands at the vertex
+// `last`, and one at `first` unless single.
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::make_fan(const Fan& fan) {
+  for (std::size_t i = 0; i < shape_.to_second.size(); ++i) {
+    shape_.to_second[i] = i >= fan.first && i < fan.last;
+  }
+  shape_.introduced.clear();
+  shape_.introduced.push_back({ring_.vertices[fan.last], true});
+  if (!fan.single) shape_.introduced.push_back({ring_.vertices[fan.first], false});
+}
+
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::code_fan(Fan fan) {
+  const std::uint32_t vertices = static_cast<std::uint32_t>(ring_.vertices.size());
+  fan.single = !ring_.closed && coder_.bit(is_single_, fan.single);
+  if (fan.single) {
+    fan.first = 0;
+    fan.last = code_below(vertices, fan.last);
+  } else {
+    fan.first = code_below(vertices - 1, fan.first);
+    fan.last = fan.first + 1 + code_below(vertices - 1 - fan.first, fan.last - fan.first - 1);
+  }
+  make_fan(fan);
+}
+
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::code_general(std::uint32_t v) {
+  ring_vertices_.clear();
+  for (std::uint32_t t : shape_.triangles) {
+    for (std::uint32_t w : mesh_.triangles[t]) {
+      if (w == v ||
+          std::find(ring_vertices_.begin(), ring_vertices_.end(), w) != ring_vertices_.end()) {
+        continue;
+      }
+      ring_vertices_.push_back(w);
+      if (ring_vertices_.size() > kLargestRing) break;
+    }
+  }
+  const std::uint32_t near = static_cast<std::uint32_t>(ring_vertices_.size());
+  const std::uint32_t all = static_cast<std::uint32_t>(mesh_.positions.size());
+  const std::uint32_t count = code_magnitude(coder_, introduced_count_,
+                                             static_cast<std::uint32_t>(shape_.introduced.size()));
+  if (count > limits_.triangles - mesh_.triangles.size()) {
+    corrupt_ = true;
+    return;
+  }
+  shape_.introduced.resize(count);
+  for (Introduced& introduced : shape_.introduced) {
+    std::uint32_t rank = 0;
+    if constexpr (Coder::kEncodes) {
+      rank = static_cast<std::uint32_t>(
+          std::find(ring_vertices_.begin(), ring_vertices_.end(), introduced.third) -
+          ring_vertices_.begin());
+    }
+    if (near > 0 && coder_.bit(is_in_ring_, rank < near)) {
+      introduced.third = ring_vertices_[code_below(near, rank)];
+    } else {
+      introduced.third = code_below(all, introduced.third);
+      if (introduced.third == v) corrupt_ = true;
+    }
+    introduced.first_leads = coder_.bit(first_leads_, introduced.first_leads);
+    if (coder_.failed() || corrupt_) return;
+  }
+  // A triangle mostly goes where its neighbour went.
+  for (std::size_t i = 0; i < shape_.triangles.size(); ++i) {
+    const std::size_t context = i == 0 ? 2 : std::size_t(shape_.to_second[i - 1]);
+    shape_.to_second[i] = coder_.bit(to_second_[context], shape_.to_second[i]);
+  }
+}
+
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::apply(std::uint32_t v, std::uint32_t u) {
+  std::vector<std::uint32_t>& at_first = around_[v];
+  std::vector<std::uint32_t>& at_second = around_[u];
+  at_first.clear();
+  for (std::size_t i = 0; i < shape_.triangles.size(); ++i) {
+    const std::uint32_t t = shape_.triangles[i];
+    if (shape_.to_second[i]) {
+      mesh_.triangles[t][std::size_t(corner_of(mesh_.triangles[t], v))] = u;
+      at_second.push_back(t);
+    } else {
+      at_first.push_back(t);
+    }
+  }
+  for (const Introduced& introduced : shape_.introduced) {
+    add_triangle(introduced.first_leads ? Corners{v, u, introduced.third}
+                                        : Corners{u, v, introduced.third});
+  }
+}
+
+// First whether a child stays where the parent was, then where the second goes, then the first.
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s) {
+  Vec3i at_t{}, at_u{};
+  if constexpr (Coder::kEncodes) {
+    at_t = guide_.position(t, false);
+    at_u = guide_.position(t, true);
+  }
+  const bool t_stays = coder_.bit(stays_[0][0], at_t == s);
+  const bool u_stays = coder_.bit(stays_[1][t_stays], at_u == s);
+  const Surroundings around = surroundings(mesh_, around_[t], around_[u], t, u, s);
+  if (t_stays || u_stays) {
+    if (u_stays) {
+      at_u = s;
+    } else {
+      at_u = code_position(at_u, around.beside_parent(true), around, 0);
+    }
+    if (t_stays) {
+      at_t = s;
+    } else {
+      at_t = code_position(at_t, around.beside_parent(false), around, 0);
+    }
+  } else {
+    at_u = code_position(at_u, around.second_of_both(), around, 1);
+    at_t = code_position(at_t, around.first_of_both(at_u), around, 2);
+  }
+  mesh_.positions[u] = at_u;
+  mesh_.positions[t] = at_t;
+}
+
+template <class Coder, class Guide>
+Vec3i BlockCoder<Coder, Guide>::code_position(const Vec3i& position, const Vec3i& predicted,
+                                              const Surroundings& around, std::size_t kind) {
+  // The two minor axes, then the one along the normal, on which they say where the tangent plane
+  // is.
+  std::array<std::int32_t, 3> residual{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int axis = around.axis[i];
+    std::int32_t own = wrapped_difference(position[axis], predicted[axis]);
+    const std::int32_t sheared = i < 2 ? 0 : around.shear(residual[0], residual[1]);
+    own = code_signed(coder_, residual_[kind][around.scale][i], wrapped_difference(own, sheared));
+    residual[i] = wrapped_sum(own, sheared);
+  }
+  Vec3i result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int axis = around.axis[i];
+    result[axis] = wrapped_sum(predicted[axis], residual[i]);
+  }
+  return result;
+}
+
+}  // namespace crease::codec

@@ -1,0 +1,83 @@
+// Numbers as adaptive bits. Every function is written once for both directions: with a RangeEncoder
+// it writes `value` and returns it, with a RangeDecoder it ignores `value` and returns what was
+// written.
+#pragma once
+
+#include "codec/adaptive_bit.h"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace crease::codec {
+
+// 2^24 values at a time are as many as uniform() takes.
+template <class Coder>
+std::uint32_t code_index(Coder& coder, std::uint32_t count, std::uint32_t value) {
+  constexpr std::uint32_t kMost = 1u << 16;
+  if (count <= kMost) return coder.uniform(count, value);
+  const std::uint32_t high = coder.uniform((count - 1) / kMost + 1, value / kMost);
+  const std::uint32_t low = coder.uniform(kMost, value % kMost);
+  return high * kMost + low;
+}
+
+// A number below 2^Bits with a model for every prefix.
+template <int Bits>
+struct TreeModel {
+  std::array<AdaptiveBit, (1u << Bits)> bits;
+};
+
+template <class Coder, int Bits>
+std::uint32_t code_tree(Coder& coder, TreeModel<Bits>& model, std::uint32_t value) {
+  std::uint32_t prefix = 1;
+  for (int i = Bits - 1; i >= 0; --i) {
+    prefix = 2 * prefix + coder.bit(model.bits[prefix], value >> i & 1);
+  }
+  return prefix - (1u << Bits);
+}
+
+// Magnitudes up to 2^32 - 2: the number of bits of value + 1 in unary, then the bits below its
+// first one, of which two are modelled.
+struct MagnitudeModel {
+  std::array<AdaptiveBit, 32> is_longer;
+  std::array<std::array<AdaptiveBit, 4>, 32> first_bits;
+};
+
+template <class Coder>
+std::uint32_t code_magnitude(Coder& coder, MagnitudeModel& model, std::uint32_t value) {
+  const int value_length = std::bit_width(value + 1) - 1;
+  int length = 0;
+  while (length < 31 && coder.bit(model.is_longer[std::size_t(length)], value_length > length)) {
+    ++length;
+  }
+  std::uint32_t prefix = 1;
+  int left = length;
+  for (int i = 0; i < 2 && left > 0; ++i) {
+    --left;
+    prefix = 2 * prefix +
+             coder.bit(model.first_bits[std::size_t(length)][prefix], (value + 1) >> left & 1);
+  }
+  while (left > 0) {
+    const int now = left < 16 ? left : 16;
+    left -= now;
+    prefix = prefix << now | coder.uniform(1u << now, (value + 1) >> left & ((1u << now) - 1));
+  }
+  return prefix - 1;
+}
+
+struct SignedModel {
+  MagnitudeModel magnitude;
+  AdaptiveBit is_negative;
+};
+
+template <class Coder>
+std::int32_t code_signed(Coder& coder, SignedModel& model, std::int32_t value) {
+  const std::uint32_t size =
+      value < 0 ? 0u - static_cast<std::uint32_t>(value) : static_cast<std::uint32_t>(value);
+  const std::uint32_t magnitude = code_magnitude(coder, model.magnitude, size);
+  if (magnitude == 0) return 0;
+  const bool negative = coder.bit(model.is_negative, value < 0);
+  return static_cast<std::int32_t>(negative ? 0u - magnitude : magnitude);
+}
+
+}  // namespace crease::codec

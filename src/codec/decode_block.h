@@ -1,0 +1,26 @@
+// One block: bytes and what it starts from in, what it ends at out.
+#pragma once
+
+#include "codec/block_coder.h"
+#include "codec/block_end.h"
+#include "codec/stream.h"
+#include "crease/result.h"
+
+#include <cstddef>
+#include <span>
+
+namespace crease::codec {
+
+struct DecodedBlock {
+  FineEnd end;
+  std::vector<Split> splits;  // in the order in which they were coded: parents first
+};
+
+// `bits`, where not null, is added to: what each stream takes. That makes it slower.
+// Fails, naming the block, if `bytes` are not a block. Takes no more memory than some 500 bytes for
+// every vertex and triangle that `limits` allow.
+Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, std::uint32_t block,
+                                  const BlockCoding& coding, const BlockLimits& limits,
+                                  CoarseEnd start, StreamBits* bits = nullptr);
+
+}  // namespace crease::codec

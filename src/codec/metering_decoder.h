@@ -1,0 +1,38 @@
+// A RangeDecoder that adds up what each stream takes: -log2 of the probability of every bit.
+#pragma once
+
+#include "codec/range_decoder.h"
+
+#include <cmath>
+
+namespace crease::codec {
+
+class MeteringDecoder {
+ public:
+  static constexpr bool kEncodes = false;
+
+  MeteringDecoder(std::span<const std::byte> bytes, StreamBits& bits)
+      : decoder_(bytes), bits_(bits) {}
+
+  bool bit(AdaptiveBit& model, bool) {
+    const double one = model.probability() / double(1u << kProbabilityBits);
+    const bool bit = decoder_.bit(model, false);
+    add(-std::log2(bit ? one : 1 - one));
+    return bit;
+  }
+  std::uint32_t uniform(std::uint32_t count, std::uint32_t) {
+    add(std::log2(double(count)));
+    return decoder_.uniform(count, 0);
+  }
+  void enter(Stream stream) { stream_ = stream; }
+  bool failed() const { return decoder_.failed(); }
+
+ private:
+  void add(double bits) { bits_[std::size_t(stream_)] += bits; }
+
+  RangeDecoder decoder_;
+  StreamBits& bits_;
+  Stream stream_ = Stream::Roots;
+};
+
+}  // namespace crease::codec

@@ -1,0 +1,48 @@
+// What a block refines: the triangles of one patch at one end of its band.
+#pragma once
+
+#include "codec/octahedral.h"
+#include "crease/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace crease::codec {
+
+// An attribute value as integers: a direction's code, a point of a lattice, the bits of floats, a
+// category. Corners share an attribute iff their values are equal.
+using CodedValue = std::array<std::int32_t, 4>;
+
+inline CodedValue coded(OctahedralCode code) {
+  return {static_cast<std::int32_t>(code.u), static_cast<std::int32_t>(code.v), 0, 0};
+}
+inline OctahedralCode octahedral_code(const CodedValue& value) {
+  return {static_cast<std::uint32_t>(value[0]), static_cast<std::uint32_t>(value[1])};
+}
+
+using Corners = std::array<std::uint32_t, 3>;  // vertices of a triangle
+
+struct PatchMesh {
+  std::vector<Vec3i> positions;                 // per vertex, grid units
+  std::vector<Corners> triangles;               //
+  std::vector<std::uint32_t> category;          // per triangle: material and part as one
+  std::vector<std::vector<CodedValue>> values;  // per layer, 3 a triangle
+  std::vector<char> derived;                    // per triangle: shows its geometric normal, and its
+                                                // values of the normal layer have no meaning
+};
+
+// How the values of a layer are coded.
+struct BlockLayer {
+  int dimension = 1;        // of CodedValue
+  bool is_normal = false;   // triangles may be derived
+  int octahedral_bits = 0;  // u and v of an OctahedralCode, so many bits each; 0: no direction
+  bool is_raw = false;      // all 32 bits of every component, with no order among them
+};
+
+struct BlockCoding {
+  std::vector<BlockLayer> layers;
+  std::uint32_t category_count = 1;
+};
+
+}  // namespace crease::codec

@@ -1,0 +1,83 @@
+// Bits to bytes: a binary range coder with carries.
+#pragma once
+
+#include "codec/adaptive_bit.h"
+#include "codec/stream.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace crease::codec {
+
+// The counterpart of RangeDecoder: what one is given the other returns.
+class RangeEncoder {
+ public:
+  static constexpr bool kEncodes = true;
+
+  bool bit(AdaptiveBit& model, bool bit) {
+    const std::uint32_t bound = (range_ >> kProbabilityBits) * model.probability();
+    if (bit) {
+      range_ = bound;
+    } else {
+      low_ += bound;
+      range_ -= bound;
+    }
+    model.learn(bit);
+    normalize();
+    return bit;
+  }
+
+  // One of `count` that are equally likely; count < 2^24.
+  std::uint32_t uniform(std::uint32_t count, std::uint32_t value) {
+    const std::uint32_t step = range_ / count;
+    low_ += std::uint64_t(step) * value;
+    range_ = step;
+    normalize();
+    return value;
+  }
+
+  bool failed() const { return false; }
+  void enter(Stream) {}
+
+  // Once, at the end. The decoder reads zeros beyond the end, so up to four are left out.
+  std::vector<std::byte> finish() {
+    for (int i = 0; i < 5; ++i) shift();
+    for (int i = 0; i < 4 && !bytes_.empty() && bytes_.back() == std::byte{0}; ++i) {
+      bytes_.pop_back();
+    }
+    return std::move(bytes_);
+  }
+
+ private:
+  void normalize() {
+    while (range_ < (1u << 24)) {
+      range_ <<= 8;
+      shift();
+    }
+  }
+
+  // Moves the topmost byte of low_ out. A byte 0xff may still become 0x100, so it waits.
+  void shift() {
+    if (low_ < 0xff000000u || low_ > 0xffffffffu) {
+      const std::uint8_t carry = static_cast<std::uint8_t>(low_ >> 32);
+      if (has_held_) bytes_.push_back(std::byte(std::uint8_t(held_ + carry)));
+      for (; waiting_ > 0; --waiting_) bytes_.push_back(std::byte(std::uint8_t(0xff + carry)));
+      held_ = static_cast<std::uint8_t>(low_ >> 24);
+      has_held_ = true;
+    } else {
+      ++waiting_;
+    }
+    low_ = (low_ & 0x00ffffffu) << 8;
+  }
+
+  std::uint64_t low_ = 0;
+  std::uint32_t range_ = 0xffffffffu;
+  std::uint8_t held_ = 0;
+  bool has_held_ = false;
+  std::size_t waiting_ = 0;
+  std::vector<std::byte> bytes_;
+};
+
+}  // namespace crease::codec

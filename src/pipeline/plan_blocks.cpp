@@ -1,0 +1,211 @@
+#include "pipeline/plan_blocks.h"
+
+#include "base/assert.h"
+#include "hierarchy/attribute_values.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace crease {
+
+namespace {
+
+// The mesh as the bands leave it, one after the other.
+class Planner {
+ public:
+  Planner(const Mesh& snapped, const ContractionSequence& sequence,
+          std::span<const LayerCoding> codings)
+      : mesh_(snapped), sequence_(sequence), codings_(codings) {
+    for (const Vec3d& p : mesh_.positions) positions_.push_back(sequence_.grid.nearest(p));
+    for (const Triangle& t : mesh_.triangles) {
+      corners_.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
+                          static_cast<std::uint32_t>(t[2])});
+    }
+    for (const AttributeLayer& layer : mesh_.layers) of_corner_.push_back(layer.of_corner);
+    is_alive_.assign(corners_.size(), 1);
+    derived_.assign(corners_.size(), 0);
+    label_.assign(corners_.size(), 0);
+    slot_of_vertex_.assign(positions_.size(), kNone);
+  }
+
+  // The patches of the next band, at their fine ends; then its contractions.
+  BandPlans plan_band(const Band& band) {
+    BandPlans result;
+    result.plans.resize(band.patch_count());
+    result.vertex_ids.resize(band.patch_count());
+    result.triangle_ids.resize(band.patch_count());
+    std::vector<std::vector<std::size_t>> contractions(band.patch_count());
+    for (std::uint32_t i = 0; i < band.contraction_count; ++i, ++next_) {
+      contractions[sequence_.patch_of_contraction[next_]].push_back(next_);
+    }
+    for (std::uint32_t p = 0; p < band.patch_count(); ++p) {
+      for (TriangleId t : band.triangles_of(p)) {
+        result.triangle_ids[p].push_back(static_cast<std::uint32_t>(t));
+      }
+      result.plans[p] = plan_patch(result.triangle_ids[p], result.vertex_ids[p]);
+      contract(contractions[p], result.plans[p], result.triangle_ids[p], result.vertex_ids[p]);
+      for (std::uint32_t t : result.triangle_ids[p]) label_[t] = p;
+    }
+    return result;
+  }
+
+  // What is left when all bands are done.
+  BandPlans plan_base() {
+    BandPlans result;
+    result.triangle_ids.resize(1);
+    result.vertex_ids.resize(1);
+    for (std::uint32_t t = 0; t < corners_.size(); ++t) {
+      if (is_alive_[t]) result.triangle_ids[0].push_back(t);
+    }
+    result.plans.push_back(plan_patch(result.triangle_ids[0], result.vertex_ids[0]));
+    return result;
+  }
+
+ private:
+  codec::BlockPlan plan_patch(const std::vector<std::uint32_t>& triangles,
+                              std::vector<std::uint32_t>& vertices) {
+    codec::BlockPlan plan;
+    plan.fine.values.resize(mesh_.layers.size());
+    for (const std::uint32_t t : triangles) {
+      codec::Corners corners = corners_[t];
+      for (std::uint32_t& v : corners) {
+        std::uint32_t& slot = slot_of_vertex_[v];
+        if (slot == kNone) {
+          slot = static_cast<std::uint32_t>(vertices.size());
+          vertices.push_back(v);
+          plan.fine.positions.push_back(positions_[v]);
+        }
+        v = slot;
+      }
+      plan.fine.triangles.push_back(corners);
+      plan.fine.category.push_back(category_of(t));
+      plan.fine.derived.push_back(derived_[t]);
+      plan.labels.push_back(label_[t]);
+      for (std::size_t l = 0; l < mesh_.layers.size(); ++l) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          plan.fine.values[l].push_back(coded_value(l, of_corner_[l][3 * t + c]));
+        }
+      }
+    }
+    for (const std::uint32_t v : vertices) slot_of_vertex_[v] = kNone;
+    return plan;
+  }
+
+  // By the definition of crease/contraction.h, inside one patch.
+  void contract(const std::vector<std::size_t>& contractions, codec::BlockPlan& plan,
+                const std::vector<std::uint32_t>& triangles,
+                const std::vector<std::uint32_t>& vertices) {
+    for (std::uint32_t slot = 0; slot < vertices.size(); ++slot) {
+      slot_of_vertex_[vertices[slot]] = slot;
+    }
+    std::vector<std::vector<std::uint32_t>> around(vertices.size());
+    for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t v : corners_[t]) around[slot_of_vertex_[v]].push_back(t);
+    }
+    for (const std::size_t i : contractions) {
+      const Contraction& c = sequence_.contractions[i];
+      const std::uint32_t removed = static_cast<std::uint32_t>(c.removed);
+      const std::uint32_t kept = static_cast<std::uint32_t>(c.kept);
+      std::vector<std::uint32_t>& at_kept = around[slot_of_vertex_[kept]];
+      for (const std::uint32_t t : around[slot_of_vertex_[removed]]) {
+        if (!is_alive_[t]) continue;
+        codec::Corners& corners = corners_[t];
+        if (corners[0] == kept || corners[1] == kept || corners[2] == kept) {
+          is_alive_[t] = 0;
+        } else {
+          std::replace(corners.begin(), corners.end(), removed, kept);
+          at_kept.push_back(t);
+        }
+      }
+      positions_[kept] = c.position;
+      for (TriangleId t : sequence_.derived_of(c)) derived_[index_of(t)] = 1;
+      for (const AttributeChange& change : sequence_.changes_of(c)) {
+        change_attribute(at_kept, kept, change);
+      }
+      plan.steps.push_back({slot_of_vertex_[removed], slot_of_vertex_[kept], c.position});
+    }
+    for (const std::uint32_t v : vertices) slot_of_vertex_[v] = kNone;
+  }
+
+  void change_attribute(const std::vector<std::uint32_t>& at_kept, std::uint32_t kept,
+                        const AttributeChange& change) {
+    const bool is_normal = mesh_.layers[change.layer].role == AttributeRole::Normal;
+    for (const std::uint32_t t : at_kept) {
+      if (!is_alive_[t] || (is_normal && derived_[t])) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        AttributeId& attribute = of_corner_[change.layer][3 * t + c];
+        if (corners_[t][c] == kept && attribute == change.from) attribute = change.to;
+      }
+    }
+  }
+
+  codec::CodedValue coded_value(std::size_t layer, AttributeId id) const {
+    const std::span<const float> value = attribute_value(mesh_.layers[layer], sequence_, layer, id);
+    const LayerCoding& coding = codings_[layer];
+    if (coding.kind == LayerCoding::Kind::Octahedral) {
+      return codec::coded(
+          OctahedralCoding(coding.bits).encode(Vec3f{value[0], value[1], value[2]}));
+    }
+    codec::CodedValue coded{};
+    for (std::size_t k = 0; k < value.size(); ++k) {
+      coded[k] = coding.kind == LayerCoding::Kind::Lattice ? coding.components[k].nearest(value[k])
+                                                           : std::bit_cast<std::int32_t>(value[k]);
+    }
+    return coded;
+  }
+
+  std::uint32_t category_of(std::uint32_t t) const {
+    const std::uint32_t materials =
+        std::max<std::uint32_t>(1, static_cast<std::uint32_t>(mesh_.materials.size()));
+    std::uint32_t category = 0;
+    if (!mesh_.part_of_triangle.empty()) {
+      category = static_cast<std::uint32_t>(mesh_.part_of_triangle[t]) * materials;
+    }
+    if (!mesh_.material_of_triangle.empty()) {
+      category += static_cast<std::uint32_t>(mesh_.material_of_triangle[t]);
+    }
+    return category;
+  }
+
+  const Mesh& mesh_;
+  const ContractionSequence& sequence_;
+  std::span<const LayerCoding> codings_;
+  std::size_t next_ = 0;                             // in the sequence
+  std::vector<Vec3i> positions_;                     // per vertex
+  std::vector<codec::Corners> corners_;              // per triangle
+  std::vector<std::vector<AttributeId>> of_corner_;  // per layer, 3 a triangle
+  std::vector<char> is_alive_, derived_;             // per triangle
+  std::vector<std::uint32_t> label_;                 // per triangle: its patch in the band before
+  std::vector<std::uint32_t> slot_of_vertex_;        // all kNone between patches
+};
+
+}  // namespace
+
+codec::BlockCoding block_coding(const Mesh& mesh, std::span<const LayerCoding> codings) {
+  codec::BlockCoding coding;
+  for (std::size_t l = 0; l < mesh.layers.size(); ++l) {
+    const AttributeLayer& layer = mesh.layers[l];
+    const bool octahedral = codings[l].kind == LayerCoding::Kind::Octahedral;
+    coding.layers.push_back({.dimension = static_cast<int>(layer.dimension),
+                             .is_normal = layer.role == AttributeRole::Normal,
+                             .octahedral_bits = octahedral ? codings[l].bits : 0,
+                             .is_raw = codings[l].kind == LayerCoding::Kind::Exact ||
+                                       codings[l].kind == LayerCoding::Kind::Sextant});
+  }
+  coding.category_count =
+      static_cast<std::uint32_t>(std::max<std::size_t>(1, mesh.materials.size()) *
+                                 std::max<std::size_t>(1, mesh.parts.size()));
+  return coding;
+}
+
+std::vector<BandPlans> plan_blocks(const Mesh& snapped, const ContractionSequence& sequence,
+                                   std::span<const LayerCoding> codings) {
+  Planner planner(snapped, sequence, codings);
+  std::vector<BandPlans> plans;
+  for (const Band& band : sequence.bands) plans.push_back(planner.plan_band(band));
+  plans.push_back(planner.plan_base());
+  std::reverse(plans.begin(), plans.end());
+  return plans;
+}
+
+}  // namespace crease

@@ -1,0 +1,30 @@
+// Mesh + ContractionSequence -> the plans of blocks (DESIGN 7).
+#pragma once
+
+#include "codec/encode_block.h"
+#include "codec/layer_coding.h"
+#include "crease/contraction.h"
+#include "crease/mesh.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease {
+
+// Plans of one band, by patch; the vertices and triangles of each by their input ids.
+struct BandPlans {
+  std::vector<codec::BlockPlan> plans;
+  std::vector<std::vector<std::uint32_t>> vertex_ids, triangle_ids;
+};
+
+// How values of the mesh's layers become integers, and the categories: material and part as one.
+// `codings`: one a layer, which the mesh and the sequence are snapped to (snap_attributes.h).
+codec::BlockCoding block_coding(const Mesh& mesh, std::span<const LayerCoding> codings);
+
+// Coarsest first: the base mesh, which is one plan without steps, then band after band down to the
+// input. `sequence` must have its bands. Time linear in the triangles of all bands.
+std::vector<BandPlans> plan_blocks(const Mesh& snapped, const ContractionSequence& sequence,
+                                   std::span<const LayerCoding> codings);
+
+}  // namespace crease
