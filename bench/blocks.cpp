@@ -1,0 +1,117 @@
+// A line per model: bits per input vertex that its blocks take, by stream, in one run.
+//
+//   bench_blocks [--bits B] [--endpoint] [--geometry] MODEL...
+//
+// --geometry: without attributes and categories, as beside Draco without normals.
+#include "crease/import.h"
+#include "crease/simplify.h"
+#include "pipeline/encode_blocks.h"
+#include "pipeline/snap_attributes.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+
+namespace crease {
+namespace {
+
+struct Options {
+  int bits = 14;
+  bool endpoint = false, geometry = false;
+};
+
+double cpu_seconds() {
+  return double(std::clock()) / CLOCKS_PER_SEC;
+}
+
+int measure(const std::string& path, const Options& options) {
+  Result<Imported> in = import_mesh(path, {});
+  if (!in.ok()) {
+    std::fprintf(stderr, "%s\n", in.failure().message.c_str());
+    return 1;
+  }
+  Mesh mesh = std::move(in->mesh);
+  const Grid grid = make_grid(mesh, {.length = 0, .bits = options.bits});
+  snap(mesh, grid);
+  std::vector<LayerCoding> codings =
+      codings_of(mesh, {.normal_bits = 10, .texcoord_bits = 12, .color_bits = 8});
+  snap_to_codings(mesh, codings);
+  SimplifyOptions simplify_options;
+  simplify_options.record_bands = true;
+  if (options.endpoint) simplify_options.placement = Placement::Endpoint;
+  Result<ContractionSequence> sequence = simplify(mesh, grid, simplify_options);
+  snap_new_values(*sequence, mesh, codings);
+  if (options.geometry) {
+    mesh.layers.clear();
+    mesh.material_of_triangle.clear();
+    mesh.part_of_triangle.clear();
+    for (Contraction& c : sequence->contractions) c.change_count = c.derived_count = 0;
+  }
+  codings.resize(mesh.layers.size());
+  const codec::BlockCoding coding = block_coding(mesh, codings);
+  const std::vector<BandPlans> plans = plan_blocks(mesh, *sequence, codings);
+  const double begin = cpu_seconds();
+  const std::vector<CodedBlock> blocks = encode_blocks(plans, coding);
+  const double encoded = cpu_seconds();
+
+  // Every stream of every block, decoded again.
+  codec::StreamBits bits{};
+  std::vector<codec::FineEnd> ends;
+  std::size_t bytes = 0, next = 0;
+  double decoding = 0;
+  for (const bool meter : {false, true}) {
+    ends.clear();
+    next = bytes = 0;
+    for (const BandPlans& band : plans) {
+      std::vector<codec::CoarseEnd> starts =
+          codec::sort_by_label(ends, static_cast<std::uint32_t>(band.plans.size()));
+      ends.clear();
+      for (codec::CoarseEnd& start : starts) {
+        const CodedBlock& block = blocks[next];
+        bytes += block.bytes.size();
+        const double before = cpu_seconds();
+        Result<codec::DecodedBlock> decoded =
+            codec::decode_block(block.bytes, static_cast<std::uint32_t>(next), coding, block.limits,
+                                std::move(start), meter ? &bits : nullptr);
+        if (!meter) decoding += cpu_seconds() - before;
+        if (!decoded.ok()) {
+          std::fprintf(stderr, "%s: %s\n", path.c_str(), decoded.failure().message.c_str());
+          return 1;
+        }
+        ends.push_back(std::move(decoded->end));
+        ++next;
+      }
+    }
+  }
+  const double vertices = double(mesh.vertex_count());
+  std::printf(
+      "%-28s %8zu vertices %5zu blocks  %6.2f bits:", path.substr(path.rfind('/') + 1).c_str(),
+      mesh.vertex_count(), blocks.size(), 8 * double(bytes) / vertices);
+  const char* names[] = {"roots", "flags", "shapes", "positions", "categories", "values", "labels"};
+  for (std::size_t s = 0; s < bits.size(); ++s) {
+    std::printf(" %s %.2f", names[s], bits[s] / vertices);
+  }
+  const double million = double(mesh.triangle_count()) / 1e6;
+  std::printf("; encoded %.2f, decoded %.2f M triangles/s\n", million / (encoded - begin),
+              million / decoding);
+  return 0;
+}
+
+}  // namespace
+}  // namespace crease
+
+int main(int argc, char** argv) {
+  crease::Options options;
+  std::vector<std::string> models;
+  CLI::App app{"Bits of the blocks of models"};
+  app.add_option("--bits", options.bits, "of the grid, over the longest side");
+  app.add_flag("--endpoint", options.endpoint, "endpoint placement");
+  app.add_flag("--geometry", options.geometry, "no attributes, no materials, no parts");
+  app.add_option("models", models)->required();
+  CLI11_PARSE(app, argc, argv);
+  int status = 0;
+  for (const std::string& model : models) status |= crease::measure(model, options);
+  return status;
+}
