@@ -11,6 +11,12 @@ inline constexpr std::uint32_t kProbabilityBits = 16;
 // Starts even and averages what it has seen; from kSlowest bits on, the last ones count more.
 class AdaptiveBit {
  public:
+  AdaptiveBit() = default;
+  // Known beforehand, as well as `seen` bits would have told; 0 < p < 1.
+  AdaptiveBit(double p, int seen)
+      : probability_(static_cast<std::uint16_t>(kLeast + p * (65535 - 2 * kLeast))),
+        seen_(static_cast<std::uint8_t>(seen)) {}
+
   // Of a one, in 1 / 2^16; never 0 or 1.
   std::uint32_t probability() const { return probability_; }
 

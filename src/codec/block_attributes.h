@@ -224,35 +224,66 @@ CodedValue BlockCoder<Coder, Guide>::code_value(const BlockLayer& layer, LayerMo
   return result;
 }
 
-// The patch of the next finer band that each triangle is in: mostly that of its neighbours.
+// The box that is nearest, or null; `distance` 0: the place is in it.
+template <class Coder, class Guide>
+typename BlockCoder<Coder, Guide>::LabelBox* BlockCoder<Coder, Guide>::nearest_box(
+    const std::array<double, 3>& place, double& distance) {
+  LabelBox* nearest = nullptr;
+  for (LabelBox& box : boxes_) {
+    double away = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      away += std::max({0.0, box.low[k] - place[k], place[k] - box.high[k]});
+    }
+    if (nearest && away >= distance) continue;
+    nearest = &box;
+    distance = away;
+  }
+  return nearest;
+}
+
+// The patch of the next finer band that each triangle is in: where the triangles around it are.
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_labels() {
   labels_.assign(mesh_.triangles.size(), 0);
-  std::uint32_t last = 0;
+  boxes_.clear();
   for (std::uint32_t t = 0; t < labels_.size(); ++t) {
-    tried_labels_.clear();
-    std::size_t agreeing = 0;
-    for (const std::uint32_t beside : neighbours_before(t)) {
-      if (beside == kNone) continue;
-      tried_labels_.push_back(labels_[beside]);
-      agreeing += labels_[beside] == tried_labels_[0];
+    std::array<double, 3> place{};
+    for (const std::uint32_t v : mesh_.triangles[t]) {
+      for (std::size_t k = 0; k < 3; ++k) place[k] += mesh_.positions[v][static_cast<int>(k)];
     }
-    if (tried_labels_.empty()) tried_labels_.push_back(last);
+    double distance = 0;
+    LabelBox* box = nearest_box(place, distance);
     std::uint32_t label = 0;
     if constexpr (Coder::kEncodes) label = guide_.label(t);
-    const bool differ = agreeing < tried_labels_.size() && agreeing > 0;
-    bool found = false;
-    for (std::size_t i = 0; i < tried_labels_.size() && !found; ++i) {
-      const std::uint32_t candidate = tried_labels_[i];
-      if (std::find(tried_labels_.begin(), tried_labels_.begin() + std::ptrdiff_t(i), candidate) !=
-          tried_labels_.begin() + std::ptrdiff_t(i)) {
-        continue;
+    bool same = false;
+    std::uint32_t beside_label = kNone;
+    if (box) {
+      std::size_t agreement = 0;  // no neighbour, one that agrees, one that does not
+      for (const std::uint32_t beside : neighbours_before(t)) {
+        if (beside == kNone) continue;
+        if (labels_[beside] != box->label) beside_label = labels_[beside];
+        agreement = std::max<std::size_t>(agreement, labels_[beside] == box->label ? 1 : 2);
       }
-      found = coder_.bit(same_label_[differ ? 4 : agreeing], label == candidate);
-      if (found) label = candidate;
+      same = coder_.bit(same_label_[distance > 0][agreement], label == box->label);
+      if (same) label = box->label;
     }
-    if (!found) label = code_magnitude(coder_, label_, label);
-    labels_[t] = last = label;
+    if (!same && beside_label != kNone) {
+      same = coder_.bit(other_label_, label == beside_label);
+      if (same) label = beside_label;
+    }
+    if (!same) label = code_magnitude(coder_, label_, label);
+    labels_[t] = label;
+    const auto own = std::find_if(boxes_.begin(), boxes_.end(),
+                                  [&](const LabelBox& b) { return b.label == label; });
+    if (own == boxes_.end()) {
+      // So many that a search for the nearest would take long are none of ours.
+      if (boxes_.size() < kLargestRing) boxes_.push_back({label, place, place});
+      continue;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      own->low[k] = std::min(own->low[k], place[k]);
+      own->high[k] = std::max(own->high[k], place[k]);
+    }
   }
 }
 

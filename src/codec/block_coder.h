@@ -15,8 +15,10 @@
 
 #include "codec/block_end.h"
 #include "codec/coded_numbers.h"
+#include "codec/mixed_bit.h"
 #include "codec/patch_mesh.h"
 #include "codec/predict_position.h"
+#include "codec/rank_pairs.h"
 #include "codec/ring.h"
 #include "codec/stream.h"
 #include "crease/ids.h"
@@ -127,17 +129,25 @@ class BlockCoder {
     bool single = false;
   };
   bool code_splits();
+  bool code_flag(std::uint32_t v, bool fan, bool splits);
   bool split(std::uint32_t v, bool fan);
   void code_shape(std::uint32_t v, bool fan);
   void ask_shape(std::uint32_t v);
   bool find_fan(Fan& fan);
   void make_fan(const Fan& fan);
-  void code_fan(Fan fan);
+  void code_fan(Fan fan, std::uint32_t v);
+  Fan code_ranked_fan(Fan fan, std::uint32_t v);
   void code_general(std::uint32_t v);
   void apply(std::uint32_t v, std::uint32_t u);
   void code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s);
-  Vec3i code_position(const Vec3i& position, const Vec3i& predicted, const Surroundings& around,
-                      std::size_t kind);
+  // How far from where it was expected a vertex was found, in its tangent plane and along the
+  // normal; below zero: it has no residual.
+  struct Miss {
+    float tangent = -1, normal = -1;
+  };
+  Miss expected_miss(std::uint32_t v, const Surroundings& around) const;
+  Vec3i code_position(std::uint32_t v, const Vec3i& position, const Vec3i& predicted,
+                      const Surroundings& around, std::size_t kind);
 
   // What triangles and corners have at the fine end.
   struct LayerModels {
@@ -155,6 +165,12 @@ class BlockCoder {
   CodedValue expected_value(const BlockLayer& layer, std::span<const std::uint32_t> corners,
                             const CodedValue& near) const;
   void code_labels();
+  // Where the triangles lie that have a label: patches are boxes, so that tells of the others.
+  struct LabelBox {
+    std::uint32_t label = 0;
+    std::array<double, 3> low{}, high{};
+  };
+  LabelBox* nearest_box(const std::array<double, 3>& place, double& distance);
   std::uint32_t neighbour_before(std::uint32_t t) const;
   std::array<std::uint32_t, 3> neighbours_before(std::uint32_t t) const;
   bool is_new(std::uint32_t t) const { return t >= coarse_triangles_; }
@@ -173,6 +189,8 @@ class BlockCoder {
   bool corrupt_ = false;
   std::vector<std::vector<std::uint32_t>> around_;  // triangles, per vertex
   std::vector<std::uint8_t> generation_;            // splits above, per vertex
+  std::vector<Miss> miss_;                          // per vertex
+  double mean_size_ = 0;                            // of an edge at the coarse end
   std::vector<Split> splits_;
   std::vector<std::uint32_t> labels_;
 
@@ -183,24 +201,50 @@ class BlockCoder {
   std::vector<char> is_known_;                // per corner, of the present layer
   std::vector<std::uint32_t> corners_;        // of the present vertex
   std::vector<CodedValue> tried_;
-  std::vector<std::uint32_t> tried_labels_;
+  std::vector<RingVertex> ranked_;
+  std::vector<RingPair> pairs_;
+  std::vector<LabelBox> boxes_;
 
-  static constexpr std::size_t kMostTried = 6;
-  static constexpr std::size_t kGenerations = 8, kScales = 32;
+  static constexpr std::size_t kMostTried = 6, kMostRanked = 16;
+  static constexpr std::size_t kGenerations = 6, kScales = 32, kSizes = 12, kValences = 12;
   MagnitudeModel root_count_, root_triangle_count_;
   std::array<SignedModel, 3> root_position_;
-  std::array<std::array<std::array<AdaptiveBit, 4>, 3>, kGenerations> is_split_;
+  struct FlagModels {
+    template <std::size_t N, std::size_t M>
+    using Table = std::array<std::array<std::array<AdaptiveBit, M>, N>, kGenerations>;
+    Table<3, kSizes> by_size;
+    Table<3, kValences> by_valence;
+    Table<5, kSizes> by_neighbours;
+    std::array<std::array<AdaptiveBit, 3>, kGenerations> by_kind;
+  };
+  FlagModels flag_models_;
+  std::array<MixingWeights<4>, 3> flag_weights_;
   std::array<AdaptiveBit, 3> is_fan_;
   AdaptiveBit is_single_;
+  std::array<MagnitudeModel, kMostRanked + 1> rank_;
   MagnitudeModel introduced_count_;
   AdaptiveBit is_in_ring_, first_leads_;
   std::array<AdaptiveBit, 3> to_second_;
   std::array<std::array<AdaptiveBit, 2>, 2> stays_;
-  std::array<std::array<std::array<SignedModel, 3>, kScales>, 3> residual_;
+  // Residuals of positions: by which child, axis, how large its neighbours' were, and how large the
+  // axes before are beside that.
+  struct ResidualModels {
+    ResidualModels() {
+      for (std::size_t scale = 0; scale < kScales; ++scale) {
+        length[scale].fill(length_model(magnitude_of(scale), kKnown));
+      }
+    }
+    static constexpr int kKnown = 10;
+    std::array<std::array<LengthModel, 3>, kScales> length;
+    FirstBitsModel first_bits;
+    AdaptiveBit is_negative;
+  };
+  std::array<std::array<ResidualModels, 3>, 3> residual_;
   std::array<AdaptiveBit, 2> same_category_;
   AdaptiveBit any_derived_;
   std::array<AdaptiveBit, 2> is_derived_;
-  std::array<AdaptiveBit, 5> same_label_;
+  std::array<std::array<AdaptiveBit, 3>, 2> same_label_;
+  AdaptiveBit other_label_;
   MagnitudeModel label_;
 };
 

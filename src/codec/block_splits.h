@@ -2,6 +2,9 @@
 #pragma once
 
 #include "codec/block_coder.h"
+#include "codec/mixed_bit.h"
+
+#include <cmath>
 
 namespace crease::codec {
 
@@ -44,24 +47,67 @@ bool BlockCoder<Coder, Guide>::code_roots() {
 template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::code_splits() {
   generation_.assign(mesh_.positions.size(), 0);
+  miss_.assign(mesh_.positions.size(), {});
+  double sum = 0;
+  for (const Corners& t : mesh_.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3i &p = mesh_.positions[t[c]], &q = mesh_.positions[t[(c + 1) % 3]];
+      sum +=
+          std::abs(double(p.x) - q.x) + std::abs(double(p.y) - q.y) + std::abs(double(p.z) - q.z);
+    }
+  }
+  mean_size_ = mesh_.triangles.empty() ? 0 : sum / (3 * double(mesh_.triangles.size()));
   std::vector<std::uint32_t> queue(mesh_.positions.size());
   for (std::uint32_t v = 0; v < queue.size(); ++v) queue[v] = v;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const std::uint32_t v = queue[i];
     const bool fan = find_ring(mesh_.triangles, around_[v], v, ring_);
-    const std::size_t kind = !fan ? 0 : ring_.closed ? 1 : 2;
-    const std::size_t valence = std::min<std::size_t>(around_[v].size() / 2, 3);
     bool splits = false;
     if constexpr (Coder::kEncodes) splits = guide_.is_split(v);
     coder_.enter(Stream::Flags);
-    splits = coder_.bit(
-        is_split_[std::min<std::size_t>(generation_[v], kGenerations - 1)][kind][valence], splits);
-    if (!splits) continue;
+    if (!code_flag(v, fan, splits)) continue;
     if (!split(v, fan)) return false;
     queue.push_back(v);
     queue.push_back(static_cast<std::uint32_t>(mesh_.positions.size() - 1));
   }
   return true;
+}
+
+// Whether v is split. What tells: how often those above it were, how large its triangles are beside
+// those of the coarse end, how many they are, and whether those around it are split already.
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::code_flag(std::uint32_t v, bool fan, bool splits) {
+  const std::size_t kind = !fan ? 0 : ring_.closed ? 1 : 2;
+  const std::size_t generation = std::min<std::size_t>(generation_[v], kGenerations - 1);
+  double size = 0, split_around = 0, corners = 0;
+  const Vec3i& center = mesh_.positions[v];
+  const std::size_t count = std::min(around_[v].size(), kLargestRing);
+  for (const std::uint32_t t : std::span(around_[v]).first(count)) {
+    for (const std::uint32_t w : mesh_.triangles[t]) {
+      if (w == v) continue;
+      const Vec3i& p = mesh_.positions[w];
+      size += std::abs(double(p.x) - center.x) + std::abs(double(p.y) - center.y) +
+              std::abs(double(p.z) - center.z);
+      split_around += generation_[w] > 0;
+      corners += 1;
+    }
+  }
+  std::size_t size_class = 0, around_class = 0;
+  if (corners > 0) {
+    double limit = mean_size_ * corners * 0.35;
+    while (size_class + 1 < kSizes && size > limit) {
+      ++size_class;
+      limit *= 1.25;
+    }
+    around_class = 1 + static_cast<std::size_t>(3.99 * split_around / corners);
+  }
+  const std::size_t valence = std::min<std::size_t>(around_[v].size(), kValences - 1);
+  MixedBit<4> bit({&flag_models_.by_size[generation][kind][size_class],
+                   &flag_models_.by_valence[generation][kind][valence],
+                   &flag_models_.by_neighbours[generation][around_class][size_class],
+                   &flag_models_.by_kind[generation][kind]},
+                  flag_weights_[std::min<std::size_t>(generation, 2)]);
+  return coder_.bit(bit, splits);
 }
 
 template <class Coder, class Guide>
@@ -75,6 +121,7 @@ bool BlockCoder<Coder, Guide>::split(std::uint32_t v, bool fan) {
   const std::uint32_t u = add_vertex(s);
   generation_[v] = static_cast<std::uint8_t>(std::min(generation_[v] + 1, 255));
   generation_.push_back(generation_[v]);
+  miss_.push_back(miss_[v]);
   splits_.push_back({v, static_cast<std::uint32_t>(mesh_.triangles.size()),
                      static_cast<std::uint32_t>(shape_.introduced.size()), s});
   apply(v, u);
@@ -107,7 +154,7 @@ void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
       }
     }
     if (coder_.bit(is_fan_[ring_.closed], is_fan)) {
-      code_fan(found);
+      code_fan(found, v);
       return;
     }
   }
@@ -162,10 +209,12 @@ void BlockCoder<Coder, Guide>::make_fan(const Fan& fan) {
 }
 
 template <class Coder, class Guide>
-void BlockCoder<Coder, Guide>::code_fan(Fan fan) {
+void BlockCoder<Coder, Guide>::code_fan(Fan fan, std::uint32_t v) {
   const std::uint32_t vertices = static_cast<std::uint32_t>(ring_.vertices.size());
   fan.single = !ring_.closed && coder_.bit(is_single_, fan.single);
-  if (fan.single) {
+  if (ring_.closed && vertices <= kMostRanked) {
+    fan = code_ranked_fan(fan, v);
+  } else if (fan.single) {
     fan.first = 0;
     fan.last = code_below(vertices, fan.last);
   } else {
@@ -173,6 +222,30 @@ void BlockCoder<Coder, Guide>::code_fan(Fan fan) {
     fan.last = fan.first + 1 + code_below(vertices - 1 - fan.first, fan.last - fan.first - 1);
   }
   make_fan(fan);
+}
+
+// Which of all pairs of the ring's vertices, in the order in which they are likely.
+template <class Coder, class Guide>
+typename BlockCoder<Coder, Guide>::Fan BlockCoder<Coder, Guide>::code_ranked_fan(Fan fan,
+                                                                                 std::uint32_t v) {
+  ranked_.clear();
+  const Vec3i& center = mesh_.positions[v];
+  for (const std::uint32_t w : ring_.vertices) {
+    const Vec3i& p = mesh_.positions[w];
+    ranked_.push_back({{double(p.x) - center.x, double(p.y) - center.y, double(p.z) - center.z},
+                       double(around_[w].size())});
+  }
+  rank_pairs(ranked_, pairs_);
+  std::uint32_t rank = 0;
+  if constexpr (Coder::kEncodes) {
+    while (pairs_[rank].first != fan.first || pairs_[rank].last != fan.last) ++rank;
+  }
+  rank = code_magnitude(coder_, rank_[ranked_.size()], rank);
+  if (rank >= pairs_.size()) {
+    corrupt_ = true;
+    return {0, 1};
+  }
+  return {pairs_[rank].first, pairs_[rank].last};
 }
 
 template <class Coder, class Guide>
@@ -255,33 +328,68 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
     if (u_stays) {
       at_u = s;
     } else {
-      at_u = code_position(at_u, around.beside_parent(true), around, 0);
+      at_u = code_position(u, at_u, around.beside_parent(true), around, 0);
     }
     if (t_stays) {
       at_t = s;
     } else {
-      at_t = code_position(at_t, around.beside_parent(false), around, 0);
+      at_t = code_position(t, at_t, around.beside_parent(false), around, 0);
     }
   } else {
-    at_u = code_position(at_u, around.second_of_both(), around, 1);
-    at_t = code_position(at_t, around.first_of_both(at_u), around, 2);
+    at_u = code_position(u, at_u, around.second_of_both(), around, 1);
+    at_t = code_position(t, at_t, around.first_of_both(at_u), around, 2);
   }
   mesh_.positions[u] = at_u;
   mesh_.positions[t] = at_t;
 }
 
+// As its neighbours' on average, or a quarter of their distance.
 template <class Coder, class Guide>
-Vec3i BlockCoder<Coder, Guide>::code_position(const Vec3i& position, const Vec3i& predicted,
-                                              const Surroundings& around, std::size_t kind) {
+typename BlockCoder<Coder, Guide>::Miss BlockCoder<Coder, Guide>::expected_miss(
+    std::uint32_t v, const Surroundings& around) const {
+  Miss sum{0, 0};
+  float count = 0;
+  const std::size_t triangles = std::min(around_[v].size(), kLargestRing);
+  for (const std::uint32_t t : std::span(around_[v]).first(triangles)) {
+    for (const std::uint32_t w : mesh_.triangles[t]) {
+      if (miss_[w].tangent < 0) continue;
+      sum.tangent += miss_[w].tangent;
+      sum.normal += miss_[w].normal;
+      count += 1;
+    }
+  }
+  const float start = static_cast<float>(around.mean_edge) * 0.25f;
+  return {(sum.tangent + start) / (count + 1), (sum.normal + 0.25f * start) / (count + 1)};
+}
+
+template <class Coder, class Guide>
+Vec3i BlockCoder<Coder, Guide>::code_position(std::uint32_t v, const Vec3i& position,
+                                              const Vec3i& predicted, const Surroundings& around,
+                                              std::size_t kind) {
   // The two minor axes, then the one along the normal, on which they say where the tangent plane
   // is.
+  const Miss expected = expected_miss(v, around);
+  const std::size_t tangent = half_octave(expected.tangent), normal = half_octave(expected.normal);
   std::array<std::int32_t, 3> residual{};
+  float size = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const int axis = around.axis[i];
-    std::int32_t own = wrapped_difference(position[axis], predicted[axis]);
     const std::int32_t sheared = i < 2 ? 0 : around.shear(residual[0], residual[1]);
-    own = code_signed(coder_, residual_[kind][around.scale][i], wrapped_difference(own, sheared));
+    const std::int32_t given = wrapped_difference(position[axis], predicted[axis]);
+    const std::size_t so_far = i == 0                           ? 0
+                               : size < 0.5f * expected.tangent ? 0
+                               : size < 1.5f * expected.tangent ? 1
+                                                                : 2;
+    ResidualModels& models = residual_[kind][i];
+    const std::int32_t own =
+        code_signed(coder_, models.length[i < 2 ? tangent : normal][so_far], models.first_bits,
+                    models.is_negative, wrapped_difference(given, sheared));
     residual[i] = wrapped_sum(own, sheared);
+    if (i < 2) {
+      size = std::max(size, std::abs(static_cast<float>(own)));
+    } else {
+      miss_[v] = {size, std::abs(static_cast<float>(own))};
+    }
   }
   Vec3i result;
   for (std::size_t i = 0; i < 3; ++i) {

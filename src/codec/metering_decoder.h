@@ -14,7 +14,8 @@ class MeteringDecoder {
   MeteringDecoder(std::span<const std::byte> bytes, StreamBits& bits)
       : decoder_(bytes), bits_(bits) {}
 
-  bool bit(AdaptiveBit& model, bool) {
+  template <class Model>
+  bool bit(Model& model, bool) {
     const double one = model.probability() / double(1u << kProbabilityBits);
     const bool bit = decoder_.bit(model, false);
     add(-std::log2(bit ? one : 1 - one));

@@ -42,6 +42,17 @@ Vec3d weighed(const Surroundings& s, const Weights& w, bool second) {
 
 }  // namespace
 
+std::size_t half_octave(float x) {
+  const std::uint32_t whole = static_cast<std::uint32_t>(std::clamp(4 * x, 0.0f, 4e9f));
+  const int length = std::min(static_cast<int>(std::bit_width(whole)), 15);
+  return std::size_t(2 * length) + (length > 1 ? whole >> (length - 2) & 1 : 0);
+}
+
+double magnitude_of(std::size_t half_octave) {
+  const double whole = double(std::uint64_t(1) << half_octave / 2) * 0.5;
+  return 0.25 * whole * (half_octave % 2 ? 1.75 : 1.25);
+}
+
 Vec3i Surroundings::beside_parent(bool second) const {
   return moved(parent, weighed(*this, kBesideParent, second));
 }
@@ -97,11 +108,7 @@ Surroundings surroundings(const PatchMesh& mesh, std::span<const std::uint32_t> 
   }
   if (third_count > 0) result.thirds = thirds * (1 / third_count);
   result.normal = normalized(normal);
-  if (size_count > 0) size /= size_count;
-  const std::uint32_t whole = static_cast<std::uint32_t>(std::min(size, 4e9));
-  const int length = std::min(static_cast<int>(std::bit_width(whole)), 15);
-  const std::uint32_t half = length > 1 ? whole >> (length - 2) & 1 : 0;
-  result.scale = std::size_t(2 * length) + half;
+  if (size_count > 0) result.mean_edge = size / size_count;
 
   int main = 0;
   for (int k = 1; k < 3; ++k) {

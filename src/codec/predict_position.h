@@ -18,13 +18,18 @@ inline std::int32_t wrapped_difference(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
 }
 
+// 2 log2(x), whole, from 0 to 31.
+std::size_t half_octave(float x);
+// About the x that gave it, > 0.
+double magnitude_of(std::size_t half_octave);
+
 // A split's surroundings, seen from the parent's place.
 struct Surroundings {
   Vec3i parent{};
   std::array<Vec3d, 2> middle;       // of each child's neighbours without the other child
   Vec3d thirds{};                    // the middle of the vertices that both have
   Vec3d normal{};                    // of the ring, of unit length; or zero
-  std::size_t scale = 0;             // of the edges: half octaves, below 32
+  double mean_edge = 0;              // distance of the neighbours: |x| + |y| + |z|
   std::array<int, 3> axis{0, 1, 2};  // the last one nearest to the normal
   std::array<double, 2> slope{};     // of the tangent plane over the first two axes
 

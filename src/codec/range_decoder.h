@@ -21,7 +21,8 @@ class RangeDecoder {
   }
 
   // The second argument is for the encoder.
-  bool bit(AdaptiveBit& model, bool) {
+  template <class Model>
+  bool bit(Model& model, bool) {
     const std::uint32_t bound = (range_ >> kProbabilityBits) * model.probability();
     const bool bit = code_ < bound;
     if (bit) {

@@ -16,7 +16,9 @@ class RangeEncoder {
  public:
   static constexpr bool kEncodes = true;
 
-  bool bit(AdaptiveBit& model, bool bit) {
+  // Of an AdaptiveBit or a MixedBit.
+  template <class Model>
+  bool bit(Model& model, bool bit) {
     const std::uint32_t bound = (range_ >> kProbabilityBits) * model.probability();
     if (bit) {
       range_ = bound;

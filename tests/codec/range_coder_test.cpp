@@ -1,4 +1,5 @@
 #include "codec/coded_numbers.h"
+#include "codec/mixed_bit.h"
 #include "codec/range_decoder.h"
 #include "codec/range_encoder.h"
 
@@ -86,6 +87,32 @@ TEST_CASE("bits cost what their probability says") {
   const double entropy = -0.02 * std::log2(0.02) - 0.98 * std::log2(0.98);
   CHECK(bits < 1.06 * entropy);
   CHECK(bits > 0.95 * entropy);
+}
+
+TEST_CASE("stretching undoes squashing") {
+  for (std::int32_t x = -1500; x <= 1500; ++x) {
+    CHECK(std::abs(squash(x) - 4096 / (1 + std::exp(-x / 256.0))) < 16);
+    CHECK(squash(stretch(std::uint32_t(squash(x)))) == squash(x));
+  }
+}
+
+TEST_CASE("a mixed bit trusts the input that knows") {
+  // One input sees the bit's own context, the other noise.
+  std::mt19937 random(2);
+  RangeEncoder mixed, alone;
+  std::array<AdaptiveBit, 2> knows, single;
+  std::array<AdaptiveBit, 16> noise;
+  MixingWeights<2> weights;
+  constexpr int kCount = 20'000;
+  for (int i = 0; i < kCount; ++i) {
+    const std::size_t context = random() % 2;
+    const bool bit = (random() % 20 == 0) != (context == 1);
+    MixedBit<2> model({&knows[context], &noise[random() % 16]}, weights);
+    mixed.bit(model, bit);
+    alone.bit(single[context], bit);
+  }
+  const double size = double(mixed.finish().size()), best = double(alone.finish().size());
+  CHECK(size < 1.04 * best);
 }
 
 TEST_CASE("a range decoder knows that its bytes ended long ago") {
