@@ -26,28 +26,46 @@ std::array<std::uint32_t, 3> BlockCoder<Coder, Guide>::neighbours_before(std::ui
   return result;
 }
 
-// One of them, or kNone.
-template <class Coder, class Guide>
-std::uint32_t BlockCoder<Coder, Guide>::neighbour_before(std::uint32_t t) const {
-  const std::array<std::uint32_t, 3> beside = neighbours_before(t);
-  return *std::min_element(beside.begin(), beside.end());
-}
-
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_categories() {
   mesh_.category.resize(mesh_.triangles.size(), 0);
-  if (coding_.category_count < 2) return;
+  const std::uint32_t materials = coding_.material_count, parts = coding_.part_count;
+  if (materials < 2 && parts < 2) return;
+  std::uint32_t last = 0;
   for (std::uint32_t t = coarse_triangles_; t < mesh_.triangles.size(); ++t) {
-    const std::uint32_t beside = neighbour_before(t);
-    const std::uint32_t expected = beside == kNone ? 0 : mesh_.category[beside];
     std::uint32_t category = 0;
     if constexpr (Coder::kEncodes) category = guide_.category(t);
-    if (coder_.bit(same_category_[beside == kNone], category == expected)) {
-      category = expected;
+    const std::array<std::uint32_t, 3> beside = neighbours_before(t);
+    const std::uint32_t nearest = *std::min_element(beside.begin(), beside.end());
+    const std::uint32_t expected = nearest == kNone ? last : mesh_.category[nearest];
+    std::uint32_t part = category / materials, material = category % materials;
+    if (coder_.bit(same_part_[nearest == kNone], part == expected / materials)) {
+      part = expected / materials;
     } else {
-      category = code_below(coding_.category_count, category);
+      part = code_below(parts, part);
     }
-    mesh_.category[t] = category;
+    // What the neighbours are, as far as one word goes.
+    const std::uint32_t expected_material = expected % materials;
+    std::size_t agreeing = 0, known = 0;
+    for (const std::uint32_t other : beside) {
+      if (other == kNone) continue;
+      ++known;
+      agreeing += mesh_.category[other] % materials == expected_material;
+    }
+    if (coder_.bit(same_material_[std::min<std::size_t>(expected_material, 7)]
+                                 [agreeing < known ? 3 : std::min<std::size_t>(known, 2)],
+                   material == expected_material)) {
+      material = expected_material;
+    } else if (materials <= 64) {
+      material = code_tree(coder_, other_material_, material);
+      if (material >= materials) {
+        corrupt_ = true;
+        material = 0;
+      }
+    } else {
+      material = code_below(materials, material);
+    }
+    mesh_.category[t] = last = part * materials + material;
   }
 }
 

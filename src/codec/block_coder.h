@@ -171,7 +171,6 @@ class BlockCoder {
     std::array<double, 3> low{}, high{};
   };
   LabelBox* nearest_box(const std::array<double, 3>& place, double& distance);
-  std::uint32_t neighbour_before(std::uint32_t t) const;
   std::array<std::uint32_t, 3> neighbours_before(std::uint32_t t) const;
   bool is_new(std::uint32_t t) const { return t >= coarse_triangles_; }
   bool was_split(std::uint32_t v) const { return v >= coarse_vertices_ || generation_[v] > 0; }
@@ -240,7 +239,9 @@ class BlockCoder {
     AdaptiveBit is_negative;
   };
   std::array<std::array<ResidualModels, 3>, 3> residual_;
-  std::array<AdaptiveBit, 2> same_category_;
+  std::array<AdaptiveBit, 2> same_part_;
+  std::array<std::array<AdaptiveBit, 4>, 8> same_material_;
+  TreeModel<6> other_material_;
   AdaptiveBit any_derived_;
   std::array<AdaptiveBit, 2> is_derived_;
   std::array<std::array<AdaptiveBit, 3>, 2> same_label_;

@@ -42,7 +42,7 @@ struct BlockLayer {
 
 struct BlockCoding {
   std::vector<BlockLayer> layers;
-  std::uint32_t category_count = 1;
+  std::uint32_t material_count = 1, part_count = 1;  // category = part * material_count + material
 };
 
 }  // namespace crease::codec

@@ -192,9 +192,9 @@ codec::BlockCoding block_coding(const Mesh& mesh, std::span<const LayerCoding> c
                              .is_raw = codings[l].kind == LayerCoding::Kind::Exact ||
                                        codings[l].kind == LayerCoding::Kind::Sextant});
   }
-  coding.category_count =
-      static_cast<std::uint32_t>(std::max<std::size_t>(1, mesh.materials.size()) *
-                                 std::max<std::size_t>(1, mesh.parts.size()));
+  coding.material_count =
+      std::max<std::uint32_t>(1, static_cast<std::uint32_t>(mesh.materials.size()));
+  coding.part_count = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(mesh.parts.size()));
   return coding;
 }
 
