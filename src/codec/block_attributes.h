@@ -26,6 +26,30 @@ std::array<std::uint32_t, 3> BlockCoder<Coder, Guide>::neighbours_before(std::ui
   return result;
 }
 
+// A triangle's normal, twice its area long.
+template <class Coder, class Guide>
+Vec3d BlockCoder<Coder, Guide>::twice_area(std::uint32_t t) const {
+  const Corners& corners = mesh_.triangles[t];
+  const auto step = [&](std::size_t c) {
+    const Vec3i &p = mesh_.positions[corners[c]], &from = mesh_.positions[corners[0]];
+    return Vec3d{double(p.x) - from.x, double(p.y) - from.y, double(p.z) - from.z};
+  };
+  return cross(step(1), step(2));
+}
+
+// By how much two triangles are turned against each other: not, a little, much, very much.
+template <class Coder, class Guide>
+std::size_t BlockCoder<Coder, Guide>::bend(std::uint32_t t, std::uint32_t other) const {
+  constexpr double kCosine2[] = {0.9999, 0.95, 0.5};
+  const Vec3d a = twice_area(t), b = twice_area(other);
+  const double cosine = dot(a, b), lengths2 = dot(a, a) * dot(b, b);
+  if (cosine < 0) return 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (cosine * cosine >= kCosine2[i] * lengths2) return i;
+  }
+  return 3;
+}
+
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_categories() {
   mesh_.category.resize(mesh_.triangles.size(), 0);
@@ -141,7 +165,11 @@ void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<
       const CodedValue first = value_of(corners_[0]);
       for (std::uint32_t corner : corners_) uniform = uniform && value_of(corner) == first;
     }
-    if (coder_.bit(models.is_uniform[known_values], uniform)) {
+    std::size_t bends = 0;
+    for (std::size_t i = 1; i < std::min(corners_.size(), kLargestRing); ++i) {
+      bends = std::max(bends, bend(corners_[i - 1] / 3, corners_[i] / 3));
+    }
+    if (coder_.bit(models.is_uniform[known_values][bends], uniform)) {
       CodedValue value = known;
       if (known_values == 0) {
         CodedValue predicted{};
@@ -165,26 +193,29 @@ void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<
     const CodedValue value = value_of(corner);
     tried_.clear();
     bool found = false;
-    const auto try_value = [&](std::size_t kind, const CodedValue& candidate) {
+    const auto try_value = [&](std::size_t kind, std::size_t bends, const CodedValue& candidate) {
       if (found || std::find(tried_.begin(), tried_.end(), candidate) != tried_.end()) return;
-      if (coder_.bit(models.same_as[kind][tried_.size() > 0], candidate == value)) {
+      if (coder_.bit(models.same_as[kind][tried_.size() > 0][bends], candidate == value)) {
         values[corner] = candidate;
         found = true;
       }
       tried_.push_back(candidate);
     };
     for (std::uint32_t c = 0; c < 3; ++c) {
-      if (3 * t + c != corner && is_known_[3 * t + c]) try_value(0, values[3 * t + c]);
+      if (3 * t + c != corner && is_known_[3 * t + c]) try_value(0, 0, values[3 * t + c]);
     }
     const std::size_t last = corners_.size() - 1;
     const std::uint32_t previous = corners_[i > 0 ? i - 1 : last];
     const std::uint32_t next = corners_[i < last ? i + 1 : 0];
-    if (previous != corner && is_known_[previous]) try_value(1, values[previous]);
-    if (next != corner && is_known_[next]) try_value(1, values[next]);
-    if (had_value(corner)) try_value(2, values[corner]);
+    for (const std::uint32_t beside : {previous, next}) {
+      if (beside == corner || !is_known_[beside]) continue;
+      try_value(1, bend(t, beside / 3), values[beside]);
+    }
+    if (had_value(corner)) try_value(2, 0, values[corner]);
     for (std::size_t k = 0; k < std::min(corners_.size(), kLargestRing) && !found; ++k) {
       if (tried_.size() >= kMostTried) break;
-      if (is_known_[corners_[k]]) try_value(3, values[corners_[k]]);
+      if (!is_known_[corners_[k]]) continue;
+      try_value(3, bend(t, corners_[k] / 3), values[corners_[k]]);
     }
     if (!found) {
       values[corner] =
@@ -201,14 +232,7 @@ CodedValue BlockCoder<Coder, Guide>::expected_value(const BlockLayer& layer,
                                                     const CodedValue& near) const {
   if (layer.octahedral_bits == 0) return near;
   Vec3d normal{};
-  for (const std::uint32_t corner : corners) {
-    const Corners& t = mesh_.triangles[corner / 3];
-    const auto step = [&](std::size_t c) {
-      const Vec3i &p = mesh_.positions[t[c]], &from = mesh_.positions[t[0]];
-      return Vec3d{double(p.x) - from.x, double(p.y) - from.y, double(p.z) - from.z};
-    };
-    normal += cross(step(1), step(2));
-  }
+  for (const std::uint32_t corner : corners) normal += twice_area(corner / 3);
   if (normal == Vec3d{}) return near;
   return coded(OctahedralCoding(layer.octahedral_bits).encode(normal));
 }

@@ -150,11 +150,14 @@ class BlockCoder {
                       const Surroundings& around, std::size_t kind);
 
   // What triangles and corners have at the fine end.
+  static constexpr std::size_t kBends = 4;
   struct LayerModels {
-    std::array<AdaptiveBit, 3> is_uniform;
-    std::array<std::array<AdaptiveBit, 2>, 4> same_as;
+    std::array<std::array<AdaptiveBit, kBends>, 3> is_uniform;
+    std::array<std::array<std::array<AdaptiveBit, kBends>, 2>, 4> same_as;
     std::array<SignedModel, 4> residual;
   };
+  Vec3d twice_area(std::uint32_t t) const;
+  std::size_t bend(std::uint32_t t, std::uint32_t other) const;
   void code_categories();
   void code_derived();
   void code_layer(const BlockLayer& layer, std::vector<CodedValue>& values, std::size_t l);
