@@ -30,13 +30,15 @@ float raised(float base, double own) {
   return static_cast<float>(double(base) + own);
 }
 
-// Stable. Costs are not negative, so their bits are in their order; eleven bits at a time.
+// By cost, then in the order of the pairs, in which they come. Costs are not negative, so their
+// bits are in their order; eleven bits at a time.
 template <class Ordered>
 void sort_by_cost(std::vector<Ordered>& entries, std::vector<Ordered>& scratch) {
   constexpr std::size_t kFew = 1000;  // the tables below would cost more than they save
   if (entries.size() < kFew) {
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const Ordered& x, const Ordered& y) { return x.cost < y.cost; });
+    std::sort(entries.begin(), entries.end(), [](const Ordered& x, const Ordered& y) {
+      return x.cost != y.cost ? x.cost < y.cost : x.pair < y.pair;
+    });
     return;
   }
   constexpr std::uint32_t kBits = 11, kDigits = 1u << kBits;
