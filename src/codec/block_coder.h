@@ -98,7 +98,7 @@ class BlockCoder {
  private:
   // An index below `count`.
   std::uint32_t code_below(std::uint32_t count, std::uint32_t value) {
-    const std::uint32_t index = code_index(coder_, count, value);
+    const std::uint32_t index = count > 0 ? code_index(coder_, count, value) : 0;
     if (index < count) return index;
     corrupt_ = true;
     return 0;
