@@ -1,6 +1,6 @@
 // A block, written once for both directions: with a RangeEncoder and a guide that knows the answers
-// it writes, with a RangeDecoder it finds them. What is decided in which order is docs/format.md's
-// chapter on blocks.
+// it writes, with a RangeDecoder it finds them. What is decided in which order stands in
+// docs/format-block.md.
 //
 //   BlockCoder coder(range_decoder, no_guide, coding, limits, coarse_mesh);
 //   if (coder.run()) use(coder.take_end(block, names), coder.take_splits());

@@ -10,6 +10,9 @@ namespace crease::codec {
 
 template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::code_roots() {
+  if (mesh_.positions.size() > limits_.vertices || coarse_triangles_ > limits_.triangles) {
+    return false;
+  }
   std::uint32_t roots = 0, triangles = 0;
   if constexpr (Coder::kEncodes) {
     roots = static_cast<std::uint32_t>(guide_.roots().size());
@@ -17,7 +20,8 @@ bool BlockCoder<Coder, Guide>::code_roots() {
   }
   roots = code_magnitude(coder_, root_count_, roots);
   triangles = code_magnitude(coder_, root_triangle_count_, triangles);
-  if (roots > limits_.vertices || triangles > limits_.triangles) return false;
+  if (roots > limits_.vertices - coarse_vertices_) return false;
+  if (triangles > limits_.triangles - coarse_triangles_) return false;
   Vec3i last = mesh_.positions.empty() ? Vec3i{} : mesh_.positions[0];
   for (std::uint32_t i = 0; i < roots; ++i) {
     Vec3i position{};

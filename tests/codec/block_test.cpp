@@ -192,6 +192,17 @@ TEST_CASE("harmed blocks decode to an error or to a block within the limits") {
     }
     const std::vector<std::byte>& good = blocks[block].bytes;
     CHECK(decode(block, good, start));
+    // Limits below what there is are kept as well, down to less than the coarse end has.
+    for (std::uint32_t less = 1; less <= blocks[block].limits.vertices; ++less) {
+      const codec::BlockLimits limits{blocks[block].limits.vertices - less,
+                                      blocks[block].limits.triangles};
+      CHECK(!codec::decode_block(good, std::uint32_t(block), coding, limits, start).ok());
+    }
+    for (std::uint32_t less = 1; less <= blocks[block].limits.triangles; ++less) {
+      const codec::BlockLimits limits{blocks[block].limits.vertices,
+                                      blocks[block].limits.triangles - less};
+      CHECK(!codec::decode_block(good, std::uint32_t(block), coding, limits, start).ok());
+    }
     std::size_t refused = 0;
     for (std::size_t length = 0; length < good.size(); ++length) {
       refused += !decode(block, std::span(good).first(length), start);
@@ -203,6 +214,27 @@ TEST_CASE("harmed blocks decode to an error or to a block within the limits") {
       decode(block, bad, start);
     }
   }
+}
+
+TEST_CASE("what a block starts from counts against its limits") {
+  // A block without splits: nothing but what it starts from is there.
+  codec::CoarseEnd start;
+  codec::BlockPlan plan;
+  plan.fine.positions = {{0, 0, 0}, {5, 0, 0}, {0, 5, 0}, {5, 5, 0}};
+  plan.fine.triangles = {{0, 1, 2}, {1, 3, 2}};
+  plan.fine.category = {0, 0};
+  plan.fine.derived = {0, 0};
+  plan.labels = {0, 0};
+  start.mesh = plan.fine;
+  start.names = {{0, 0}, {0, 1}, {0, 2}, {0, 3}};
+  const std::vector<std::uint32_t> triangles{0, 1}, vertices{0, 1, 2, 3};
+  const codec::EncodedBlock block = codec::encode_block(plan, 1, {}, start, triangles, vertices);
+  const auto decodes = [&](const codec::BlockLimits& limits) {
+    return codec::decode_block(block.bytes, 1, {}, limits, start).ok();
+  };
+  CHECK(decodes({4, 2}));
+  CHECK(!decodes({3, 2}));
+  CHECK(!decodes({4, 1}));
 }
 
 }  // namespace crease
