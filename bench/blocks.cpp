@@ -73,8 +73,8 @@ int measure(const std::string& path, const Options& options) {
         bytes += block.bytes.size();
         const double before = cpu_seconds();
         Result<codec::DecodedBlock> decoded =
-            codec::decode_block(block.bytes, static_cast<std::uint32_t>(next), coding, block.limits,
-                                std::move(start), meter ? &bits : nullptr);
+            codec::decode_block(block.bytes, static_cast<std::uint32_t>(next), coding,
+                                block.limits(), std::move(start), meter ? &bits : nullptr);
         if (!meter) decoding += cpu_seconds() - before;
         if (!decoded.ok()) {
           std::fprintf(stderr, "%s: %s\n", path.c_str(), decoded.failure().message.c_str());

@@ -19,6 +19,7 @@ set(CREASE_LAYER_render    base mesh runtime)
 
 # Which folder a public header belongs to.
 set(CREASE_HEADERS_base      vec.h ids.h result.h progress.h)
+set(CREASE_HEADERS_parallel  threads.h)
 set(CREASE_HEADERS_mesh      mesh.h shading.h)
 set(CREASE_HEADERS_hierarchy contraction.h progressive_arrays.h compact_ranges.h packed_indices.h
     parent_maps.h split_bounds.h mesh_hierarchy.h)
@@ -26,10 +27,10 @@ set(CREASE_HEADERS_io        import.h export.h)
 set(CREASE_HEADERS_generate  generate.h)
 set(CREASE_HEADERS_measure   compare.h)
 set(CREASE_HEADERS_simplify  simplify.h)
-set(CREASE_HEADERS_codec     file.h byte_source.h block_file.h)
+set(CREASE_HEADERS_codec     file.h byte_source.h block_file.h decode_model.h)
 set(CREASE_HEADERS_pipeline  attribute_precision.h build.h build_hierarchy.h)
 set(CREASE_HEADERS_runtime   camera.h draw_list.h draw_changes.h progressive_mesh.h
-                           adaptive_mesh.h)
+                           adaptive_mesh.h block_view.h)
 set(CREASE_HEADERS_render    render.h)
 
 # What goes into crease_runtime. These are compiled without exceptions and RTTI and need no library.

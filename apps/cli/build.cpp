@@ -86,8 +86,6 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
 
   const std::size_t bytes = built->file_bytes.size();
   const double bits = 8.0 * static_cast<double>(bytes) / static_cast<double>(vertices);
-  std::size_t blocks = 0;
-  for (const BandStatistics& band : built->statistics.bands) blocks += band.patches;
   Report report;
   report.json = {{"output", options.output.string()},
                  {"triangles", triangles},
@@ -99,7 +97,7 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
                  {"bytes", bytes},
                  {"bits_per_vertex", bits},
                  {"bands", built->statistics.bands.size()},
-                 {"blocks", blocks},
+                 {"blocks", built->blocks},
                  {"snapped", snapped_json(built->snapped)},
                  {"import", to_json(imported->report)}};
   report.text = options.output.string() + ": " + grouped(triangles) + " triangles, " +

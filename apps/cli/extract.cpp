@@ -10,6 +10,8 @@
 #include "crease/export.h"
 #include "crease/progressive_mesh.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,22 +57,61 @@ std::string in_words(const std::optional<Comparison>& measured) {
          in_degrees(measured->normal_deviation.mean);
 }
 
-Result<Report> extract_one(const ExtractArguments& options, ProgressiveMesh& mesh,
+// How many triangles are asked for, where it is a number of them.
+std::optional<std::size_t> triangles_wanted(const ExtractArguments& options, std::size_t full) {
+  const LevelOptions& level = options.level;
+  if (level.triangles) return level.triangles;
+  if (!level.ratio || options.chain.levels > 0) return std::nullopt;
+  return std::max<std::size_t>(
+      1, static_cast<std::size_t>(std::llround(*level.ratio * static_cast<double>(full))));
+}
+
+// Of what was decoded, and of the finest mesh that it goes down to.
+LevelError largest(const LevelError& a, const LevelError& b) {
+  return {std::max(a.surface, b.surface), std::max(a.line, b.line), std::max(a.degrees, b.degrees),
+          std::max(a.texture, b.texture)};
+}
+
+Json read_json(const ModelFile& file, const Model& model) {
+  return {{"full_triangles", file.triangle_count()},
+          {"bytes_read", model.bytes_read},
+          {"blocks_read", model.decoded.blocks.size()},
+          {"file_bytes", file.blocks().head().file_bytes}};
+}
+
+Result<Comparison> measure(const ModelFile& file, const Mesh& level, const LevelOptions& options,
+                           const Common& common) {
+  const Result<Model> all = file.load();
+  if (!all.ok()) return all.failure();
+  CompareOptions compare;
+  compare.samples = options.samples;
+  compare.threads = common.threads;
+  Comparison measured = compare_meshes(all->decoded.mesh, level, compare);
+  if (interrupted()) return interrupted_failure();
+  return measured;
+}
+
+// Reads the blocks of the level. To measure what it is off by takes all of them.
+Result<Report> extract_one(const ExtractArguments& options, const ModelFile& file,
                            const Common& common) {
   const bool measures = options.level.samples > 0;
-  const Mesh full = measures ? mesh.extract() : Mesh{};
-  Result<Chosen> chosen = choose_level(mesh, full, options.level, common);
+  LevelOptions level_options = options.level;
+  level_options.triangles = triangles_wanted(options, file.triangle_count());
+  level_options.ratio = std::nullopt;
+  const Result<Model> model = file.load({.triangles = level_options.triangles});
+  if (!model.ok()) return model.failure();
+  ProgressiveMesh mesh = model->levels();
+  const Mesh full = level_options.error ? mesh.extract() : Mesh{};
+  Result<Chosen> chosen = choose_level(mesh, full, level_options, common);
   if (!chosen.ok()) return chosen.failure();
 
   const Mesh level = mesh.extract();
   if (interrupted()) return interrupted_failure();
   if (measures && !chosen->measured) {
-    CompareOptions compare;
-    compare.samples = options.level.samples;
-    compare.threads = common.threads;
-    chosen->measured = compare_meshes(full, level, compare);
+    Result<Comparison> measured = measure(file, level, options.level, common);
+    if (!measured.ok()) return measured.failure();
+    chosen->measured = *measured;
   }
-  if (interrupted()) return interrupted_failure();
   const bool refused = options.strict && !chosen->target_met;
   if (!refused) {
     const Status written = export_mesh(level, options.output);
@@ -83,13 +124,13 @@ Result<Report> extract_one(const ExtractArguments& options, ProgressiveMesh& mes
       {"output", refused ? Json(nullptr) : Json(options.output.string())},
       {"triangles", level.triangle_count()},
       {"vertices", level.vertex_count()},
-      {"full_triangles", mesh.full_triangle_count()},
       {"stopped_by", name_of(chosen->stopped_by)},
       {"target_met", chosen->target_met},
-      {"error", to_json(mesh.error())},
+      {"error", to_json(largest(mesh.error(), model->decoded.error))},
       {"error_measured", chosen->measured ? measured_json(*chosen->measured) : Json(nullptr)}};
+  report.json.update(read_json(file, *model));
   report.text = options.output.string() + ": " + grouped(level.triangle_count()) + " of " +
-                grouped(mesh.full_triangle_count()) + " triangles, stopped by " +
+                grouped(file.triangle_count()) + " triangles, stopped by " +
                 name_of(chosen->stopped_by) + in_words(chosen->measured);
   if (!chosen->target_met) {
     if (refused) {
@@ -104,21 +145,19 @@ Result<Report> extract_one(const ExtractArguments& options, ProgressiveMesh& mes
 }
 
 // Fine where the camera looks: what it sees is off by at most camera.pixels.
-Result<Report> extract_view(const ExtractArguments& options, const Common& common) {
+Result<Report> extract_view(const ExtractArguments& options, const ModelFile& file,
+                            const Common& common) {
   const Result<Camera> camera = read_camera(options.view);
   if (!camera.ok()) return camera.failure();
-  Result<ViewedModel> model = load_viewed(options.file, options.read, common);
+  Result<ViewedModel> model = load_viewed(file, *camera);
   if (!model.ok()) return model.failure();
-  model->mesh.update({.camera = *camera});
 
   const Mesh seen = model->mesh.extract();
-  const std::size_t full_triangles = model->full.triangle_count();
   std::optional<Comparison> measured;
   if (options.level.samples > 0 && seen.triangle_count() > 0) {
-    CompareOptions compare;
-    compare.samples = options.level.samples;
-    compare.threads = common.threads;
-    measured = compare_meshes(model->full, seen, compare);
+    const Result<Comparison> comparison = measure(file, seen, options.level, common);
+    if (!comparison.ok()) return comparison.failure();
+    measured = *comparison;
   }
   if (interrupted()) return interrupted_failure();
   const Status written = export_mesh(seen, options.output);
@@ -129,15 +168,29 @@ Result<Report> extract_view(const ExtractArguments& options, const Common& commo
                  {"output", options.output.string()},
                  {"triangles", seen.triangle_count()},
                  {"vertices", seen.vertex_count()},
-                 {"full_triangles", full_triangles},
+                 {"full_triangles", file.triangle_count()},
                  {"stopped_by", "view"},
                  {"target_met", true},
-                 {"error", to_json(model->mesh.error())},
+                 {"error", to_json(largest(model->mesh.error(), model->error))},
                  {"error_measured", measured ? measured_json(*measured) : Json(nullptr)},
-                 {"bytes_read", model->info.bytes},
-                 {"blocks_read", block_count(model->info)}};
+                 {"bytes_read", model->bytes_read},
+                 {"blocks_read", model->blocks_read},
+                 {"file_bytes", file.blocks().head().file_bytes}};
   report.text = options.output.string() + ": " + grouped(seen.triangle_count()) + " of " +
-                grouped(full_triangles) + " triangles for the view" + in_words(measured);
+                grouped(file.triangle_count()) + " triangles for the view" + in_words(measured);
+  return report;
+}
+
+Result<Report> extract_levels(const ExtractArguments& options, const ModelFile& file,
+                              const Common& common) {
+  const Result<Model> model = file.load();
+  if (!model.ok()) return model.failure();
+  ProgressiveMesh mesh = model->levels();
+  Result<Report> report =
+      extract_chain(mesh, options.output, options.chain, options.level.samples, common);
+  if (!report.ok()) return report;
+  report->json["asked"] = asked_json(options);
+  report->json.update(read_json(file, *model));
   return report;
 }
 
@@ -156,28 +209,15 @@ Result<Report> run_extract(const ExtractArguments& options, const Common& common
   }
   const Status writable = check_output(options.output, is_chain);
   if (!writable.ok()) return writable.failure();
-  if (!options.view.empty()) {
-    Result<Report> report = extract_view(options, common);
-    if (!report.ok()) return report;
-    report->json["seconds"] = watch.seconds();
-    report->json["peak_memory"] = peak_memory();
-    return report;
-  }
-
-  Result<Model> model = load_model(options.file, options.read, common);
-  if (!model.ok()) return model.failure();
-  ProgressiveMesh mesh(model->file.arrays);
-  if (mesh.full_triangle_count() == 0) {
+  const Result<ModelFile> file = open_model(options.file, options.read, common);
+  if (!file.ok()) return file.failure();
+  if (file->triangle_count() == 0) {
     return fail(Error::NoTriangles, options.file.string() + ": no triangles");
   }
-  Result<Report> report =
-      is_chain ? extract_chain(mesh, options.output, options.chain, options.level.samples, common)
-               : extract_one(options, mesh, common);
+  Result<Report> report = !options.view.empty() ? extract_view(options, *file, common)
+                          : is_chain            ? extract_levels(options, *file, common)
+                                                : extract_one(options, *file, common);
   if (!report.ok()) return report;
-  if (is_chain) report->json["asked"] = asked_json(options);
-  // This first format is read whole.
-  report->json["bytes_read"] = model->file.info.bytes;
-  report->json["blocks_read"] = block_count(model->file.info);
   report->json["seconds"] = watch.seconds();
   report->json["peak_memory"] = peak_memory();
   return report;

@@ -4,7 +4,6 @@
 #include "cli/model.h"
 #include "cli/report.h"
 #include "cli/text.h"
-#include "crease/progressive_mesh.h"
 #include "crease/shading.h"
 
 #include <algorithm>
@@ -112,51 +111,113 @@ std::string mesh_text(const Json& json) {
   return text;
 }
 
-Report file_report(const CreaseFile& file) {
-  Report report;
-  const Mesh mesh = ProgressiveMesh(file.arrays).extract();
-  report.json = mesh_json(mesh);
-  const BitsPerVertex bits = bits_per_vertex(file.info, mesh.vertex_count());
-  const LinearBytes linear = linear_bytes(*file.arrays);
-  Json bands = Json::array(), sections = Json::array();
-  for (const FileInfo::Band& band : file.info.bands) bands.push_back(to_json(band));
-  for (const FileInfo::Section& section : file.info.sections) {
-    sections.push_back(
-        {{"name", section.name}, {"offset", section.offset}, {"bytes", section.bytes}});
+struct BitsPerVertex {
+  double total = 0, connectivity = 0, positions = 0, attributes = 0;
+};
+
+BitsPerVertex per_vertex(const StreamBits& bits, std::size_t vertices) {
+  const double share = vertices > 0 ? 1 / static_cast<double>(vertices) : 0;
+  BitsPerVertex result;
+  result.connectivity = share * (bits.roots + bits.flags + bits.shapes + bits.labels);
+  result.positions = share * bits.positions;
+  result.attributes = share * (bits.categories + bits.values);
+  result.total = result.connectivity + result.positions + result.attributes;
+  return result;
+}
+
+Json bits_json(const BitsPerVertex& bits) {
+  return {{"total", bits.total},
+          {"connectivity", bits.connectivity},
+          {"positions", bits.positions},
+          {"attributes", bits.attributes}};
+}
+
+Json streams_json(const StreamBits& bits) {
+  return {{"roots", bits.roots},         {"flags", bits.flags},           {"shapes", bits.shapes},
+          {"positions", bits.positions}, {"categories", bits.categories}, {"values", bits.values},
+          {"labels", bits.labels}};
+}
+
+StreamBits sum_of(const std::vector<StreamBits>& all) {
+  StreamBits sum;
+  for (const StreamBits& bits : all) {
+    sum.roots += bits.roots;
+    sum.flags += bits.flags;
+    sum.shapes += bits.shapes;
+    sum.positions += bits.positions;
+    sum.categories += bits.categories;
+    sum.values += bits.values;
+    sum.labels += bits.labels;
   }
+  return sum;
+}
+
+// Finest first; the base, which no band holds, is on its own.
+Json bands_json(const ModelFacts& facts, const std::vector<StreamBits>& bits) {
+  Json bands = Json::array();
+  for (std::size_t b = 0; b < facts.bands.size(); ++b) {
+    const BandFacts& band = facts.bands[b];
+    bands.push_back({{"patches", band.patches},
+                     {"contractions", band.contractions},
+                     {"triangles_after", band.triangles_after},
+                     {"surface_error", band.error.surface},
+                     {"error", to_json(band.error)},
+                     {"bits", streams_json(bits[b])}});
+  }
+  return bands;
+}
+
+std::string bits_text(const char* what, const BitsPerVertex& bits) {
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "%s%.2f bits a vertex: connectivity %.2f, positions %.2f, attributes %.2f", what,
+                bits.total, bits.connectivity, bits.positions, bits.attributes);
+  return line;
+}
+
+Report file_report(const ModelFile& file, const DecodedModel& model) {
+  Report report;
+  const Mesh& mesh = model.mesh;
+  const ModelFacts& facts = file.blocks().facts();
+  const std::uint64_t bytes = file.blocks().head().file_bytes;
+  report.json = mesh_json(mesh);
+  const StreamBits sum = sum_of(model.bits);
+  BitsPerVertex bits = per_vertex(sum, mesh.vertex_count());
+  // Head, directory and checksums among it.
+  bits.total = mesh.vertex_count() > 0
+                   ? 8.0 * static_cast<double>(bytes) / static_cast<double>(mesh.vertex_count())
+                   : 0;
+  const ProgressiveArraysPtr arrays = build_progressive_arrays(model.mesh, model.sequence);
+  const LinearBytes linear = linear_bytes(*arrays);
   report.json.update(
-      Json{{"version", file.info.version},
-           {"bytes", file.info.bytes},
-           {"bits_per_vertex",
-            {{"total", bits.total},
-             {"connectivity", bits.connectivity},
-             {"positions", bits.positions},
-             {"attributes", bits.attributes}}},
-           {"bands", bands},
-           {"blocks", block_count(file.info)},
-           {"depth", hierarchy_depth(*file.arrays)},
+      Json{{"version", 2},
+           {"bytes", bytes},
+           {"bits_per_vertex", bits_json(bits)},
+           {"streams", streams_json(sum)},
+           {"container_bytes", bytes - model.payload_bytes},
+           {"bands", bands_json(facts, model.bits)},
+           {"base_bits", streams_json(model.bits.back())},
+           {"blocks", file.blocks().block_count()},
+           {"depth", hierarchy_depth(*arrays)},
            {"linear_bytes",
             {{"crease", linear.crease},
              {"wedge", linear.wedge},
              {"replicated", linear.replicated},
              {"records", linear.records}}},
-           {"placement", file.arrays->placement == Placement::Optimal ? "optimal" : "endpoint"},
-           {"precision", file.arrays->grid.step},
-           {"sections", sections}});
+           {"placement", arrays->placement == Placement::Optimal ? "optimal" : "endpoint"},
+           {"precision", arrays->grid.step}});
 
-  char line[160];
-  std::snprintf(line, sizeof line,
-                "%.1f bits a vertex: connectivity %.1f, positions %.1f, attributes %.1f",
-                bits.total, bits.connectivity, bits.positions, bits.attributes);
-  report.text = mesh_text(report.json) + "\n" + in_bytes(file.info.bytes) + ", " + line +
-                "\nrun-time arrays: " + in_bytes(linear.crease) + "; with wedges " +
-                in_bytes(linear.wedge) + ", with replicated vertices " +
+  report.text = mesh_text(report.json) + "\n" + in_bytes(bytes) + ", " + bits_text("", bits) +
+                "; " + in_bytes(bytes - model.payload_bytes) +
+                " of it head and directory\nrun-time arrays: " + in_bytes(linear.crease) +
+                "; with wedges " + in_bytes(linear.wedge) + ", with replicated vertices " +
                 in_bytes(linear.replicated) + "\nlevel records: " + in_bytes(linear.records) +
                 "\nbands:";
-  for (const FileInfo::Band& band : file.info.bands) {
+  for (std::size_t b = 0; b < facts.bands.size(); ++b) {
+    const BandFacts& band = facts.bands[b];
     report.text += "\n  down to " + grouped(band.triangles_after) + " triangles: error " +
-                   in_length(band.surface_error) + ", " + grouped(band.patches) + " patches, " +
-                   grouped(band.contractions) + " contractions";
+                   in_length(band.error.surface) + ", " + grouped(band.patches) + " blocks, " +
+                   bits_text("", per_vertex(model.bits[b], band.contractions)) + " it adds";
   }
   return report;
 }
@@ -164,9 +225,13 @@ Report file_report(const CreaseFile& file) {
 Result<Report> run_info(const InfoArguments& options, const Common& common) {
   Report report;
   if (is_crease_file(options.file)) {
-    const Result<CreaseFile> file = read_crease(options.file, {});
+    const Result<ModelFile> file = open_model(options.file, options.read, common);
     if (!file.ok()) return file.failure();
-    report = file_report(*file);
+    DecodeOptions decode = decode_options(common);
+    decode.count_bits = true;
+    const Result<DecodedModel> model = decode_model(file->blocks(), decode);
+    if (!model.ok()) return model.failure();
+    report = file_report(*file, *model);
   } else {
     Result<ImportOptions> import = import_options(options.read, common);
     if (!import.ok()) return import.failure();

@@ -3,10 +3,9 @@
 #include "cli/console.h"
 #include "cli/report.h"
 #include "cli/text.h"
-#include "crease/progressive_mesh.h"
+#include "crease/block_view.h"
+#include "crease/threads.h"
 
-#include <array>
-#include <fstream>
 #include <utility>
 
 namespace crease::cli {
@@ -124,14 +123,16 @@ Result<BuildOptions> build_options(const ReadOptions& options, const Common& com
 
 bool is_crease_file(const std::filesystem::path& path) {
   if (path.extension() == ".crease") return true;
-  std::array<char, 64> head{};
-  std::ifstream in(path, std::ios::binary);
-  in.read(head.data(), head.size());
-  const auto got = static_cast<std::size_t>(in.gcount());
-  if (got < head.size()) return false;  // a .crease is longer than this
-  const Result<CreaseFile> decoded =
-      decode_crease(std::as_bytes(std::span<const char>(head.data(), got)), {});
-  return decoded.ok() || decoded.failure().error != Error::NotCrease;
+  const Result<BlockFile> file = open_crease(path);
+  if (file.ok()) return true;
+  const Error error = file.failure().error;
+  return error != Error::NotCrease && error != Error::NotFound && error != Error::ReadFailed;
+}
+
+DecodeOptions decode_options(const Common& common) {
+  DecodeOptions options;
+  options.for_each = loop_on_threads(common.threads);
+  return options;
 }
 
 namespace {
@@ -148,12 +149,47 @@ Result<Imported> import_and_report(const std::filesystem::path& path, const Read
 
 }  // namespace
 
-Result<Model> load_model(const std::filesystem::path& path, const ReadOptions& options,
-                         const Common& common) {
+ProgressiveMesh Model::levels() const {
+  return ProgressiveMesh(build_progressive_arrays(decoded.mesh, decoded.sequence));
+}
+
+namespace {
+
+// The coarsest band whose fine end has as many triangles: what is finer is not needed.
+std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles) {
+  std::uint16_t band = 0;
+  while (band < facts.bands.size() && facts.bands[band].triangles_after >= triangles) ++band;
+  return band;
+}
+
+}  // namespace
+
+Result<Model> ModelFile::load(const Detail& detail) const {
+  DecodeOptions options = decode_options(*common_);
+  const ModelFacts& facts = blocks_.facts();
+  if (detail.triangles) options.finest_band = finest_band_for(facts, *detail.triangles);
+  ViewParameters view;
+  if (detail.view) {
+    view.camera = *detail.view;
+    options.wants = [&](const BlockEntry& entry) {
+      return needs_block(entry.facts, facts.grid, view);
+    };
+  }
+  const std::uint64_t before = blocks_.source().bytes_read();
+  Result<DecodedModel> decoded = decode_model(blocks_, options);
+  if (!decoded.ok()) return decoded.failure();
+  Model model{*std::move(decoded), blocks_.source().bytes_read() - before};
+  model.bytes_read += blocks_.head().head_bytes;
+  if (interrupted()) return interrupted_failure();
+  return model;
+}
+
+Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOptions& options,
+                             const Common& common) {
   if (is_crease_file(path)) {
-    Result<CreaseFile> file = read_crease(path, {});
+    Result<BlockFile> file = open_crease(path);
     if (!file.ok()) return file.failure();
-    return Model{.file = *std::move(file), .built_from = std::nullopt};
+    return ModelFile(*std::move(file), {}, common);
   }
   Result<BuildOptions> build = build_options(options, common);
   if (!build.ok()) return build.failure();
@@ -164,17 +200,19 @@ Result<Model> load_model(const std::filesystem::path& path, const ReadOptions& o
   Result<Built> built = build_model(std::move(imported->mesh), *build);
   wipe_progress_bar();
   if (!built.ok()) return built.failure();
-  Result<CreaseFile> file = decode_crease(built->file_bytes, {});
+  Result<BlockFile> file = BlockFile::open(memory_source(built->file_bytes, path.string()));
   if (!file.ok()) return file.failure();
-  return Model{.file = *std::move(file), .built_from = std::move(imported->report)};
+  return ModelFile(*std::move(file), std::move(built->file_bytes), common);
 }
 
 Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& options,
                        const Common& common) {
   if (is_crease_file(path)) {
-    Result<CreaseFile> file = read_crease(path, {});
+    const Result<ModelFile> file = open_model(path, options, common);
     if (!file.ok()) return file.failure();
-    return ProgressiveMesh(file->arrays).extract();
+    Result<Model> model = file->load();
+    if (!model.ok()) return model.failure();
+    return std::move(model->decoded.mesh);
   }
   Result<Imported> imported = import_and_report(path, options, common);
   if (!imported.ok()) return imported.failure();

@@ -1,17 +1,23 @@
 // FILE of the command line: a .crease, or any mesh file.
 //
 //   Result<Mesh> mesh = load_mesh("city.crease", {}, common);      // full resolution of either
-//   Result<Model> model = load_model("city.obj", {}, common);      // levels of either
+//   Result<ModelFile> file = open_model("city.obj", {}, common);   // blocks of either
+//   Result<Model> model = file->load({.triangles = 10'000});       // reads what that needs
 #pragma once
 
 #include "cli/command.h"
 #include "crease/build.h"
+#include "crease/camera.h"
 #include "crease/file.h"
 #include "crease/import.h"
+#include "crease/progressive_mesh.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace crease::cli {
 
@@ -33,16 +39,48 @@ void add_build_options(CLI::App& command, ReadOptions& options);
 Result<ImportOptions> import_options(const ReadOptions& options, const Common& common);
 Result<BuildOptions> build_options(const ReadOptions& options, const Common& common);
 
+// What to decode of a file.
+struct Detail {
+  std::optional<std::size_t> triangles{};  // levels of so many and fewer; none: all
+  std::optional<Camera> view{};            // the blocks that it needs
+};
+
 struct Model {
-  CreaseFile file;
-  std::optional<ImportReport> built_from;  // when FILE was a mesh and was built on the fly
+  DecodedModel decoded;
+  std::uint64_t bytes_read = 0;  // of the file, for this model
+
+  // For levels. Takes the decoded model's memory as well.
+  ProgressiveMesh levels() const;
+};
+
+class ModelFile {
+ public:
+  Result<Model> load(const Detail& detail = {}) const;
+  const BlockFile& blocks() const { return blocks_; }
+  std::size_t triangle_count() const {
+    return static_cast<std::size_t>(blocks_.facts().triangle_count);
+  }
+  bool was_built() const { return !built_.empty(); }  // FILE was a mesh, built on the fly
+
+ private:
+  friend Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOptions& options,
+                                      const Common& common);
+  ModelFile(BlockFile blocks, std::vector<std::byte> built, const Common& common)
+      : built_(std::move(built)), blocks_(std::move(blocks)), common_(&common) {}
+
+  std::vector<std::byte> built_;  // what blocks_ reads, or empty
+  BlockFile blocks_;
+  const Common* common_;
 };
 
 // Told from the first bytes, whatever the name. False as well when the file cannot be read.
 bool is_crease_file(const std::filesystem::path& path);
 
-Result<Model> load_model(const std::filesystem::path& path, const ReadOptions& options,
-                         const Common& common);
+// Threads and limits as the command line has them.
+DecodeOptions decode_options(const Common& common);
+
+Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOptions& options,
+                             const Common& common);
 Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& options,
                        const Common& common);
 

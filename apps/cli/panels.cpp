@@ -120,13 +120,14 @@ void Panels::add_control(const Mesh& level, const std::string& name, const Panel
 
 Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& options,
                         const Common& common) {
-  Result<ViewedModel> model = load_viewed(path, options.read, common);
+  const Result<ModelFile> file = open_model(path, options.read, common);
+  if (!file.ok()) return file.failure();
+  Result<ViewedModel> model = load_viewed(*file, *options.view);
   if (!model.ok()) return model.failure();
-  const std::size_t full = model->full.triangle_count();
+  const std::size_t full = file->triangle_count();
   Source source;
   source.adaptive = std::make_unique<AdaptiveMesh>(std::move(model->mesh));
   AdaptiveMesh& mesh = *source.adaptive;
-  mesh.update({.camera = *options.view});
   if (options.errors_of_positions) source.errors = errors_in_pixels(mesh, *options.view);
   const std::size_t triangles = mesh.triangle_count();
   const std::size_t coarsest = mesh.hierarchy().vertices.coarse_triangles().size();
@@ -159,17 +160,20 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
     return Done{};
   }
 
-  const Result<Model> model = load_model(path, options.read, common);
+  const Result<ModelFile> file = open_model(path, options.read, common);
+  if (!file.ok()) return file.failure();
+  const Result<Model> model = file->load();
   if (!model.ok()) return model.failure();
-  const bool needs_full = one.error.has_value() || options.errors_of_positions;
-  const Mesh full = needs_full ? ProgressiveMesh(model->file.arrays).extract() : Mesh{};
+  const Mesh& full = model->decoded.mesh;
+  const ProgressiveArraysPtr arrays =
+      build_progressive_arrays(model->decoded.mesh, model->decoded.sequence);
   std::vector<LevelOptions> levels;
   for (double ratio : options.ratios) levels.push_back({.ratio = ratio});
   if (levels.empty()) levels.push_back(one);
 
   std::vector<std::pair<std::string, Mesh>> controls;
   for (const LevelOptions& level : levels) {
-    ProgressiveMesh mesh(model->file.arrays);
+    ProgressiveMesh mesh(arrays);
     const Result<Chosen> chosen = choose_level(mesh, full, level, common);
     if (!chosen.ok()) return chosen.failure();
     const std::string name = level_name(mesh);

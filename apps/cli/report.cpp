@@ -50,13 +50,6 @@ Json to_json(const ImportReport& report) {
           {"notes", report.notes}};
 }
 
-Json to_json(const FileInfo::Band& band) {
-  return {{"patches", band.patches},
-          {"contractions", band.contractions},
-          {"triangles_after", band.triangles_after},
-          {"surface_error", band.surface_error}};
-}
-
 Json measured_json(const Comparison& c) {
   const Spread& to = c.distance.a_to_b;
   const Spread& from = c.distance.b_to_a;
@@ -85,30 +78,6 @@ std::string lines_of(const ImportReport& report) {
   say(report.joined_normals, "normals joined with one that is almost the same");
   for (const std::string& note : report.notes) lines += "\n  " + note;
   return lines;
-}
-
-std::size_t block_count(const FileInfo& info) {
-  std::size_t blocks = 0;
-  for (const FileInfo::Band& band : info.bands) blocks += band.patches;
-  return blocks;
-}
-
-BitsPerVertex bits_per_vertex(const FileInfo& info, std::size_t vertex_count) {
-  const double per_byte = vertex_count > 0 ? 8.0 / static_cast<double>(vertex_count) : 0;
-  BitsPerVertex bits;
-  bits.total = per_byte * static_cast<double>(info.bytes);
-  for (const FileInfo::Section& section : info.sections) {
-    const double b = per_byte * static_cast<double>(section.bytes);
-    const std::string& name = section.name;
-    if (name.starts_with("position") || name.starts_with("delta")) {
-      bits.positions += b;
-    } else if (name.starts_with("triangle") || name.starts_with("contraction")) {
-      bits.connectivity += b;
-    } else {
-      bits.attributes += b;
-    }
-  }
-  return bits;
 }
 
 double hausdorff(const Comparison& c) {

@@ -8,7 +8,6 @@
 #include "crease/file.h"
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <vector>
 
@@ -21,27 +20,12 @@ struct ValidateArguments {
   bool file_only = false;
 };
 
-Result<std::vector<std::byte>> read_bytes(const std::filesystem::path& path) {
-  std::error_code problem;
-  const auto size = std::filesystem::file_size(path, problem);
-  if (problem) {
-    return fail(
-        problem == std::errc::no_such_file_or_directory ? Error::NotFound : Error::ReadFailed,
-        path.string() + ": " + problem.message());
-  }
-  std::vector<std::byte> bytes(size);
-  std::ifstream in(path, std::ios::binary);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!in) return fail(Error::ReadFailed, path.string() + ": cannot be read to its end");
-  return bytes;
-}
-
 // Fills `found` where all is well.
 Status check_model(const ModelHierarchy& model, Json& found) {
   const MeshHierarchy& hierarchy = *model.hierarchy;
   const Status sound = check_hierarchy(hierarchy);
   if (!sound.ok()) return sound;
-  const Status full = check_leaves(hierarchy, model.maps, model.full);
+  const Status full = check_leaves(hierarchy, model.maps, model.finest);
   if (!full.ok()) return full;
   const Result<HardEdges> edges = check_hard_edges(hierarchy);
   if (!edges.ok()) return edges.failure();
@@ -54,11 +38,9 @@ Status check_model(const ModelHierarchy& model, Json& found) {
   return Done{};
 }
 
-// This first .crease holds levels alone, so the hierarchy is made from it as extract --view does.
-Status validate_hierarchy(const ValidateArguments& options, const Common& common, Json& found,
-                          std::vector<std::string>& problems) {
+Status validate_hierarchy(const ModelFile& file, Json& found, std::vector<std::string>& problems) {
   const Stopwatch watch;
-  const Result<ModelHierarchy> model = load_hierarchy(options.file, {}, common);
+  const Result<ModelHierarchy> model = load_hierarchy(file, std::nullopt);
   if (!model.ok()) {
     if (model.failure().error == Error::NoTriangles) return Done{};
     return model.failure();
@@ -72,20 +54,36 @@ Status validate_hierarchy(const ValidateArguments& options, const Common& common
   return Done{};
 }
 
+// Of what is in the file, not of reaching it.
+bool is_of_content(Error error) {
+  return error == Error::BadFormat || error == Error::BadChecksum || error == Error::Truncated;
+}
+
 Result<Report> run_validate(const ValidateArguments& options, const Common& common) {
   const Stopwatch watch;
-  const Result<std::vector<std::byte>> bytes = read_bytes(options.file);
-  if (!bytes.ok()) return bytes.failure();
   if (!is_crease_file(options.file)) {
+    std::error_code problem;
+    const bool exists = std::filesystem::exists(options.file, problem);
+    if (!exists) return fail(Error::NotFound, options.file.string() + ": no such file");
     return fail(
         Error::NotCrease,
         options.file.string() + ": is no .crease file; crease info says what a mesh file holds");
   }
-  std::vector<std::string> problems = validate_crease(*bytes);
-  if (interrupted()) return interrupted_failure();
+  std::vector<std::string> problems;
+  std::uint64_t bytes = 0;
   Json hierarchy;
+  const Result<ModelFile> file = open_model(options.file, {}, common);
+  if (file.ok()) {
+    bytes = file->blocks().source().size();
+    problems = validate_crease(file->blocks(), decode_options(common));
+  } else if (is_of_content(file.failure().error)) {
+    problems.push_back(file.failure().message);
+  } else {
+    return file.failure();
+  }
+  if (interrupted()) return interrupted_failure();
   if (problems.empty() && !options.file_only) {
-    const Status done = validate_hierarchy(options, common, hierarchy, problems);
+    const Status done = validate_hierarchy(*file, hierarchy, problems);
     if (!done.ok()) return done.failure();
   }
   if (interrupted()) return interrupted_failure();
@@ -93,13 +91,13 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
   Report report;
   report.json = {{"ok", problems.empty()},
                  {"errors", problems},
-                 {"bytes", bytes->size()},
+                 {"bytes", bytes},
                  {"hierarchy", hierarchy},
                  {"seconds", watch.seconds()}};
   report.text_is_answer = true;
   if (problems.empty()) {
-    report.text = options.file.string() + ": valid, " + in_bytes(bytes->size()) + ", " +
-                  in_seconds(watch.seconds());
+    report.text =
+        options.file.string() + ": valid, " + in_bytes(bytes) + ", " + in_seconds(watch.seconds());
     return report;
   }
   for (const std::string& problem : problems) {
@@ -119,8 +117,7 @@ Command add_validate(CLI::App& app, const Common& common) {
       "validate", "every checksum and every invariant of a .crease file and its hierarchy");
   command->add_option("FILE", options->file, "the .crease file")->required();
   command->add_flag("--file-only", options->file_only,
-                    "not the hierarchy, which is made from the full resolution and takes as long "
-                    "as a build");
+                    "not the hierarchy, which is made from the full resolution");
   command->footer("Example:\n  crease validate bunny.crease --json");
   return {command, [options, &common] { return run_validate(*options, common); }};
 }

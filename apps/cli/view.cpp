@@ -1,7 +1,6 @@
 #include "cli/view.h"
 
 #include "cli/console.h"
-#include "crease/progressive_mesh.h"
 #include "crease/render.h"
 
 #include <fstream>
@@ -23,47 +22,30 @@ Result<Camera> read_camera(const std::filesystem::path& path) {
   return camera;
 }
 
-Result<ModelHierarchy> load_hierarchy(const std::filesystem::path& path, const ReadOptions& options,
-                                      const Common& common) {
-  Result<BuildOptions> build = build_options(options, common);
-  if (!build.ok()) return build.failure();
-  Mesh full;
-  Grid grid;
-  FileInfo info;
-  if (is_crease_file(path)) {
-    Result<CreaseFile> file = read_crease(path, {});
-    if (!file.ok()) return file.failure();
-    full = ProgressiveMesh(file->arrays).extract();
-    grid = file->arrays->grid;
-    build->simplify.placement = file->arrays->placement;
-    info = std::move(file->info);
-  } else {
-    Result<Mesh> mesh = load_mesh(path, options, common);
-    if (!mesh.ok()) return mesh.failure();
-    full = *std::move(mesh);
-    grid = make_grid(full, build->precision);
-    snap(full, grid);
-    snap_attributes(full, build->attributes);
+Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const std::optional<Camera>& view) {
+  Result<Model> model = file.load({.view = view});
+  if (!model.ok()) return model.failure();
+  if (file.triangle_count() == 0) {
+    return fail(Error::NoTriangles, file.blocks().source().name() + ": no triangles");
   }
-  if (full.triangle_count() == 0) {
-    return fail(Error::NoTriangles, path.string() + ": no triangles");
-  }
-  Result<ContractionSequence> sequence = simplify(full, grid, build->simplify);
-  wipe_progress_bar();
-  if (!sequence.ok()) return sequence.failure();
+  const DecodedModel& decoded = model->decoded;
   HierarchyMaps maps;
-  Result<MeshHierarchy> hierarchy = build_hierarchy(full, *sequence, {}, &maps);
+  Result<MeshHierarchy> hierarchy = build_hierarchy(decoded.mesh, decoded.sequence, {}, &maps);
   if (!hierarchy.ok()) return hierarchy.failure();
   return ModelHierarchy{std::make_shared<const MeshHierarchy>(*std::move(hierarchy)),
-                        std::move(maps), std::move(full), std::move(info)};
+                        std::move(maps),
+                        std::move(model->decoded.mesh),
+                        decoded.error,
+                        model->bytes_read,
+                        decoded.blocks.size()};
 }
 
-Result<ViewedModel> load_viewed(const std::filesystem::path& path, const ReadOptions& options,
-                                const Common& common) {
-  Result<ModelHierarchy> model = load_hierarchy(path, options, common);
+Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view) {
+  Result<ModelHierarchy> model = load_hierarchy(file, view);
   if (!model.ok()) return model.failure();
-  return ViewedModel{AdaptiveMesh(std::move(model->hierarchy)), std::move(model->full),
-                     std::move(model->info)};
+  AdaptiveMesh mesh(std::move(model->hierarchy));
+  mesh.update({.camera = view});
+  return ViewedModel{std::move(mesh), model->error, model->bytes_read, model->blocks_read};
 }
 
 }  // namespace crease::cli

@@ -2,7 +2,8 @@
 // looks.
 //
 //   Result<Camera> camera = read_camera("camera.json");
-//   Result<ViewedModel> model = load_viewed("city.obj", read, common);
+//   Result<ModelFile> file = open_model("city.obj", read, common);
+//   Result<ViewedModel> model = load_viewed(*file, *camera);
 //   model->mesh.update({.camera = *camera});
 #pragma once
 
@@ -12,8 +13,11 @@
 #include "crease/build_hierarchy.h"
 #include "crease/camera.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace crease::cli {
 
@@ -22,21 +26,21 @@ Result<Camera> read_camera(const std::filesystem::path& path);
 struct ModelHierarchy {
   std::shared_ptr<const MeshHierarchy> hierarchy;
   HierarchyMaps maps;
-  Mesh full;        // snapped
-  FileInfo info{};  // of a .crease file; of a mesh file all zero
+  Mesh finest;       // of what was decoded
+  LevelError error;  // its own
+  std::uint64_t bytes_read = 0;
+  std::size_t blocks_read = 0;
 };
 
-// The hierarchy is made from the full resolution, whatever FILE is: this first .crease holds levels
-// alone. So it takes as long as a build.
-Result<ModelHierarchy> load_hierarchy(const std::filesystem::path& path, const ReadOptions& options,
-                                      const Common& common);
+// Of the blocks that `view` needs; without one of all.
+Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const std::optional<Camera>& view);
 
 struct ViewedModel {
   AdaptiveMesh mesh;
-  Mesh full;
-  FileInfo info{};
+  LevelError error;  // of its finest cut
+  std::uint64_t bytes_read = 0;
+  std::size_t blocks_read = 0;
 };
-Result<ViewedModel> load_viewed(const std::filesystem::path& path, const ReadOptions& options,
-                                const Common& common);
+Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view);
 
 }  // namespace crease::cli

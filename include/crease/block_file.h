@@ -32,7 +32,7 @@ inline constexpr std::uint32_t kBlocksPerPage = 512;
 // How the values of a layer are written.
 enum class AttributeCoding : std::uint8_t {
   Floats,      // bit by bit
-  Grid,        // origin + step * integer
+  Lattice,     // each component a code on a lattice of its own, which lies in the model tables
   Octahedral,  // directions, `bits` for each of two components
   Sextant,     // directions by sextant and two angles (Deering), `bits` in all
 };
@@ -43,9 +43,7 @@ struct LayerSchema {
   Interpolation interpolation = Interpolation::Linear;
   std::uint8_t dimension = 1;  // 1 to 4
   AttributeCoding coding = AttributeCoding::Floats;
-  std::uint8_t bits = 0;          // 0: Floats
-  std::array<float, 4> origin{};  // Grid only, else 0
-  float step = 0;                 // Grid only, else 0
+  std::uint8_t bits = 0;  // 0: Floats
   bool operator==(const LayerSchema&) const = default;
 };
 

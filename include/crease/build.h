@@ -1,4 +1,4 @@
-// The build: import, normals, snap, simplify, pack, write. What `crease build` does.
+// The build: snap, simplify, encode. What `crease build` does.
 //
 //   Result<Built> built = build_model(std::move(mesh), {});
 //   write_crease("model.crease", built->file_bytes);
@@ -8,6 +8,7 @@
 #include "crease/file.h"
 #include "crease/mesh.h"
 #include "crease/progress.h"
+#include "crease/progressive_arrays.h"
 #include "crease/simplify.h"
 
 #include <cstddef>
@@ -37,9 +38,9 @@ struct SnappedLayer {
 std::vector<SnappedLayer> snap_attributes(Mesh& mesh, const AttributePrecision& precision);
 
 struct Built {
-  ProgressiveArraysPtr arrays;
   SimplifyStatistics statistics;
   std::vector<SnappedLayer> snapped;  // one a layer
+  std::uint32_t blocks = 0;
   std::vector<std::byte> file_bytes;
 };
 

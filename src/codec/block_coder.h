@@ -10,6 +10,7 @@
 //   name_children(swapped)          from now on the present split's children change their names
 //   did_split(v, u, order)          v is the first child now, u the second; triangles were added
 //   roots(), root_triangles()       vertices without a coarse triangle, and triangles of the base
+//   root_names()                    of those that a coarser block has made; of others kNone
 //   category(t), derived(t), label(t), value(layer, t, c)    at the fine end
 #pragma once
 
@@ -90,6 +91,9 @@ class BlockCoder {
     names.resize(mesh_.positions.size());
     for (std::uint32_t v = 0; v < names.size(); ++v) {
       if (was_split(v)) names[v] = {block, v};
+    }
+    for (std::uint32_t i = 0; i < root_names_.size(); ++i) {
+      if (root_names_[i].block != kNone) names[coarse_vertices_ + i] = root_names_[i];
     }
     return {std::move(mesh_), std::move(names), std::move(labels_)};
   }
@@ -209,7 +213,9 @@ class BlockCoder {
 
   static constexpr std::size_t kMostTried = 6, kMostRanked = 16;
   static constexpr std::size_t kGenerations = 6, kScales = 32, kSizes = 12, kValences = 12;
-  MagnitudeModel root_count_, root_triangle_count_;
+  MagnitudeModel root_count_, root_triangle_count_, root_block_, root_vertex_;
+  AdaptiveBit is_named_;
+  std::vector<VertexName> root_names_;
   std::array<SignedModel, 3> root_position_;
   struct FlagModels {
     template <std::size_t N, std::size_t M>

@@ -30,7 +30,14 @@ bool BlockCoder<Coder, Guide>::code_roots() {
       const std::int32_t step = wrapped_difference(position[k], last[k]);
       last[k] = wrapped_sum(last[k], code_signed(coder_, root_position_[std::size_t(k)], step));
     }
+    VertexName name{kNone, 0};
+    if constexpr (Coder::kEncodes) name = guide_.root_names()[i];
+    if (coder_.bit(is_named_, name.block != kNone)) {
+      name.block = code_magnitude(coder_, root_block_, name.block);
+      name.vertex = code_magnitude(coder_, root_vertex_, name.vertex);
+    }
     if (coder_.failed()) return false;
+    root_names_.push_back(name);
     add_vertex(last);
   }
   const std::uint32_t vertices = static_cast<std::uint32_t>(mesh_.positions.size());

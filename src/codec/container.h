@@ -1,14 +1,16 @@
-// The tables of docs/format.md (version 2, the container) as constants.
+// The tables of docs/format.md as constants.
 #pragma once
 
 #include "crease/block_file.h"
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 
 namespace crease::format {
 
+inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'C', 'R', 'E', 'A', 'S', 'E', '\n'};
 inline constexpr std::uint16_t kContainerVersion = 2;
 
 // The head; its first 32 bytes are read before any other.
@@ -16,7 +18,7 @@ inline constexpr std::uint32_t kMaxHeadBytes = 65'536;
 inline constexpr std::uint32_t kHeadStartBytes = 32;
 inline constexpr std::uint32_t kHeadChecksumOffset = 24;
 inline constexpr std::uint32_t kFixedHeadBytes = 144;
-inline constexpr std::uint32_t kLayerBytes = 32;  // beside the name's bytes
+inline constexpr std::uint32_t kLayerBytes = 12;  // beside the name's bytes
 inline constexpr std::uint32_t kBandBytes = 36;
 inline constexpr std::uint32_t kPageReferenceBytes = 12;
 inline constexpr std::uint8_t kMaxGridBits = 31;

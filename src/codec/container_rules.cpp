@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -31,14 +30,13 @@ bool any_greater(const LevelError& a, const LevelError& b) {
 // One row per AttributeCoding.
 struct CodingRow {
   std::uint8_t min_bits, max_bits;
-  bool has_grid;
   bool of_directions;
 };
 constexpr CodingRow kCodings[] = {
-    {0, 0, false, false},
-    {1, 32, true, false},
-    {1, 16, false, true},
-    {5, 32, false, true},
+    {0, 0, false},
+    {1, 32, false},
+    {4, 16, true},
+    {2, 12, true},
 };
 
 std::string broken_rule_of_layer(const LayerSchema& layer) {
@@ -51,15 +49,6 @@ std::string broken_rule_of_layer(const LayerSchema& layer) {
   if (row.of_directions &&
       (layer.dimension != 3 || layer.interpolation != Interpolation::Direction)) {
     return "a coding of directions for what is none";
-  }
-  if (row.has_grid) {
-    if (!all_finite(layer.origin) || !std::isfinite(layer.step) || !(layer.step > 0))
-      return "its grid is none";
-  } else {
-    const auto is_zero = [](float f) { return std::bit_cast<std::uint32_t>(f) == 0; };
-    if (!std::all_of(layer.origin.begin(), layer.origin.end(), is_zero) || !is_zero(layer.step)) {
-      return "a grid where there is none";
-    }
   }
   return {};
 }

@@ -16,9 +16,15 @@ struct DecodedBlock {
   std::vector<Split> splits;  // in the order in which they were coded: parents first
 };
 
+// What decoding a block of these counts takes at most, the decoded block included; bytes.
+constexpr std::uint64_t decoded_bytes(const BlockLimits& limits, std::size_t layer_count) {
+  return 4096 + 400 * (std::uint64_t(limits.vertices) + limits.triangles) +
+         160 * std::uint64_t(layer_count) * limits.triangles;
+}
+
 // `bits`, where not null, is added to: what each stream takes. That makes it slower.
-// Fails, naming the block, if `bytes` are not a block. Takes no more memory than some 500 bytes for
-// every vertex and triangle that `limits` allow.
+// Fails, naming the block, if `bytes` are not a block. Takes no more memory than decoded_bytes() of
+// `limits`.
 Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, std::uint32_t block,
                                   const BlockCoding& coding, const BlockLimits& limits,
                                   CoarseEnd start, StreamBits* bits = nullptr);

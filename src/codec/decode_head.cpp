@@ -37,8 +37,6 @@ LayerSchema decode_layer(ByteReader& in, std::uint8_t& reserved) {
   layer.coding = static_cast<AttributeCoding>(in.u8());
   layer.bits = in.u8();
   reserved |= decode_reserved(in, 3);
-  for (float& f : layer.origin) f = in.f32();
-  layer.step = in.f32();
   return layer;
 }
 
@@ -116,7 +114,8 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
   if (!version.ok()) return version.failure();
   if (*version != format::kContainerVersion) {
     return fail(Error::NotSupported,
-                "version " + std::to_string(*version) + " has no blocks and is read whole");
+                "version " + std::to_string(*version) +
+                    " is a layout from before the first release; build the file again");
   }
   const auto cut = [] {
     return fail(Error::Truncated, std::string("it ends within the head") + kBuildAgain);

@@ -15,13 +15,13 @@ namespace {
 class PlanGuide {
  public:
   PlanGuide(const BlockPlan& plan, std::span<const std::uint32_t> triangles,
-            std::span<const std::uint32_t> vertices)
+            std::span<const std::uint32_t> vertices, std::span<const VertexName> names)
       : plan_(plan),
         plan_of_triangle_(triangles.begin(), triangles.end()),
         slot_of_vertex_(vertices.begin(), vertices.end()) {
     follow_steps();
     order_leaves();
-    find_roots(triangles);
+    find_roots(triangles, names);
   }
 
   void start(const PatchMesh& mesh) {
@@ -47,6 +47,7 @@ class PlanGuide {
   }
 
   const std::vector<Vec3i>& roots() const { return root_positions_; }
+  const std::vector<VertexName>& root_names() const { return root_names_; }
   const std::vector<Corners>& root_triangles() const { return root_triangles_; }
 
   bool is_split(std::uint32_t v) const { return !steps_of_slot_[slot_of_vertex_[v]].empty(); }
@@ -181,12 +182,13 @@ class PlanGuide {
     }
   }
 
-  void find_roots(std::span<const std::uint32_t> triangles) {
+  void find_roots(std::span<const std::uint32_t> triangles, std::span<const VertexName> names) {
     std::vector<char> is_given(plan_.fine.positions.size(), 0);
     for (const std::uint32_t slot : slot_of_vertex_) is_given[slot] = 1;
     for (std::uint32_t v = 0; v < is_given.size(); ++v) {
       if (is_given[v] || is_removed_[v]) continue;
       root_slots_.push_back(v);
+      root_names_.push_back(names.empty() ? VertexName{kNone, 0} : names[v]);
       const std::vector<std::uint32_t>& steps = steps_of_slot_[v];
       root_positions_.push_back(steps.empty() ? plan_.fine.positions[v]
                                               : plan_.steps[steps.back()].position);
@@ -233,6 +235,7 @@ class PlanGuide {
   std::vector<std::uint32_t> vertex_of_leaf_;              // per number in order_
   std::vector<std::uint32_t> root_slots_, root_plan_triangles_;
   std::vector<Vec3i> root_positions_;
+  std::vector<VertexName> root_names_;
   std::vector<Corners> root_triangles_;
   std::vector<Pending> pending_;  // of the present split
   bool swapped_ = false;          // likewise: the removed one is the first child
@@ -242,8 +245,9 @@ class PlanGuide {
 
 EncodedBlock encode_block(const BlockPlan& plan, std::uint32_t block, const BlockCoding& coding,
                           CoarseEnd start, std::span<const std::uint32_t> triangles,
-                          std::span<const std::uint32_t> vertices) {
-  PlanGuide guide(plan, triangles, vertices);
+                          std::span<const std::uint32_t> vertices,
+                          std::span<const VertexName> names) {
+  PlanGuide guide(plan, triangles, vertices, names);
   RangeEncoder encoder;
   const BlockLimits limits{static_cast<std::uint32_t>(plan.fine.positions.size()),
                            static_cast<std::uint32_t>(plan.fine.triangles.size())};

@@ -28,11 +28,13 @@ struct EncodedBlock {
   std::vector<std::uint32_t> plan_of_vertex;    // per vertex of the fine end
 };
 
-// `triangles` and `vertices`: of each triangle and vertex of `start` its number in the plan. What
-// the plan has at its coarse end beside them is coded as roots. Of a triangle the corners may stand
-// in another order at `start`, turned round.
+// `names`: of the vertices of the plan that a coarser block has made; of others the block is kNone.
+// Empty: of no root. `triangles` and `vertices`: of each triangle and vertex of `start` its number
+// in the plan. What the plan has at its coarse end beside them is coded as roots. Of a triangle the
+// corners may stand in another order at `start`, turned round.
 EncodedBlock encode_block(const BlockPlan& plan, std::uint32_t block, const BlockCoding& coding,
                           CoarseEnd start, std::span<const std::uint32_t> triangles,
-                          std::span<const std::uint32_t> vertices);
+                          std::span<const std::uint32_t> vertices,
+                          std::span<const VertexName> names = {});
 
 }  // namespace crease::codec

@@ -3,7 +3,6 @@
 #include "codec/checksum.h"
 #include "codec/container.h"
 #include "codec/container_rules.h"
-#include "codec/format.h"
 
 #include <limits>
 #include <utility>
@@ -53,8 +52,6 @@ void encode_layers_and_bands(ByteWriter& out, const ModelFacts& facts) {
     out.u8(static_cast<std::uint8_t>(layer.coding));
     out.u8(layer.bits);
     encode_reserved(out, 3);
-    out.f32s(layer.origin);
-    out.f32(layer.step);
   }
   for (const BandFacts& band : facts.bands) {
     out.u32(band.patches);

@@ -2,7 +2,6 @@
 
 #include "base/bytes.h"
 #include "codec/container.h"
-#include "codec/format.h"
 
 #include <algorithm>
 

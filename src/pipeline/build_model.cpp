@@ -1,5 +1,8 @@
 #include "crease/build.h"
 
+#include "parallel/parallel.h"
+#include "pipeline/encode_model.h"
+#include "pipeline/join_equal_values.h"
 #include "pipeline/snap_attributes.h"
 
 #include <utility>
@@ -12,14 +15,6 @@ bool goes_on(const BuildOptions& options, const char* stage, double done) {
   return !options.simplify.progress || options.simplify.progress(stage, done);
 }
 
-std::vector<FileInfo::Band> bands_of(const SimplifyStatistics& statistics) {
-  std::vector<FileInfo::Band> bands;
-  for (const BandStatistics& band : statistics.bands) {
-    bands.push_back({band.patches, band.contractions, band.triangles_after, band.surface_error});
-  }
-  return bands;
-}
-
 }  // namespace
 
 Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
@@ -29,15 +24,19 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
   Built built;
   const std::vector<LayerCoding> codings = codings_of(mesh, options.attributes);
   built.snapped = snap_to_codings(mesh, codings);
-  Result<ContractionSequence> sequence = simplify(mesh, grid, options.simplify, &built.statistics);
+  SimplifyOptions simplify_options = options.simplify;
+  simplify_options.record_bands = true;
+  Result<ContractionSequence> sequence = simplify(mesh, grid, simplify_options, &built.statistics);
   if (!sequence.ok()) return sequence.failure();
   snap_new_values(*sequence, mesh, codings);
-  if (!goes_on(options, "arrange", 0)) return interrupted;
-  built.arrays = build_progressive_arrays(mesh, *sequence);
-  mesh = {};
-  sequence = ContractionSequence{};
+  join_equal_values(*sequence, mesh);
   if (!goes_on(options, "encode", 0)) return interrupted;
-  built.file_bytes = encode_crease(*built.arrays, bands_of(built.statistics));
+  MemorySink sink;
+  const Result<EncodedModel> encoded = run_on(
+      options.simplify.threads, [&] { return encode_model(mesh, *sequence, codings, sink); });
+  if (!encoded.ok()) return encoded.failure();
+  built.blocks = encoded->blocks;
+  built.file_bytes = sink.take();
   if (!goes_on(options, "encode", 1)) return interrupted;
   return built;
 }

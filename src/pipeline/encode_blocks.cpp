@@ -1,8 +1,9 @@
 #include "pipeline/encode_blocks.h"
 
-#include "base/assert.h"
+#include "parallel/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace crease {
 
@@ -10,9 +11,21 @@ namespace {
 
 // What a fine end is in terms of the input.
 struct EndIds {
-  std::uint32_t block = 0;
+  BlockId block{};
   std::vector<std::uint32_t> vertex_ids, triangle_ids;
 };
+
+// Where in a patch's plan an input id is; of the ids of other patches, anything.
+struct PlanIndices {
+  std::vector<std::uint32_t> of_vertex, of_triangle;
+};
+
+void number(std::vector<std::uint32_t>& index, const std::vector<std::uint32_t>& ids) {
+  for (std::uint32_t i = 0; i < ids.size(); ++i) {
+    if (ids[i] >= index.size()) index.resize(ids[i] + 1);
+    index[ids[i]] = i;
+  }
+}
 
 std::vector<std::uint32_t> of_each(const std::vector<std::uint32_t>& ids,
                                    const std::vector<std::uint32_t>& indices) {
@@ -22,60 +35,129 @@ std::vector<std::uint32_t> of_each(const std::vector<std::uint32_t>& ids,
   return result;
 }
 
+// A sphere around all places where a vertex of the block ever stands.
+void bound(const codec::BlockPlan& plan, BlockFacts& facts) {
+  std::vector<Vec3i> places = plan.fine.positions;
+  for (const codec::BlockPlan::Step& step : plan.steps) places.push_back(step.position);
+  if (places.empty()) return;
+  double squared = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax_element(
+        places.begin(), places.end(), [k](const Vec3i& a, const Vec3i& b) { return a[k] < b[k]; });
+    facts.center[k] =
+        static_cast<std::int32_t>((std::int64_t((*low)[k]) + std::int64_t((*high)[k])) / 2);
+  }
+  for (const Vec3i& p : places) {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double d = double(p[k]) - double(facts.center[k]);
+      sum += d * d;
+    }
+    squared = std::max(squared, sum);
+  }
+  facts.radius = static_cast<std::uint32_t>(std::ceil(std::sqrt(squared) + 1e-6));
+}
+
+class BandEncoder {
+ public:
+  BandEncoder(const codec::BlockCoding& coding) : coding_(coding) {}
+
+  // `band`: as the file counts.
+  void encode(const BandPlans& plans, std::uint16_t band, std::vector<CodedBlock>& blocks) {
+    const std::size_t patches = plans.plans.size();
+    std::vector<codec::CoarseEnd> starts =
+        codec::sort_by_label(ends_, static_cast<std::uint32_t>(patches));
+    std::vector<codec::FineEnd> ends(patches);
+    std::vector<EndIds> ids(patches);
+    const std::uint32_t first = static_cast<std::uint32_t>(blocks.size());
+    blocks.resize(first + patches);
+    parallel_for(patches, [&](std::size_t p) {
+      CodedBlock& block = blocks[first + p];
+      block.facts.band = band;
+      block.facts.patch = static_cast<std::uint32_t>(p);
+      ids[p].block = BlockId{first + static_cast<std::uint32_t>(p)};
+      encode_patch(plans, p, std::move(starts[p]), block, ends[p], ids[p]);
+    });
+    ends_ = std::move(ends);
+    ids_ = std::move(ids);
+    for (std::size_t e = 0; e < ends_.size(); ++e) {
+      for (std::size_t v = 0; v < ends_[e].names.size(); ++v) {
+        const std::uint32_t id = ids_[e].vertex_ids[v];
+        if (id >= names_.size()) names_.resize(id + 1, {kNone, 0});
+        names_[id] = ends_[e].names[v];
+      }
+    }
+  }
+
+ private:
+  void encode_patch(const BandPlans& plans, std::size_t p, codec::CoarseEnd start,
+                    CodedBlock& block, codec::FineEnd& end, EndIds& ids) {
+    const codec::BlockPlan& plan = plans.plans[p];
+    PlanIndices& index = indices_.local();
+    number(index.of_vertex, plans.vertex_ids[p]);
+    number(index.of_triangle, plans.triangle_ids[p]);
+    std::vector<std::uint32_t> triangles, vertices(start.mesh.positions.size());
+    for (std::size_t t = 0; t < start.sources.size(); ++t) {
+      const auto [e, triangle] = start.sources[t];
+      triangles.push_back(index.of_triangle[ids_[e].triangle_ids[triangle]]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        vertices[start.mesh.triangles[t][c]] =
+            index.of_vertex[ids_[e].vertex_ids[ends_[e].mesh.triangles[triangle][c]]];
+      }
+      if (block.dependencies.empty() || block.dependencies.back() != ids_[e].block) {
+        block.dependencies.push_back(ids_[e].block);
+      }
+    }
+    // What a coarser block made, and this one has no triangle of at the coarse end.
+    std::vector<codec::VertexName> names;
+    for (const std::uint32_t id : plans.vertex_ids[p]) {
+      names.push_back(id < names_.size() ? names_[id] : codec::VertexName{kNone, 0});
+    }
+    if (!plans.roots.empty()) {
+      for (const std::uint32_t id : plans.roots[p]) {
+        if (id < names_.size() && names_[id].block != kNone) {
+          block.dependencies.push_back(BlockId{names_[id].block});
+        }
+      }
+      std::sort(block.dependencies.begin(), block.dependencies.end());
+      block.dependencies.erase(std::unique(block.dependencies.begin(), block.dependencies.end()),
+                               block.dependencies.end());
+    }
+    BlockFacts& facts = block.facts;
+    facts.splits = static_cast<std::uint32_t>(plan.steps.size());
+    facts.vertices = static_cast<std::uint32_t>(plan.fine.positions.size());
+    facts.triangles_coarse = static_cast<std::uint32_t>(triangles.size());
+    facts.triangles_fine = static_cast<std::uint32_t>(plan.fine.triangles.size());
+    facts.coarse = plans.errors[p].coarse;
+    facts.fine = plans.errors[p].fine;
+    facts.decoded_bytes =
+        static_cast<std::uint32_t>(codec::decoded_bytes(block.limits(), coding_.layers.size()));
+    bound(plan, facts);
+
+    codec::EncodedBlock encoded =
+        codec::encode_block(plan, static_cast<std::uint32_t>(index_of(ids.block)), coding_,
+                            std::move(start), triangles, vertices, names);
+    block.bytes = std::move(encoded.bytes);
+    ids.vertex_ids = of_each(plans.vertex_ids[p], encoded.plan_of_vertex);
+    ids.triangle_ids = of_each(plans.triangle_ids[p], encoded.plan_of_triangle);
+    end = std::move(encoded.decoded.end);
+  }
+
+  const codec::BlockCoding& coding_;
+  std::vector<codec::FineEnd> ends_;  // of the band before
+  std::vector<EndIds> ids_;
+  std::vector<codec::VertexName> names_;  // per vertex of the input, while it stands
+  PerThread<PlanIndices> indices_;
+};
+
 }  // namespace
 
 std::vector<CodedBlock> encode_blocks(const std::vector<BandPlans>& plans,
                                       const codec::BlockCoding& coding) {
   std::vector<CodedBlock> blocks;
-  std::vector<codec::FineEnd> ends;
-  std::vector<EndIds> ids;
-  std::vector<std::uint32_t> plan_of_vertex, plan_of_triangle;  // of the present patch, by input id
-  for (std::uint32_t band = 0; band < plans.size(); ++band) {
-    const BandPlans& of_band = plans[band];
-    const std::uint32_t patches = static_cast<std::uint32_t>(of_band.plans.size());
-    std::vector<codec::CoarseEnd> starts = codec::sort_by_label(ends, patches);
-    std::vector<codec::FineEnd> next_ends;
-    std::vector<EndIds> next_ids;
-    for (std::uint32_t p = 0; p < patches; ++p) {
-      const codec::BlockPlan& plan = of_band.plans[p];
-      const auto number = [](std::vector<std::uint32_t>& index,
-                             const std::vector<std::uint32_t>& of) {
-        for (std::uint32_t i = 0; i < of.size(); ++i) {
-          if (of[i] >= index.size()) index.resize(of[i] + 1);
-          index[of[i]] = i;
-        }
-      };
-      number(plan_of_vertex, of_band.vertex_ids[p]);
-      number(plan_of_triangle, of_band.triangle_ids[p]);
-      codec::CoarseEnd& start = starts[p];
-      std::vector<std::uint32_t> triangles, vertices(start.mesh.positions.size());
-      CodedBlock block;
-      block.band = band;
-      block.patch = p;
-      block.limits = {static_cast<std::uint32_t>(plan.fine.positions.size()),
-                      static_cast<std::uint32_t>(plan.fine.triangles.size())};
-      for (std::uint32_t t = 0; t < start.sources.size(); ++t) {
-        const auto [end, triangle] = start.sources[t];
-        triangles.push_back(plan_of_triangle[ids[end].triangle_ids[triangle]]);
-        for (std::size_t c = 0; c < 3; ++c) {
-          vertices[start.mesh.triangles[t][c]] =
-              plan_of_vertex[ids[end].vertex_ids[ends[end].mesh.triangles[triangle][c]]];
-        }
-        if (block.dependencies.empty() || block.dependencies.back() != ids[end].block) {
-          block.dependencies.push_back(ids[end].block);
-        }
-      }
-      const std::uint32_t id = static_cast<std::uint32_t>(blocks.size());
-      codec::EncodedBlock encoded =
-          codec::encode_block(plan, id, coding, std::move(start), triangles, vertices);
-      block.bytes = std::move(encoded.bytes);
-      next_ids.push_back({id, of_each(of_band.vertex_ids[p], encoded.plan_of_vertex),
-                          of_each(of_band.triangle_ids[p], encoded.plan_of_triangle)});
-      next_ends.push_back(std::move(encoded.decoded.end));
-      blocks.push_back(std::move(block));
-    }
-    ends = std::move(next_ends);
-    ids = std::move(next_ids);
+  BandEncoder encoder(coding);
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    encoder.encode(plans[i], static_cast<std::uint16_t>(plans.size() - 1 - i), blocks);
   }
   return blocks;
 }

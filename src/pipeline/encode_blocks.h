@@ -1,6 +1,7 @@
 // Plans -> blocks, coarsest first.
 #pragma once
 
+#include "crease/block_file.h"
 #include "pipeline/plan_blocks.h"
 
 #include <cstddef>
@@ -10,14 +11,13 @@
 namespace crease {
 
 struct CodedBlock {
-  std::uint32_t band = 0;  // 0: the base; finer ones follow
-  std::uint32_t patch = 0;
-  codec::BlockLimits limits;                // the counts at its fine end
-  std::vector<std::uint32_t> dependencies;  // ids of the blocks that it starts from, ascending
+  BlockFacts facts;                   // its band is the file's: the base has the greatest number
+  std::vector<BlockId> dependencies;  // the blocks that it starts from, ascending
   std::vector<std::byte> bytes;
+  codec::BlockLimits limits() const { return {facts.vertices, facts.triangles_fine}; }
 };
 
-// Block i of the result has the id i.
+// Block i of the result has the id i. `plans`: the base first. The blocks of a band on all threads.
 std::vector<CodedBlock> encode_blocks(const std::vector<BandPlans>& plans,
                                       const codec::BlockCoding& coding);
 

@@ -4,7 +4,6 @@
 #include "hierarchy/attribute_values.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace crease {
 
@@ -15,7 +14,10 @@ class Planner {
  public:
   Planner(const Mesh& snapped, const ContractionSequence& sequence,
           std::span<const LayerCoding> codings)
-      : mesh_(snapped), sequence_(sequence), codings_(codings) {
+      : mesh_(snapped), sequence_(sequence) {
+    for (std::size_t l = 0; l < mesh_.layers.size(); ++l) {
+      values_.emplace_back(codings[l], mesh_.layers[l].dimension);
+    }
     for (const Vec3d& p : mesh_.positions) positions_.push_back(sequence_.grid.nearest(p));
     for (const Triangle& t : mesh_.triangles) {
       corners_.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
@@ -26,6 +28,7 @@ class Planner {
     derived_.assign(corners_.size(), 0);
     label_.assign(corners_.size(), 0);
     slot_of_vertex_.assign(positions_.size(), kNone);
+    error_.resize(positions_.size());
   }
 
   // The patches of the next band, at their fine ends; then its contractions.
@@ -34,6 +37,8 @@ class Planner {
     result.plans.resize(band.patch_count());
     result.vertex_ids.resize(band.patch_count());
     result.triangle_ids.resize(band.patch_count());
+    result.errors.resize(band.patch_count());
+    result.roots.resize(band.patch_count());
     std::vector<std::vector<std::size_t>> contractions(band.patch_count());
     for (std::uint32_t i = 0; i < band.contraction_count; ++i, ++next_) {
       contractions[sequence_.patch_of_contraction[next_]].push_back(next_);
@@ -43,7 +48,10 @@ class Planner {
         result.triangle_ids[p].push_back(static_cast<std::uint32_t>(t));
       }
       result.plans[p] = plan_patch(result.triangle_ids[p], result.vertex_ids[p]);
+      result.errors[p].fine = largest_error(result.vertex_ids[p]);
       contract(contractions[p], result.plans[p], result.triangle_ids[p], result.vertex_ids[p]);
+      result.errors[p].coarse = largest_error(result.vertex_ids[p]);
+      result.roots[p] = find_roots(result.plans[p], result.vertex_ids[p], result.triangle_ids[p]);
       for (std::uint32_t t : result.triangle_ids[p]) label_[t] = p;
     }
     return result;
@@ -58,6 +66,8 @@ class Planner {
       if (is_alive_[t]) result.triangle_ids[0].push_back(t);
     }
     result.plans.push_back(plan_patch(result.triangle_ids[0], result.vertex_ids[0]));
+    const LevelError error = largest_error(result.vertex_ids[0]);
+    result.errors.push_back({error, error});
     return result;
   }
 
@@ -91,6 +101,35 @@ class Planner {
     return plan;
   }
 
+  // After its contractions.
+  std::vector<std::uint32_t> find_roots(const codec::BlockPlan& plan,
+                                        const std::vector<std::uint32_t>& vertices,
+                                        const std::vector<std::uint32_t>& triangles) {
+    std::vector<char> is_gone(vertices.size(), 0);
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) slot_of_vertex_[vertices[i]] = i;
+    for (const codec::BlockPlan::Step& step : plan.steps) is_gone[step.removed] = 1;
+    for (const std::uint32_t t : triangles) {
+      if (!is_alive_[t]) continue;
+      for (const std::uint32_t v : corners_[t]) is_gone[slot_of_vertex_[v]] = 1;
+    }
+    std::vector<std::uint32_t> roots;
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+      slot_of_vertex_[vertices[i]] = kNone;
+      if (!is_gone[i]) roots.push_back(vertices[i]);
+    }
+    return roots;
+  }
+
+  LevelError largest_error(const std::vector<std::uint32_t>& vertices) const {
+    LevelError all;
+    for (const std::uint32_t v : vertices) {
+      const LevelError& e = error_[v];
+      all = {std::max(all.surface, e.surface), std::max(all.line, e.line),
+             std::max(all.degrees, e.degrees), std::max(all.texture, e.texture)};
+    }
+    return all;
+  }
+
   // By the definition of crease/contraction.h, inside one patch.
   void contract(const std::vector<std::size_t>& contractions, codec::BlockPlan& plan,
                 const std::vector<std::uint32_t>& triangles,
@@ -118,6 +157,7 @@ class Planner {
         }
       }
       positions_[kept] = c.position;
+      error_[kept] = c.error;
       for (TriangleId t : sequence_.derived_of(c)) derived_[index_of(t)] = 1;
       for (const AttributeChange& change : sequence_.changes_of(c)) {
         change_attribute(at_kept, kept, change);
@@ -140,18 +180,7 @@ class Planner {
   }
 
   codec::CodedValue coded_value(std::size_t layer, AttributeId id) const {
-    const std::span<const float> value = attribute_value(mesh_.layers[layer], sequence_, layer, id);
-    const LayerCoding& coding = codings_[layer];
-    if (coding.kind == LayerCoding::Kind::Octahedral) {
-      return codec::coded(
-          OctahedralCoding(coding.bits).encode(Vec3f{value[0], value[1], value[2]}));
-    }
-    codec::CodedValue coded{};
-    for (std::size_t k = 0; k < value.size(); ++k) {
-      coded[k] = coding.kind == LayerCoding::Kind::Lattice ? coding.components[k].nearest(value[k])
-                                                           : std::bit_cast<std::int32_t>(value[k]);
-    }
-    return coded;
+    return values_[layer].code(attribute_value(mesh_.layers[layer], sequence_, layer, id));
   }
 
   std::uint32_t category_of(std::uint32_t t) const {
@@ -169,9 +198,10 @@ class Planner {
 
   const Mesh& mesh_;
   const ContractionSequence& sequence_;
-  std::span<const LayerCoding> codings_;
+  std::vector<LayerValues> values_;                  // per layer
   std::size_t next_ = 0;                             // in the sequence
   std::vector<Vec3i> positions_;                     // per vertex
+  std::vector<LevelError> error_;                    // per vertex
   std::vector<codec::Corners> corners_;              // per triangle
   std::vector<std::vector<AttributeId>> of_corner_;  // per layer, 3 a triangle
   std::vector<char> is_alive_, derived_;             // per triangle
@@ -179,24 +209,72 @@ class Planner {
   std::vector<std::uint32_t> slot_of_vertex_;        // all kNone between patches
 };
 
+AttributeCoding coding_of(LayerCoding::Kind kind) {
+  switch (kind) {
+    case LayerCoding::Kind::Exact:
+      return AttributeCoding::Floats;
+    case LayerCoding::Kind::Lattice:
+      return AttributeCoding::Lattice;
+    case LayerCoding::Kind::Octahedral:
+      return AttributeCoding::Octahedral;
+    case LayerCoding::Kind::Sextant:
+      return AttributeCoding::Sextant;
+  }
+  return AttributeCoding::Floats;
+}
+
 }  // namespace
 
-codec::BlockCoding block_coding(const Mesh& mesh, std::span<const LayerCoding> codings) {
-  codec::BlockCoding coding;
+std::vector<LayerSchema> schema_of(const Mesh& mesh, std::span<const LayerCoding> codings) {
+  std::vector<LayerSchema> layers;
   for (std::size_t l = 0; l < mesh.layers.size(); ++l) {
     const AttributeLayer& layer = mesh.layers[l];
-    const bool octahedral = codings[l].kind == LayerCoding::Kind::Octahedral;
-    coding.layers.push_back({.dimension = static_cast<int>(layer.dimension),
-                             .is_normal = layer.role == AttributeRole::Normal,
-                             .octahedral_bits = octahedral ? codings[l].bits : 0,
-                             .is_raw = codings[l].kind == LayerCoding::Kind::Exact ||
-                                       codings[l].kind == LayerCoding::Kind::Sextant});
+    layers.push_back({.name = layer.name,
+                      .role = layer.role,
+                      .interpolation = layer.interpolation,
+                      .dimension = static_cast<std::uint8_t>(layer.dimension),
+                      .coding = coding_of(codings[l].kind),
+                      .bits = static_cast<std::uint8_t>(codings[l].bits)});
   }
-  coding.material_count =
-      std::max<std::uint32_t>(1, static_cast<std::uint32_t>(mesh.materials.size()));
-  coding.part_count = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(mesh.parts.size()));
-  return coding;
+  return layers;
 }
+
+codec::BlockCoding block_coding(const Mesh& mesh, std::span<const LayerCoding> codings) {
+  return block_coding(schema_of(mesh, codings), codings, mesh.materials.size(), mesh.parts.size());
+}
+
+namespace {
+
+// A vertex on the border of several patches all of whose triangles vanish within one band would be
+// made by each of their blocks. The base makes it instead, and they name it.
+void move_shared_roots(std::vector<BandPlans>& plans, std::size_t vertex_count) {
+  std::vector<char> is_named(vertex_count, 0), is_root(vertex_count, 0);
+  BandPlans& base = plans.front();
+  for (const BandPlans& band : plans) {
+    std::vector<std::uint32_t> seen;
+    for (std::size_t p = 0; p < band.roots.size(); ++p) {
+      for (const std::uint32_t v : band.roots[p]) {
+        if (is_named[v]) continue;
+        if (is_root[v]) {
+          is_named[v] = 1;
+          const auto& ids = band.vertex_ids[p];
+          const auto at = std::find(ids.begin(), ids.end(), v) - ids.begin();
+          base.vertex_ids[0].push_back(v);
+          base.plans[0].fine.positions.push_back(
+              band.plans[p].fine.positions[static_cast<std::size_t>(at)]);
+        }
+        is_root[v] = 1;
+        seen.push_back(v);
+      }
+    }
+    for (const std::uint32_t v : seen) is_root[v] = 0;
+    for (const auto& ids : band.vertex_ids) {
+      for (const std::uint32_t v : ids) is_named[v] = 1;
+    }
+  }
+}
+
+}  // namespace
 
 std::vector<BandPlans> plan_blocks(const Mesh& snapped, const ContractionSequence& sequence,
                                    std::span<const LayerCoding> codings) {
@@ -205,6 +283,7 @@ std::vector<BandPlans> plan_blocks(const Mesh& snapped, const ContractionSequenc
   for (const Band& band : sequence.bands) plans.push_back(planner.plan_band(band));
   plans.push_back(planner.plan_base());
   std::reverse(plans.begin(), plans.end());
+  move_shared_roots(plans, snapped.vertex_count());
   return plans;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "codec/encode_block.h"
-#include "codec/layer_coding.h"
+#include "codec/layer_values.h"
 #include "crease/contraction.h"
 #include "crease/mesh.h"
 
@@ -14,9 +14,18 @@ namespace crease {
 
 // Plans of one band, by patch; the vertices and triangles of each by their input ids.
 struct BandPlans {
+  struct Errors {
+    LevelError coarse, fine;  // the largest at either end
+  };
   std::vector<codec::BlockPlan> plans;
+  std::vector<Errors> errors;
   std::vector<std::vector<std::uint32_t>> vertex_ids, triangle_ids;
+  // Of those vertices, which stand at the coarse end without a triangle of their patch there.
+  std::vector<std::vector<std::uint32_t>> roots;
 };
+
+// What a file says of the mesh's layers.
+std::vector<LayerSchema> schema_of(const Mesh& mesh, std::span<const LayerCoding> codings);
 
 // How values of the mesh's layers become integers, and the categories: material and part as one.
 // `codings`: one a layer, which the mesh and the sequence are snapped to (snap_attributes.h).

@@ -159,12 +159,14 @@ std::vector<SnappedLayer> snap_to_codings(Mesh& mesh, std::span<const LayerCodin
     SnappedLayer& report = reports.emplace_back();
     report.layer = layer.name;
     report.precision = in_words(codings[l]);
-    if (codings[l].kind == LayerCoding::Kind::Exact || layer.values.empty()) continue;
+    if (layer.values.empty()) continue;
     double sum = 0;
-    snap_values(layer.values, layer.dimension, codings[l], [&](std::size_t, double distance) {
-      report.error_max = std::max(report.error_max, distance);
-      sum += distance;
-    });
+    if (codings[l].kind != LayerCoding::Kind::Exact) {
+      snap_values(layer.values, layer.dimension, codings[l], [&](std::size_t, double distance) {
+        report.error_max = std::max(report.error_max, distance);
+        sum += distance;
+      });
+    }
     report.error_mean = sum / static_cast<double>(layer.value_count());
     if (!around) around.emplace(mesh);
     report.joined = join_equal_values(layer, *around, mesh.vertex_count());

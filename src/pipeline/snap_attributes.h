@@ -28,7 +28,7 @@ namespace crease {
 std::vector<LayerCoding> codings_of(const Mesh& mesh, const AttributePrecision& precision);
 
 // In place. Afterwards every value of a layer is one of its coding, and two corners at one vertex
-// share a value of a snapped layer iff it is equal. Zero-length normals stay. Snapping twice is
+// share a value iff it is equal. Zero-length normals stay. Snapping twice is
 // snapping once. Time O(corners log valence), 250 ns a normal.
 std::vector<SnappedLayer> snap_to_codings(Mesh& mesh, std::span<const LayerCoding> codings);
 

@@ -1,5 +1,6 @@
 // Blocks decode to what was encoded: every band's mesh, corner for corner.
 #include "codec/decode_block.h"
+#include "codec/encoded_model.h"
 #include "crease/import.h"
 #include "crease/simplify.h"
 #include "pipeline/encode_blocks.h"
@@ -61,12 +62,14 @@ void check_blocks(const Mesh& mesh, const ContractionSequence& sequence,
     std::vector<FineEnd> next_ends;
     std::vector<Described> decoded, expected;
     for (std::uint32_t p = 0; p < patches; ++p, ++next) {
-      REQUIRE(blocks[next].band == band);
-      REQUIRE(blocks[next].patch == p);
-      for (std::uint32_t dependency : blocks[next].dependencies) REQUIRE(dependency < next);
+      REQUIRE(plans.size() - 1 - blocks[next].facts.band == band);
+      REQUIRE(blocks[next].facts.patch == p);
+      for (BlockId dependency : blocks[next].dependencies) {
+        REQUIRE(index_of(dependency) < next);
+      }
       Result<codec::DecodedBlock> block =
-          codec::decode_block(blocks[next].bytes, std::uint32_t(next), coding, blocks[next].limits,
-                              std::move(starts[p]));
+          codec::decode_block(blocks[next].bytes, std::uint32_t(next), coding,
+                              blocks[next].limits(), std::move(starts[p]));
       REQUIRE(block.ok());
       CHECK(block->end.labels.size() == block->end.mesh.triangles.size());
       splits += block->splits.size();
@@ -83,24 +86,6 @@ void check_blocks(const Mesh& mesh, const ContractionSequence& sequence,
   CHECK(ends.size() == plans.back().plans.size());
 }
 
-// The whole sequence as one band of one patch.
-void make_one_band(const Mesh& mesh, ContractionSequence& sequence) {
-  Band band;
-  band.contraction_count = std::uint32_t(sequence.contractions.size());
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) band.triangles.push_back(TriangleId{t});
-  band.first_triangle = {0, std::uint32_t(mesh.triangle_count())};
-  sequence.bands = {band};
-  sequence.patch_of_contraction.assign(sequence.contractions.size(), 0);
-}
-
-bool has_isolated_vertex(const Mesh& mesh) {
-  std::vector<bool> used(mesh.vertex_count(), false);
-  for (const Triangle& t : mesh.triangles) {
-    for (VertexId v : t) used[index_of(v)] = true;
-  }
-  return std::find(used.begin(), used.end(), false) != used.end();
-}
-
 void check_simplified(Mesh mesh, std::uint32_t patch_triangles, int bits,
                       const AttributePrecision& precision) {
   const Grid grid = make_grid(mesh, {.length = 0, .bits = bits});
@@ -115,18 +100,14 @@ void check_simplified(Mesh mesh, std::uint32_t patch_triangles, int bits,
   check_blocks(mesh, *sequence, codings);
 }
 
-constexpr AttributePrecision kCoarse{.normal_bits = 10, .texcoord_bits = 12, .color_bits = 8};
-constexpr AttributePrecision kExact{
-    .normal_bits = kExactBits, .texcoord_bits = kExactBits, .color_bits = kExactBits};
-
 }  // namespace
 
 TEST_CASE("blocks of simplified meshes decode to every band's mesh") {
   for (const ZooMesh& zoo : mesh_zoo()) {
     INFO(zoo.name);
     for (const std::uint32_t patch_triangles : {200u, 8000u}) {
-      check_simplified(zoo.mesh, patch_triangles, 14, kCoarse);
-      check_simplified(zoo.mesh, patch_triangles, 24, kExact);
+      check_simplified(zoo.mesh, patch_triangles, 14, kCoarsePrecision);
+      check_simplified(zoo.mesh, patch_triangles, 24, kExactPrecision);
     }
   }
 }
@@ -139,7 +120,7 @@ TEST_CASE("blocks of real models decode to every band's mesh") {
     INFO(name);
     Result<Imported> in = import_mesh(path, {});
     REQUIRE(in.ok());
-    check_simplified(std::move(in->mesh), 8000, 14, kCoarse);
+    check_simplified(std::move(in->mesh), 8000, 14, kCoarsePrecision);
   }
 }
 
@@ -152,7 +133,7 @@ TEST_CASE("blocks of random contractions of random complexes decode to what was 
     snap(mesh, grid);
     ContractionSequence sequence = random_contractions(mesh, grid, {.seed = seed});
     make_one_band(mesh, sequence);
-    check_blocks(mesh, sequence, codings_of(mesh, kExact));
+    check_blocks(mesh, sequence, codings_of(mesh, kExactPrecision));
   }
 }
 
@@ -163,7 +144,7 @@ TEST_CASE("harmed blocks decode to an error or to a block within the limits") {
   ContractionSequence sequence = random_contractions(mesh, grid, {.seed = 5});
   REQUIRE(!has_isolated_vertex(mesh));
   make_one_band(mesh, sequence);
-  const std::vector<LayerCoding> codings = codings_of(mesh, kExact);
+  const std::vector<LayerCoding> codings = codings_of(mesh, kExactPrecision);
   const BlockCoding coding = block_coding(mesh, codings);
   const std::vector<CodedBlock> blocks =
       encode_blocks(plan_blocks(mesh, sequence, codings), coding);
@@ -172,11 +153,11 @@ TEST_CASE("harmed blocks decode to an error or to a block within the limits") {
   const auto decode = [&](std::size_t block, std::span<const std::byte> bytes,
                           codec::CoarseEnd start) {
     Result<codec::DecodedBlock> decoded = codec::decode_block(
-        bytes, std::uint32_t(block), coding, blocks[block].limits, std::move(start));
+        bytes, std::uint32_t(block), coding, blocks[block].limits(), std::move(start));
     if (!decoded.ok()) return false;
     const PatchMesh& end = decoded->end.mesh;
-    CHECK(end.positions.size() <= blocks[block].limits.vertices);
-    CHECK(end.triangles.size() <= blocks[block].limits.triangles);
+    CHECK(end.positions.size() <= blocks[block].limits().vertices);
+    CHECK(end.triangles.size() <= blocks[block].limits().triangles);
     for (const codec::Corners& corners : end.triangles) {
       for (std::uint32_t v : corners) CHECK(v < end.positions.size());
     }
@@ -186,21 +167,21 @@ TEST_CASE("harmed blocks decode to an error or to a block within the limits") {
     codec::CoarseEnd start;
     if (block == 1) {
       Result<codec::DecodedBlock> base =
-          codec::decode_block(blocks[0].bytes, 0, coding, blocks[0].limits, {});
+          codec::decode_block(blocks[0].bytes, 0, coding, blocks[0].limits(), {});
       REQUIRE(base.ok());
       start = codec::sort_by_label(std::span(&base->end, 1), 1)[0];
     }
     const std::vector<std::byte>& good = blocks[block].bytes;
     CHECK(decode(block, good, start));
     // Limits below what there is are kept as well, down to less than the coarse end has.
-    for (std::uint32_t less = 1; less <= blocks[block].limits.vertices; ++less) {
-      const codec::BlockLimits limits{blocks[block].limits.vertices - less,
-                                      blocks[block].limits.triangles};
+    for (std::uint32_t less = 1; less <= blocks[block].limits().vertices; ++less) {
+      const codec::BlockLimits limits{blocks[block].limits().vertices - less,
+                                      blocks[block].limits().triangles};
       CHECK(!codec::decode_block(good, std::uint32_t(block), coding, limits, start).ok());
     }
-    for (std::uint32_t less = 1; less <= blocks[block].limits.triangles; ++less) {
-      const codec::BlockLimits limits{blocks[block].limits.vertices,
-                                      blocks[block].limits.triangles - less};
+    for (std::uint32_t less = 1; less <= blocks[block].limits().triangles; ++less) {
+      const codec::BlockLimits limits{blocks[block].limits().vertices,
+                                      blocks[block].limits().triangles - less};
       CHECK(!codec::decode_block(good, std::uint32_t(block), coding, limits, start).ok());
     }
     std::size_t refused = 0;

@@ -66,16 +66,9 @@ inline ContainerContent some_content() {
   facts.vertex_count = 5'000'000'000;
   facts.triangle_count = 9'999'999'999;
   facts.layers = {
-      {"normal", AttributeRole::Normal, Interpolation::Direction, 3, AttributeCoding::Sextant, 17},
+      {"normal", AttributeRole::Normal, Interpolation::Direction, 3, AttributeCoding::Sextant, 6},
       {"bent", AttributeRole::Other, Interpolation::Direction, 3, AttributeCoding::Octahedral, 10},
-      {"uv",
-       AttributeRole::TexCoord,
-       Interpolation::Linear,
-       2,
-       AttributeCoding::Grid,
-       12,
-       {-1, 0.5f},
-       0.25f},
+      {"uv", AttributeRole::TexCoord, Interpolation::Linear, 2, AttributeCoding::Lattice, 12},
       {"kind", AttributeRole::Other, Interpolation::Categorical, 1}};
   facts.bands = {{7, 4000, 2000, {0.5f, 0.25f, 3, 0}}, {2, 1990, 10, {2, 1, 40, 0.125f}}};
   content.materials = {{"brick", {0.5f, 0.25f, 0.125f, 1}, "brick.png"}, {"", {1, 1, 1, 1}, ""}};

@@ -105,7 +105,7 @@ TEST_CASE("the golden file of version 2 is read, and written to the byte") {
   CHECK(file->facts().triangle_count == 9'999'999'999);
   REQUIRE(file->facts().layers.size() == 4);
   CHECK(file->facts().layers[2].name == "uv");
-  CHECK(file->facts().layers[2].step == 0.25f);
+  CHECK(file->facts().layers[2].bits == 12);
   REQUIRE(file->facts().bands.size() == 2);
   CHECK(file->facts().bands[1].error.degrees == 40);
   CHECK((*file->read_parts() == std::vector<std::string>{"house", "", "shed"}));

@@ -1,4 +1,4 @@
-#include "codec/small_file.h"
+#include "codec/encoded_model.h"
 
 #include <doctest/doctest.h>
 
@@ -22,19 +22,20 @@ struct Folder {
 TEST_CASE("a file is written whole, replaces what was there, and leaves nothing beside it") {
   const Folder folder;
   const std::filesystem::path path = folder.path / "a.crease";
-  const std::vector<std::byte> first = encode_crease(*small_arrays(1), kBands);
-  const std::vector<std::byte> second = encode_crease(*small_arrays(2), kBands);
+  const std::vector<std::byte> first = small_case(1).bytes;
+  const std::vector<std::byte> second = small_case(2).bytes;
   REQUIRE(write_crease(path, first).ok());
   REQUIRE(write_crease(path, second).ok());
   CHECK(folder.entries() == 1);
-  const Result<CreaseFile> file = read_crease(path, {});
+  const Result<BlockFile> file = open_crease(path);
   REQUIRE(file.ok());
-  CHECK(encode_crease(*file->arrays, file->info.bands) == second);
+  CHECK(file->source().size() == second.size());
+  CHECK(validate_crease(*file).empty());
 }
 
 TEST_CASE("a failed write says where and why, and leaves nothing behind") {
   const Folder folder;
-  const std::vector<std::byte> bytes = encode_crease(*small_arrays(1), kBands);
+  const std::vector<std::byte> bytes = small_case(1).bytes;
   const Status missing = write_crease(folder.path / "no" / "a.crease", bytes);
   REQUIRE(!missing.ok());
   CHECK(missing.failure().error == Error::WriteFailed);
@@ -46,21 +47,22 @@ TEST_CASE("a failed write says where and why, and leaves nothing behind") {
 
 TEST_CASE("a failed read says where and why") {
   const Folder folder;
-  const Result<CreaseFile> missing = read_crease(folder.path / "a.crease", {});
+  const Result<BlockFile> missing = open_crease(folder.path / "a.crease");
   REQUIRE(!missing.ok());
   CHECK(missing.failure().error == Error::NotFound);
-  const Result<CreaseFile> directory = read_crease(folder.path, {});
+  const Result<BlockFile> directory = open_crease(folder.path);
   REQUIRE(!directory.ok());
   CHECK(directory.failure().error == Error::ReadFailed);
   const std::filesystem::path path = folder.path / "cut.crease";
-  std::vector<std::byte> bytes = encode_crease(*small_arrays(1), kBands);
+  std::vector<std::byte> bytes = small_case(1).bytes;
   bytes.resize(bytes.size() / 2);
   REQUIRE(write_crease(path, bytes).ok());
-  const Result<CreaseFile> cut = read_crease(path, {});
-  REQUIRE(!cut.ok());
-  CHECK(cut.failure().error == Error::Truncated);
-  CHECK(cut.failure().message.find("cut.crease: it has ") != std::string::npos);
-  CHECK(read_crease(path, {.max_bytes = 10}).failure().error == Error::OverLimit);
+  const Result<BlockFile> cut = open_crease(path);  // the head is there
+  REQUIRE(cut.ok());
+  const Result<DecodedModel> model = decode_model(*cut);
+  REQUIRE(!model.ok());
+  CHECK(model.failure().error == Error::Truncated);
+  CHECK(model.failure().message.find("cut.crease") != std::string::npos);
 }
 
 }  // namespace

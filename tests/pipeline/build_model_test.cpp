@@ -61,14 +61,14 @@ TEST_CASE("a smooth mesh stays smooth under the simplifier: three sections, two 
 TEST_CASE("a built model is its file, and a stopped build says so") {
   const Result<Built> built = build_model(hard_cylinder(24, 4), {});
   REQUIRE(built.ok());
-  const Result<CreaseFile> file = decode_crease(built->file_bytes, {});
+  const Result<BlockFile> file = BlockFile::open(memory_source(built->file_bytes));
   REQUIRE(file.ok());
-  CHECK(encode_crease(*built->arrays, file->info.bands) == built->file_bytes);
-  CHECK(validate_crease(built->file_bytes).empty());
-  CHECK(file->info.bands.size() == built->statistics.bands.size());
-  CHECK(file->arrays->full.triangles() == hard_cylinder(24, 4).triangle_count());
+  CHECK(validate_crease(*file).empty());
+  CHECK(file->facts().bands.size() == built->statistics.bands.size());
+  CHECK(file->block_count() == built->blocks);
+  CHECK(file->facts().triangle_count == hard_cylinder(24, 4).triangle_count());
 
-  for (const char* stage : {"arrange", "encode"}) {
+  for (const char* stage : {"encode"}) {
     BuildOptions options;
     options.simplify.progress = [stage](const char* now, double) {
       return std::string(now) != stage;

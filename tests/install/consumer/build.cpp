@@ -9,9 +9,12 @@ int main() {
   crease::Result<crease::Built> built =
       crease::build_model(crease::generate_city({.triangles = 3000}), {});
   if (!built.ok()) return 1;
-  crease::Result<crease::CreaseFile> file = crease::decode_crease(built->file_bytes, {});
+  crease::Result<crease::BlockFile> file =
+      crease::BlockFile::open(crease::memory_source(built->file_bytes));
   if (!file.ok()) return 1;
-  crease::ProgressiveMesh mesh(file->arrays);
+  crease::Result<crease::DecodedModel> model = crease::decode_model(*file);
+  if (!model.ok()) return 1;
+  crease::ProgressiveMesh mesh(crease::build_progressive_arrays(model->mesh, model->sequence));
   const std::size_t full = mesh.triangle_count();
   mesh.set_triangle_count(full / 10);
   std::printf("levels: %zu to %zu triangles\n", full, mesh.triangle_count());

@@ -1,0 +1,21 @@
+#include "codec/encode_lattices.h"
+
+#include "base/bytes.h"
+
+namespace crease {
+
+std::vector<std::byte> encode_lattices(std::span<const LayerCoding> codings) {
+  ByteWriter out;
+  for (const LayerCoding& coding : codings) {
+    for (const NumberLattice& lattice : coding.components) {
+      out.f32(lattice.divisor);
+      out.u32(static_cast<std::uint32_t>(lattice.low));
+      out.u32(static_cast<std::uint32_t>(lattice.high));
+      out.u32(static_cast<std::uint32_t>(lattice.palette.size()));
+      out.f32s(lattice.palette);
+    }
+  }
+  return out.take();
+}
+
+}  // namespace crease

@@ -1,0 +1,24 @@
+// In which order the vertices of a block are contracted. A block says which, not when: that follows
+// from what each contraction does to the shape, which is near to the order of the simplifier.
+#pragma once
+
+#include "codec/unfold_blocks.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace crease::codec {
+
+struct OrderedContraction {
+  std::uint32_t split = 0;  // in UnfoldedBlock::splits
+  double cost = 0;          // grid units^4; never below those before it
+};
+
+// Cheapest first, children before their parents, the same in any subset of blocks. The cost is that
+// of quadrics from the block's fine end: squared distances of where the parent stands from the
+// planes of what it stands for, by area, and from borders and creases, by squared length; and how
+// far triangles turn. Time O(splits * triangles around a vertex).
+std::vector<OrderedContraction> order_contractions(const UnfoldedBlock& block,
+                                                   const BlockCoding& coding);
+
+}  // namespace crease::codec

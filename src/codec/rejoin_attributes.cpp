@@ -1,0 +1,236 @@
+#include "codec/rejoin_attributes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace crease::codec {
+
+namespace {
+
+std::uint32_t corner_of(const Corners& corners, std::uint32_t v) {
+  return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
+}
+
+// Where p is on the way from a to b, 0 to 1; half way where there is no way.
+double share_on_the_way(const Vec3i& p, const Vec3i& a, const Vec3i& b) {
+  double along = 0, whole = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double way = double(b[k]) - double(a[k]);
+    along += way * (double(p[k]) - double(a[k]));
+    whole += way * way;
+  }
+  return whole > 0 ? std::clamp(along / whole, 0.0, 1.0) : 0.5;
+}
+
+}  // namespace
+
+AttributeRejoiner::AttributeRejoiner(std::span<const LayerSchema> layers,
+                                     std::vector<ValuePool>& pools,
+                                     std::vector<std::vector<std::uint32_t>> of_corner)
+    : layers_(layers), pools_(pools), of_corner_(std::move(of_corner)) {
+  is_derived_.assign(of_corner_.empty() ? 0 : of_corner_[0].size() / 3, 0);
+}
+
+std::vector<CornerChanges> AttributeRejoiner::rejoin(const UnfoldedBlock& block,
+                                                     std::span<const OrderedContraction> order) {
+  std::vector<CornerChanges> all(order.size());
+  if (layers_.empty()) return all;
+  ContractingPatch patch(block.end);
+  std::vector<std::uint32_t> splits_left(block.vertices.size(), 0);
+  for (const Split& split : block.splits) ++splits_left[split.vertex];
+  std::vector<Vec3i> positions = block.end.positions;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t first = block.splits[order[i].split].vertex;
+    const std::uint32_t second = block.second_child(order[i].split);
+    const bool is_last = --splits_left[first] == 0 && first < block.coarse_vertex_count;
+    const Vec3i& parent = block.splits[order[i].split].parent_position;
+    const double second_share = share_on_the_way(parent, positions[first], positions[second]);
+    positions[first] = parent;
+    const auto vanished = patch.contract(first, second);
+    derive(block, patch, first, all[i].derived);
+    for (std::size_t l = 0; l < layers_.size(); ++l) {
+      find_values(block, patch, first, l, is_last);
+      join(block, patch, vanished, first, second, l);
+      if (is_last) {
+        change_to_coarse(block, first, l, all[i].changes);
+      } else {
+        blend(l, second_share, all[i].changes);
+      }
+    }
+    apply(block, patch, first, all[i].changes);
+  }
+  // What no contraction touches, which a file of our own does not have.
+  for (std::uint32_t t = 0; t < block.coarse_triangle_count() && !order.empty(); ++t) {
+    if (!block.coarse_derived[t] || is_derived_[block.triangles[t]]) continue;
+    is_derived_[block.triangles[t]] = 1;
+    all.back().derived.push_back(TriangleId{block.triangles[t]});
+  }
+  return all;
+}
+
+void AttributeRejoiner::derive(const UnfoldedBlock& block, const ContractingPatch& patch,
+                               std::uint32_t v, std::vector<TriangleId>& derived) {
+  for (const std::uint32_t t : patch.around(v)) {
+    if (t >= block.coarse_triangle_count() || !block.coarse_derived[t]) continue;
+    char& is_derived = is_derived_[block.triangles[t]];
+    if (is_derived) continue;
+    is_derived = 1;
+    derived.push_back(TriangleId{block.triangles[t]});
+  }
+}
+
+AttributeRejoiner::AtVertex* AttributeRejoiner::find(std::uint32_t id) {
+  for (AtVertex& value : at_vertex_) {
+    if (value.id == id) return &value;
+  }
+  return nullptr;
+}
+
+// Which values stand at v, and where each is to be looked up at the coarse end.
+void AttributeRejoiner::find_values(const UnfoldedBlock& block, const ContractingPatch& patch,
+                                    std::uint32_t v, std::size_t layer, bool is_last) {
+  at_vertex_.clear();
+  const std::span<const std::uint32_t> around = patch.around(v);
+  const std::size_t from_first = around.size() - patch.moved_count();
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    const std::uint32_t t = around[i];
+    if (is_hidden(layer, block.triangles[t])) continue;
+    const std::uint32_t c = corner_of(patch.corners(t), v);
+    const std::uint32_t id = of_corner_[layer][3 * std::size_t(block.triangles[t]) + c];
+    AtVertex* value = find(id);
+    if (value == nullptr) {
+      at_vertex_.push_back({.id = id, .joined = static_cast<std::uint32_t>(at_vertex_.size())});
+      value = &at_vertex_.back();
+    }
+    ++value->corners[i >= from_first];
+    if (!is_last || t >= block.coarse_triangle_count()) continue;
+    if (value->wanted == kNone) value->wanted = 3 * t + c;
+    const CodedValue* coarse = &block.coarse_values[layer][3 * std::size_t(t)];
+    value->is_flat = value->is_flat || (coarse[0] == coarse[1] && coarse[1] == coarse[2]);
+  }
+}
+
+// A collapsed triangle joins what it has at the two children.
+void AttributeRejoiner::join(const UnfoldedBlock& block, const ContractingPatch& patch,
+                             std::span<const std::uint32_t> vanished, std::uint32_t first,
+                             std::uint32_t second, std::size_t layer) {
+  for (const std::uint32_t t : vanished) {
+    if (is_hidden(layer, block.triangles[t])) continue;
+    const std::uint32_t* ids = &of_corner_[layer][3 * std::size_t(block.triangles[t])];
+    const AtVertex* a = find(ids[corner_of(patch.corners(t), first)]);
+    const AtVertex* b = find(ids[corner_of(patch.corners(t), second)]);
+    if (a == nullptr || b == nullptr || a->joined == b->joined) continue;
+    const std::uint32_t low = std::min(a->joined, b->joined), high = std::max(a->joined, b->joined);
+    for (AtVertex& value : at_vertex_) {
+      if (value.joined == high) value.joined = low;
+    }
+  }
+}
+
+void AttributeRejoiner::change_to_coarse(const UnfoldedBlock& block, std::uint32_t v,
+                                         std::size_t layer, std::vector<AttributeChange>& changes) {
+  ValuePool& pool = pools_[layer];
+  const std::vector<CodedValue>& coarse = block.coarse_values[layer];
+  // Those that vanish in this block have no value at its coarse end; they go with their neighbours.
+  for (AtVertex& value : at_vertex_) {
+    if (value.wanted != kNone) continue;
+    for (const AtVertex& other : at_vertex_) {
+      if (other.joined == value.joined && other.wanted != kNone) value.wanted = other.wanted;
+    }
+  }
+  const auto stays = [&](const AtVertex& value) {
+    return value.wanted == kNone || pool.code(value.id) == coarse[value.wanted];
+  };
+  const std::size_t begin = changes.size();
+  for (const AtVertex& value : at_vertex_) {
+    if (stays(value)) continue;
+    const CodedValue& wanted = coarse[value.wanted];
+    std::uint32_t to = kNone;
+    for (const AtVertex& other : at_vertex_) {
+      if (stays(other) && pool.code(other.id) == wanted) to = other.id;
+    }
+    for (std::size_t i = begin; i < changes.size() && to == kNone; ++i) {
+      const auto id = static_cast<std::uint32_t>(changes[i].to);
+      if (pool.code(id) == wanted) to = id;
+    }
+    if (to == kNone) {
+      const bool is_flat =
+          std::any_of(at_vertex_.begin(), at_vertex_.end(), [&](const AtVertex& other) {
+            return other.is_flat && other.wanted != kNone && coarse[other.wanted] == wanted;
+          });
+      to = pool.intern(wanted, is_flat ? ValuePool::kFlat : block.vertices[v]);
+      if (find(to) != nullptr) to = pool.add(wanted);  // that one changes itself
+    }
+    changes.push_back({static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{to}});
+  }
+}
+
+void AttributeRejoiner::blend(std::size_t layer, double second_share,
+                              std::vector<AttributeChange>& changes) {
+  ValuePool& pool = pools_[layer];
+  for (std::uint32_t i = 0; i < at_vertex_.size(); ++i) {
+    if (at_vertex_[i].joined != i) continue;
+    // The mean of each child's own, by corners.
+    std::array<std::array<double, 4>, 2> sums{};
+    std::array<double, 2> corners{};
+    std::size_t members = 0;
+    const std::size_t nearer = second_share > 0.5;
+    const AtVertex* most = &at_vertex_[i];
+    for (const AtVertex& value : at_vertex_) {
+      if (value.joined != i) continue;
+      ++members;
+      if (value.corners[nearer] > most->corners[nearer]) most = &value;
+      const std::span<const float> numbers = pool.value(value.id);
+      for (std::size_t side = 0; side < 2; ++side) {
+        corners[side] += value.corners[side];
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+          sums[side][k] += double(value.corners[side]) * double(numbers[k]);
+        }
+      }
+    }
+    if (members < 2) continue;
+    std::uint32_t to = most->id;
+    if (layers_[layer].interpolation != Interpolation::Categorical) {
+      const std::array<double, 2> weights{
+          corners[0] > 0 ? (corners[1] > 0 ? 1 - second_share : 1) / corners[0] : 0,
+          corners[1] > 0 ? (corners[0] > 0 ? second_share : 1) / corners[1] : 0};
+      std::array<double, 4> sum{};
+      for (std::size_t k = 0; k < sum.size(); ++k) {
+        sum[k] = weights[0] * sums[0][k] + weights[1] * sums[1][k];
+      }
+      if (layers_[layer].interpolation == Interpolation::Direction) {
+        const double size = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+        for (std::size_t k = 0; k < 3; ++k) {
+          sum[k] = size > 0 ? sum[k] / size : double(pool.value(most->id)[k]);
+        }
+      }
+      std::array<float, 4> blended{};
+      for (std::size_t k = 0; k < sum.size(); ++k) blended[k] = static_cast<float>(sum[k]);
+      const CodedValue code =
+          pool.code_of(std::span<const float>(blended).first(layers_[layer].dimension));
+      // Of its own, whatever its value: what is not joined here may part at the coarse end.
+      to = pool.code(most->id) == code ? most->id : pool.add(code);
+    }
+    for (const AtVertex& value : at_vertex_) {
+      if (value.joined != i || value.id == to) continue;
+      changes.push_back(
+          {static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{to}});
+    }
+  }
+}
+
+void AttributeRejoiner::apply(const UnfoldedBlock& block, const ContractingPatch& patch,
+                              std::uint32_t v, std::span<const AttributeChange> changes) {
+  for (const std::uint32_t t : patch.around(v)) {
+    const std::uint32_t c = corner_of(patch.corners(t), v);
+    for (const AttributeChange& change : changes) {
+      if (is_hidden(change.layer, block.triangles[t])) continue;
+      std::uint32_t& id = of_corner_[change.layer][3 * std::size_t(block.triangles[t]) + c];
+      if (id == static_cast<std::uint32_t>(change.from)) id = static_cast<std::uint32_t>(change.to);
+    }
+  }
+}
+
+}  // namespace crease::codec

@@ -1,0 +1,75 @@
+// What corners carry between the two ends of a block, as the attribute changes of its contractions.
+//
+// A block has values at both ends. Attributes at the two children that a collapsed triangle links
+// become one (G03 3.3); while the vertex will be contracted further in the same block, that is what
+// they are at where the parent stands between the children; with its last contraction every corner
+// gets what it has at the coarse end. Triangles that show their geometric normal at the coarse end
+// do so from the first contraction that touches them.
+#pragma once
+
+#include "codec/contracting_patch.h"
+#include "codec/order_contractions.h"
+#include "codec/unfold_blocks.h"
+#include "codec/value_pool.h"
+#include "crease/block_file.h"
+#include "crease/contraction.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease::codec {
+
+// Of one contraction.
+struct CornerChanges {
+  std::vector<AttributeChange> changes;
+  std::vector<TriangleId> derived;
+};
+
+class AttributeRejoiner {
+ public:
+  // `of_corner`: per layer, the ids of all corners of the model at its finest. Moves on with every
+  // block; blocks come finest first.
+  AttributeRejoiner(std::span<const LayerSchema> layers, std::vector<ValuePool>& pools,
+                    std::vector<std::vector<std::uint32_t>> of_corner);
+
+  // One for each contraction of `order`.
+  std::vector<CornerChanges> rejoin(const UnfoldedBlock& block,
+                                    std::span<const OrderedContraction> order);
+
+ private:
+  struct AtVertex {  // a value that corners at the present vertex have
+    std::uint32_t id = 0;
+    std::array<std::uint32_t, 2> corners{};  // that came from the first child, from the second
+    std::uint32_t joined = 0;                // the first one of those that it is joined with
+    std::uint32_t wanted = kNone;            // corner of the block whose coarse value it gets
+    bool is_flat = false;                    // and all corners of a triangle have that value there
+  };
+
+  void derive(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
+              std::vector<TriangleId>& derived);
+  void find_values(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
+                   std::size_t layer, bool is_last);
+  void join(const UnfoldedBlock& block, const ContractingPatch& patch,
+            std::span<const std::uint32_t> vanished, std::uint32_t first, std::uint32_t second,
+            std::size_t layer);
+  void change_to_coarse(const UnfoldedBlock& block, std::uint32_t v, std::size_t layer,
+                        std::vector<AttributeChange>& changes);
+  // `second_share`: where the parent stands on the way from the first child to the second.
+  void blend(std::size_t layer, double second_share, std::vector<AttributeChange>& changes);
+  void apply(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
+             std::span<const AttributeChange> changes);
+  bool is_hidden(std::size_t layer, std::uint32_t triangle) const {
+    return layers_[layer].role == AttributeRole::Normal && is_derived_[triangle] != 0;
+  }
+  AtVertex* find(std::uint32_t id);
+
+  std::span<const LayerSchema> layers_;
+  std::vector<ValuePool>& pools_;
+  std::vector<std::vector<std::uint32_t>> of_corner_;  // per layer, 3 a triangle
+  std::vector<char> is_derived_;                       // per triangle
+  std::vector<AtVertex> at_vertex_;                    // scratch
+};
+
+}  // namespace crease::codec

@@ -1,0 +1,154 @@
+#include "pipeline/join_equal_values.h"
+
+#include "hierarchy/attribute_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace crease {
+
+namespace {
+
+class ValueJoiner {
+ public:
+  ValueJoiner(ContractionSequence& sequence, const Mesh& mesh)
+      : sequence_(sequence),
+        mesh_(mesh),
+        corners_(mesh.triangles),
+        around_(mesh.vertex_count()),
+        is_alive_(mesh.triangle_count(), 1),
+        is_derived_(mesh.triangle_count(), 0) {
+    for (const AttributeLayer& layer : mesh.layers) of_corner_.push_back(layer.of_corner);
+    planned_ = of_corner_;
+    for (std::uint32_t t = 0; t < corners_.size(); ++t) {
+      for (const VertexId v : corners_[t]) around_[index_of(v)].push_back(t);
+    }
+  }
+
+  void run() {
+    std::vector<AttributeChange> changes;
+    for (Contraction& c : sequence_.contractions) {
+      contract(c);
+      for (TriangleId t : sequence_.derived_of(c)) is_derived_[index_of(t)] = 1;
+      const auto first = static_cast<std::uint32_t>(changes.size());
+      for (std::uint32_t l = 0; l < mesh_.layers.size(); ++l) {
+        find_values(c, l);
+        join(l);
+        for (const AtVertex& value : at_vertex_) {
+          if (value.to != value.from) changes.push_back({l, value.from, value.to});
+        }
+        apply(c.kept, l);
+      }
+      c.first_change = first;
+      c.change_count = static_cast<std::uint32_t>(changes.size()) - first;
+    }
+    sequence_.changes = std::move(changes);
+  }
+
+ private:
+  struct AtVertex {
+    AttributeId from{}, to{};
+  };
+
+  void contract(const Contraction& c) {
+    std::vector<std::uint32_t>& at_kept = around_[index_of(c.kept)];
+    for (const std::uint32_t t : around_[index_of(c.removed)]) {
+      if (!is_alive_[t]) continue;
+      Triangle& corners = corners_[t];
+      if (std::find(corners.begin(), corners.end(), c.kept) != corners.end()) {
+        is_alive_[t] = 0;
+      } else {
+        std::replace(corners.begin(), corners.end(), c.removed, c.kept);
+        at_kept.push_back(t);
+      }
+    }
+    around_[index_of(c.removed)] = {};
+    std::erase_if(at_kept, [this](std::uint32_t t) { return !is_alive_[t]; });
+  }
+
+  bool is_shown(std::uint32_t layer, std::uint32_t t) const {
+    return mesh_.layers[layer].role != AttributeRole::Normal || !is_derived_[t];
+  }
+  std::size_t corner(std::uint32_t t, VertexId v) const {
+    const Triangle& corners = corners_[t];
+    return 3 * std::size_t(t) + (corners[0] == v ? 0 : corners[1] == v ? 1 : 2);
+  }
+
+  // What stands at v_s, and what the sequence makes of it.
+  void find_values(const Contraction& c, std::uint32_t layer) {
+    at_vertex_.clear();
+    for (const std::uint32_t t : around_[index_of(c.kept)]) {
+      if (!is_shown(layer, t)) continue;
+      const std::size_t at = corner(t, c.kept);
+      AttributeId& planned = planned_[layer][at];
+      for (const AttributeChange& change : sequence_.changes_of(c)) {
+        if (change.layer == layer && change.from == planned) {
+          planned = change.to;
+          break;
+        }
+      }
+      const AttributeId now = of_corner_[layer][at];
+      const auto known = std::find_if(at_vertex_.begin(), at_vertex_.end(),
+                                      [now](const AtVertex& a) { return a.from == now; });
+      if (known == at_vertex_.end()) at_vertex_.push_back({now, planned});
+    }
+  }
+
+  // The first of those that are equal; one that stays, if there is one, so that no `to` is a
+  // `from`.
+  void join(std::uint32_t layer) {
+    // What was equal at the two ends goes on as one.
+    for (AtVertex& value : at_vertex_) {
+      for (AtVertex& other : at_vertex_) {
+        if (other.to == value.to || !equal(layer, other.from, value.from)) continue;
+        const bool other_stays = other.to == other.from;
+        (other_stays ? value.to : other.to) = other_stays ? other.to : value.to;
+      }
+    }
+    for (AtVertex& value : at_vertex_) {
+      for (const AtVertex& other : at_vertex_) {
+        if (other.to == value.to || !equal(layer, other.to, value.to)) continue;
+        const bool other_stays = other.to == other.from, stays = value.to == value.from;
+        const bool is_before = &other < &value;
+        if (other_stays > stays || (other_stays == stays && is_before)) value.to = other.to;
+      }
+    }
+  }
+
+  bool equal(std::uint32_t layer, AttributeId a, AttributeId b) const {
+    const auto x = attribute_value(mesh_.layers[layer], sequence_, layer, a);
+    const auto y = attribute_value(mesh_.layers[layer], sequence_, layer, b);
+    return std::memcmp(x.data(), y.data(), x.size_bytes()) == 0;
+  }
+
+  void apply(VertexId v, std::uint32_t layer) {
+    for (const std::uint32_t t : around_[index_of(v)]) {
+      if (!is_shown(layer, t)) continue;
+      AttributeId& now = of_corner_[layer][corner(t, v)];
+      now = std::find_if(at_vertex_.begin(), at_vertex_.end(), [now](const AtVertex& a) {
+              return a.from == now;
+            })->to;
+    }
+  }
+
+  ContractionSequence& sequence_;
+  const Mesh& mesh_;
+  std::vector<Triangle> corners_;
+  std::vector<std::vector<std::uint32_t>> around_;   // per vertex
+  std::vector<char> is_alive_, is_derived_;          // per triangle
+  std::vector<std::vector<AttributeId>> of_corner_;  // per layer, joined
+  std::vector<std::vector<AttributeId>> planned_;    // per layer, as the sequence had it
+  std::vector<AtVertex> at_vertex_;                  // scratch
+};
+
+}  // namespace
+
+void join_equal_values(ContractionSequence& sequence, const Mesh& snapped) {
+  ValueJoiner(sequence, snapped).run();
+}
+
+}  // namespace crease
