@@ -143,27 +143,32 @@ void AttributeRejoiner::change_to_coarse(const UnfoldedBlock& block, std::uint32
   const auto stays = [&](const AtVertex& value) {
     return value.wanted == kNone || pool.code(value.id) == coarse[value.wanted];
   };
-  const std::size_t begin = changes.size();
-  for (const AtVertex& value : at_vertex_) {
-    if (stays(value)) continue;
+  std::vector<std::uint32_t>& goes_to = scratch_;  // per value at the vertex
+  goes_to.assign(at_vertex_.size(), kNone);
+  for (std::size_t i = 0; i < at_vertex_.size(); ++i) {
+    if (stays(at_vertex_[i])) goes_to[i] = at_vertex_[i].id;
+  }
+  for (std::size_t i = 0; i < at_vertex_.size(); ++i) {
+    const AtVertex& value = at_vertex_[i];
+    if (goes_to[i] != kNone) continue;
     const CodedValue& wanted = coarse[value.wanted];
-    std::uint32_t to = kNone;
-    for (const AtVertex& other : at_vertex_) {
-      if (stays(other) && pool.code(other.id) == wanted) to = other.id;
+    bool is_flat = value.is_flat;
+    for (std::size_t k = 0; k < at_vertex_.size(); ++k) {
+      const AtVertex& other = at_vertex_[k];
+      if (other.joined != value.joined || other.wanted == kNone || coarse[other.wanted] != wanted) {
+        continue;
+      }
+      is_flat = is_flat || other.is_flat;
+      if (goes_to[k] != kNone) goes_to[i] = goes_to[k];
     }
-    for (std::size_t i = begin; i < changes.size() && to == kNone; ++i) {
-      const auto id = static_cast<std::uint32_t>(changes[i].to);
-      if (pool.code(id) == wanted) to = id;
+    if (goes_to[i] == kNone) {
+      const std::uint32_t to = pool.intern(wanted, is_flat ? ValuePool::kFlat : block.vertices[v]);
+      // What is not joined stays apart, even if its value is the same.
+      const bool is_taken = find(to) != nullptr || std::ranges::count(goes_to, to) > 0;
+      goes_to[i] = is_taken ? pool.add(wanted) : to;
     }
-    if (to == kNone) {
-      const bool is_flat =
-          std::any_of(at_vertex_.begin(), at_vertex_.end(), [&](const AtVertex& other) {
-            return other.is_flat && other.wanted != kNone && coarse[other.wanted] == wanted;
-          });
-      to = pool.intern(wanted, is_flat ? ValuePool::kFlat : block.vertices[v]);
-      if (find(to) != nullptr) to = pool.add(wanted);  // that one changes itself
-    }
-    changes.push_back({static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{to}});
+    changes.push_back(
+        {static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{goes_to[i]}});
   }
 }
 

@@ -70,6 +70,7 @@ class AttributeRejoiner {
   std::vector<std::vector<std::uint32_t>> of_corner_;  // per layer, 3 a triangle
   std::vector<char> is_derived_;                       // per triangle
   std::vector<AtVertex> at_vertex_;                    // scratch
+  std::vector<std::uint32_t> scratch_;
 };
 
 }  // namespace crease::codec

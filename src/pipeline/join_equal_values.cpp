@@ -98,15 +98,19 @@ class ValueJoiner {
     }
   }
 
-  // The first of those that are equal; one that stays, if there is one, so that no `to` is a
-  // `from`.
+  // What was equal at the two ends goes on as one. What only becomes equal keeps the value that it
+  // had, so that a hard edge between stays one; or where that is another's, goes on as one as well.
   void join(std::uint32_t layer) {
-    // What was equal at the two ends goes on as one.
     for (AtVertex& value : at_vertex_) {
       for (AtVertex& other : at_vertex_) {
         if (other.to == value.to || !equal(layer, other.from, value.from)) continue;
-        const bool other_stays = other.to == other.from;
-        (other_stays ? value.to : other.to) = other_stays ? other.to : value.to;
+        AtVertex& follower = other.to == other.from ? value : other;
+        follower.to = follower.to == value.to ? other.to : value.to;
+      }
+    }
+    for (AtVertex& value : at_vertex_) {
+      if (value.to != value.from && is_taken(layer, value, value.to)) {
+        if (!is_taken(layer, value, value.from)) value.to = value.from;
       }
     }
     for (AtVertex& value : at_vertex_) {
@@ -117,6 +121,14 @@ class ValueJoiner {
         if (other_stays > stays || (other_stays == stays && is_before)) value.to = other.to;
       }
     }
+  }
+
+  // Whether another attribute has, or had, that value.
+  bool is_taken(std::uint32_t layer, const AtVertex& value, AttributeId wanted) const {
+    return std::any_of(at_vertex_.begin(), at_vertex_.end(), [&](const AtVertex& other) {
+      if (&other == &value || other.to == value.to) return false;
+      return equal(layer, other.to, wanted) || equal(layer, other.from, wanted);
+    });
   }
 
   bool equal(std::uint32_t layer, AttributeId a, AttributeId b) const {

@@ -1,5 +1,6 @@
 // A file tells the attributes at a vertex apart by their values. So must a sequence before it is
-// written: where two that stand at one vertex have become equal, they are one from there on.
+// written: where two that stand at one vertex become equal, one keeps the value that it had; where
+// they were equal before, they are one from there on.
 //
 //   snap_new_values(sequence, mesh, codings);
 //   join_equal_values(sequence, mesh);
