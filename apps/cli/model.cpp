@@ -30,7 +30,7 @@ void add_build_options(CLI::App& command, ReadOptions& options) {
   command
       .add_option("--precision", options.precision,
                   "grid that positions are snapped to: a length (0.001), or bits over the longest "
-                  "side (14bits); default 24bits")
+                  "side (14bits); default: as fine as the model's edges, 12 to 24 bits")
       ->type_name("LENGTH|BITSbits");
   command
       .add_option("--placement", options.placement,
@@ -41,8 +41,8 @@ void add_build_options(CLI::App& command, ReadOptions& options) {
   command
       .add_option(
           "--normal-bits", options.normal_bits,
-          "precision of normals: 8 to 16 bits a component (10: off by 0.16 degrees at most), "
-          "or 4 to 12 an angle with deering, default 6; exact, the default: as they are")
+          "precision of normals: 8 to 16 bits a component (default 12: off by 0.04 degrees at "
+          "most), or 4 to 12 an angle with deering, default 6; exact: as they are")
       ->type_name("N|exact");
   command
       .add_option("--normal-coding", options.normal_coding,
@@ -52,13 +52,13 @@ void add_build_options(CLI::App& command, ReadOptions& options) {
       ->capture_default_str();
   command
       .add_option("--texcoord-bits", options.texcoord_bits,
-                  "precision of texture coordinates: 4 to 16 bits over their range; exact, the "
-                  "default: as they are")
+                  "precision of texture coordinates: 4 to 16 bits over their range, default 14; "
+                  "exact: as they are")
       ->type_name("N|exact");
   command
       .add_option("--color-bits", options.color_bits,
-                  "precision of colours: 4 to 16 bits over their range; exact, the default: as "
-                  "they are")
+                  "precision of colours: 4 to 16 bits over their range, default 10; exact: as they "
+                  "are")
       ->type_name("N|exact");
 }
 

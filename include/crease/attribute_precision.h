@@ -20,14 +20,13 @@ inline constexpr int kExactBits = 0;  // values as they are, floats
 
 struct AttributePrecision {
   NormalCoding normal_coding = NormalCoding::Octahedral;
-  // Files of version 1 hold floats, so that coarser values would save nothing. With 10 bits normals
-  // are off by 0.16 degrees at most, and shading that grows with the cosine by 0.7 of a step of an
-  // 8-bit display (docs/attributes.md).
-  int normal_bits = kExactBits;
+  // With 12 bits normals are off by 0.04 degrees at most, which not even a mirror shows
+  // (docs/attributes.md).
+  int normal_bits = 12;
   // Over the range of each component: off by at most its 2^-(bits + 1). Values that already lie on
   // a lattice as coarse, or are few, are kept exactly.
-  int texcoord_bits = kExactBits;
-  int color_bits = kExactBits;
+  int texcoord_bits = 14;
+  int color_bits = 10;
 };
 
 }  // namespace crease
