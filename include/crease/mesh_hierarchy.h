@@ -96,9 +96,7 @@ struct TriangleRange {
 struct TriangleWedges {
   PackedIndices<WedgeId> of_corner;
 
-  std::array<WedgeId, 3> operator[](std::size_t t) const {
-    return {of_corner[3 * t], of_corner[3 * t + 1], of_corner[3 * t + 2]};
-  }
+  std::array<WedgeId, 3> operator[](std::size_t t) const { return of_corner.three_from(3 * t); }
   std::size_t size() const { return of_corner.size() / 3; }
 };
 
@@ -161,10 +159,9 @@ struct VertexHierarchy {
     const std::size_t i = index_of(n) - root_count;
     if (is_wide.test(i)) return wide_deltas[is_wide.rank(i)];
     const std::uint32_t half = 1u << (deltas.bits() - 1);
-    const auto component = [&](std::size_t k) {
-      return static_cast<std::int32_t>(deltas[3 * i + k] - half);
-    };
-    return {component(0), component(1), component(2)};
+    const auto [x, y, z] = deltas.three_from(3 * i);
+    return {static_cast<std::int32_t>(x - half), static_cast<std::int32_t>(y - half),
+            static_cast<std::int32_t>(z - half)};
   }
   // From the root on; a cut keeps the positions of its nodes instead. Time O(depth).
   Vec3i position_of(NodeId n) const;
@@ -213,10 +210,21 @@ struct AttributeHierarchy {
   // ascending.
   SparseLists<BranchRun> branches_of_split;
 
+  // Where nodes have several attributes and values repeat, as on the walls of a city, hardly any
+  // corner's value ever changes; that is told here, so that moves need not follow attributes. Else
+  // both are empty.
+  // Per wedge 1 + its value where that is the same at all nodes at which a cut can show it, or 0.
+  PackedIndices<> constant_of_wedge;
+  // Per split: every attribute of v_t and v_u that is not removed has its parent's value.
+  BitArray keeps_values;
+
   std::uint32_t attribute_count(NodeId n) const { return attribute_ranges.count(index_of(n)); }
+  // Of an attribute by its place in attribute_ranges.
+  std::uint32_t value_index(std::uint32_t attribute) const {
+    return value_of_attribute.empty() ? attribute : value_of_attribute[attribute];
+  }
   std::span<const float> value(NodeId n, RelativeAttribute a) const {
-    const std::uint32_t i = attribute_ranges.begin(index_of(n)) + a;
-    const std::size_t v = value_of_attribute.empty() ? i : value_of_attribute[i];
+    const std::size_t v = value_index(attribute_ranges.begin(index_of(n)) + a);
     return std::span<const float>(values).subspan(v * dimension, dimension);
   }
 };
@@ -240,15 +248,26 @@ struct MeshHierarchy {
   // is what a triangle that becomes active needs. Time O(1) if n has one attribute, else O(depth
   // from n to the next node that has one, or to the leaf).
   RelativeAttribute attribute_at(std::size_t layer, NodeId n, WedgeId wedge) const;
+  // And its value. Time O(1) where the wedge has one for all.
+  std::uint32_t value_at(std::size_t layer, NodeId n, WedgeId wedge) const {
+    const AttributeHierarchy& attributes = layers[layer];
+    if (!attributes.constant_of_wedge.empty()) {
+      const std::uint32_t constant = attributes.constant_of_wedge[index_of(wedge)];
+      if (constant != 0) return constant - 1;
+    }
+    return attributes.value_index(attributes.attribute_ranges.begin(index_of(n)) +
+                                  attribute_at(layer, n, wedge));
+  }
 };
 
 // Where the bytes are.
 struct HierarchyBytes {
-  std::size_t triangles = 0;   // wedges of triangles, materials, parts, ranges, derived ones
-  std::size_t positions = 0;   // deltas, roots
-  std::size_t splits = 0;      // nodes, second wedges, bounds, bits
-  std::size_t values = 0;      // attributes' values and indices
-  std::size_t attributes = 0;  // ranges, leaf attributes, parent maps, branch runs
+  std::size_t triangles = 0;  // wedges of triangles, materials, parts, ranges, derived ones
+  std::size_t positions = 0;  // deltas, roots
+  std::size_t splits = 0;     // nodes, second wedges, bounds, bits
+  std::size_t values = 0;     // attributes' values and indices
+  // Ranges, leaf attributes, parent maps, branch runs, and where values stay.
+  std::size_t attributes = 0;
   std::size_t total() const { return triangles + positions + splits + values + attributes; }
 };
 HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy);

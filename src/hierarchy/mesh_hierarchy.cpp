@@ -87,7 +87,8 @@ HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy) {
   for (const AttributeHierarchy& layer : hierarchy.layers) {
     bytes.values += stored_bytes(layer.values) + stored_bytes(layer.value_of_attribute);
     bytes.attributes += layer.attribute_ranges.bytes() + stored_bytes(layer.leaf_attribute) +
-                        layer.parents_of_split.bytes() + layer.branches_of_split.bytes();
+                        layer.parents_of_split.bytes() + layer.branches_of_split.bytes() +
+                        stored_bytes(layer.constant_of_wedge) + layer.keeps_values.bytes();
   }
   return bytes;
 }

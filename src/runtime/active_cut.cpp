@@ -72,12 +72,39 @@ void ActiveCut::stand(std::uint32_t slot, NodeId node, const Vec3i& position) {
   v.position = position;
   if (normal_layer_ != kNone) {
     const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
-    const CompactRanges::Range range = layer.attribute_ranges.range(index_of(node));
-    v.normal_begin = range.begin;
-    v.normal_count = range.end - range.begin;
-    v.one_normal = v.normal_count <= 1;
+    v.normal = normal_in(layer.attribute_ranges.range(index_of(node)));
   }
   vertex_changes_.mark(slot);
+}
+
+// As stand() for each, with one look-up for both where there is one.
+void ActiveCut::stand_at_children(SplitId s, std::uint32_t first, std::uint32_t second,
+                                  const Vec3i& position) {
+  const NodeId node = h_.first_child(s);
+  ActiveVertex& v = vertices_[first];
+  ActiveVertex& other = vertices_[second];
+  const std::uint32_t rank = h_.is_split.rank(index_of(node));
+  const bool is_split = h_.is_split.test(index_of(node));
+  v.node = node;
+  v.split = is_split ? SplitId{rank} : kNoSplit;
+  v.position = grid_sum(position, h_.delta_of(node));
+  other.node = h_.second_child(s);
+  other.split = h_.is_split.test(index_of(other.node)) ? SplitId{rank + is_split} : kNoSplit;
+  other.position = grid_sum(position, h_.delta_of(other.node));
+  if (normal_layer_ != kNone) {
+    const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
+    const auto ranges = layer.attribute_ranges.two_ranges(index_of(node));
+    v.normal = normal_in(ranges[0]);
+    other.normal = normal_in(ranges[1]);
+  }
+  vertex_changes_.mark(first);
+  vertex_changes_.mark(second);
+}
+
+std::uint32_t ActiveCut::normal_in(const CompactRanges::Range& attributes) const {
+  const std::uint32_t count = attributes.end - attributes.begin;
+  if (count == 1) return hierarchy_.layers[normal_layer_].value_index(attributes.begin);
+  return count == 0 ? ActiveVertex::kNoNormal : ActiveVertex::kSeveral;
 }
 
 ActiveCut::Children ActiveCut::children(SplitId s) const {
@@ -98,15 +125,16 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
   const SplitId s = vertices_[slot].split;
   const WedgeId begin = vertices_[slot].begin, end = vertices_[slot].end;
   const Vec3i position = vertices_[slot].position;
+  const bool had_one = vertices_[slot].has_one_normal();
   CREASE_ASSERT(s != kNoSplit);
   set_done(s, true);
   const WedgeId middle = h_.second_wedge[index_of(s)];
-  const NodeId first = h_.first_child(s), second = h_.second_child(s);
   if (middle == begin || middle == end) {
     const bool is_second = middle == begin;
-    stand(slot, is_second ? second : first,
-          grid_sum(position, h_.delta_of(is_second ? second : first)));
-    pass_down(s, slot, is_second);
+    const NodeId child = h_.child(s, is_second);
+    stand(slot, child, grid_sum(position, h_.delta_of(child)));
+    touch_corners(slot, had_one);
+    pass_down(s, slot, is_second, had_one);
     touch_derived(s);
     return kNoSlot;
   }
@@ -115,11 +143,12 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
   vertices_[other].begin = middle;
   vertices_[other].end = end;
   map_.set(middle, other);
-  stand(slot, first, grid_sum(position, h_.delta_of(first)));
-  stand(other, second, grid_sum(position, h_.delta_of(second)));
+  stand_at_children(s, slot, other, position);
   give_corners(slot, other, middle);
-  pass_down(s, slot, false);
-  pass_down(s, other, true);
+  touch_corners(slot, had_one);
+  touch_corners(other, had_one);
+  pass_down(s, slot, false, had_one);
+  pass_down(s, other, true, had_one);
 
   const TriangleRange born = h_.triangles_of(s);
   for (std::uint32_t t = born.begin; t < born.end; ++t) {
@@ -178,8 +207,9 @@ void ActiveCut::merge(SplitId s, const Children& slots) {
     if (slot == kNoSlot) return;
     const Vec3i delta = h_.delta_of(vertices_[slot].node);
     pass_up(s, slot, is_second);
+    const bool had_one = vertices_[slot].has_one_normal();
     stand(slot, node, grid_difference(vertices_[slot].position, delta));
-    touch_corners(slot);
+    touch_corners(slot, had_one);
     touch_derived(s);
     return;
   }
@@ -191,8 +221,9 @@ void ActiveCut::merge(SplitId s, const Children& slots) {
   map_.clear(second.begin);
   first.end = second.end;
   take_corners(slots.second, slots.first);
+  const bool had_one = first.has_one_normal() || second.has_one_normal();
   stand(slots.first, node, position);
-  touch_corners(slots.first);
+  touch_corners(slots.first, had_one);
   lists_.clear(second.corners);
   second.node = kNoNode;
   second.split = kNoSplit;
@@ -240,21 +271,21 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
   bool one_normal = true;
   for (std::size_t k = 0; k < 3; ++k) {
     const ActiveVertex& v = vertices_[slots[k]];
-    one_normal &= v.one_normal != 0;
+    one_normal &= v.has_one_normal();
     for (std::size_t i = 0; i < tracked; ++i) {
-      const std::uint32_t l = tracked_[i];
-      const bool is_only = l == normal_layer_ && v.one_normal != 0;
       arriving_[k * tracked + i] =
-          is_only ? RelativeAttribute{0} : hierarchy_.attribute_at(l, v.node, wedges[k]);
+          has_several(i, v) ? hierarchy_.value_at(tracked_[i], v.node, wedges[k]) : kNone;
     }
   }
-  const bool is_smooth = !touches_triangles_ || (one_normal && !is_derived(t));
-  const Part kind = is_smooth ? kSnPart : kind_of(t, slots, arriving_);
+  const bool is_derived = touches_triangles_ && is_derived_now(t);
+  const bool is_smooth = !touches_triangles_ || (one_normal && !is_derived);
+  const Part kind = is_smooth ? kSnPart : kind_of(is_derived, slots, arriving_);
   ActiveTriangles& part = parts_[kind];
   const std::uint32_t place = part.add(t, arriving_.size());
   for (std::size_t i = 0; i < arriving_.size(); ++i) {
-    part.relative[arriving_.size() * place + i] = arriving_[i];
+    part.values[arriving_.size() * place + i] = arriving_[i];
   }
+  part.is_derived[place] = is_derived ? 1 : 0;
   for (std::uint32_t k = 0; k < 3; ++k) {
     part.slots[3 * std::size_t(place) + k] = slots[k];
     lists_.push_back(vertices_[slots[k]].corners, {CornerRef(kind, place, k), wedges[k]});
@@ -273,43 +304,79 @@ void ActiveCut::deactivate(CornerRef corner, std::uint32_t from, std::uint32_t t
   parts_[corner.part()].remove(corner.triangle());
 }
 
-void ActiveCut::touch_corners(std::uint32_t slot) {
+// Of the corners at a vertex that has moved those whose triangle may have another kind or shading:
+// its values are looked after by pass_down() and pass_up().
+void ActiveCut::touch_corners(std::uint32_t slot, bool had_one_normal) {
   if (!touches_triangles_) return;
+  const bool has_one = vertices_[slot].has_one_normal();
+  const bool only_derived = !has_one && !had_one_normal && color_layer_ == kNone;
+  if (only_derived && normal_layer_ != kNone && h_.deriving_splits.empty()) return;
   for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
-    touch(at, vertices_[slot].one_normal != 0);
+    ActiveTriangles& part = parts_[at.corner.part()];
+    const bool touched = at.corner.part() == kSnPart
+                             ? !has_one || color_layer_ != kNone
+                             : !only_derived || part.is_derived[at.corner.triangle()] != 0;
+    if (touched) part.touched.mark(at.corner.triangle());
   }
 }
 
-// The corners at the child of s in `slot` had their attributes at v_s.
-void ActiveCut::pass_down(SplitId s, std::uint32_t slot, bool second) {
-  touch_corners(slot);
+void ActiveCut::set_value(const CornerAt& at, std::size_t place, std::uint32_t value) {
+  ActiveTriangles& part = parts_[at.corner.part()];
+  part.values[tracked_.size() * at.corner.index() + place] = value;
+  part.touched.mark(at.corner.triangle());
+}
+
+// The corners at the child of s in `slot` had their values at v_s.
+void ActiveCut::pass_down(SplitId s, std::uint32_t slot, bool second, bool had_one_normal) {
   for (std::size_t i = 0; i < tracked_.size(); ++i) {
     const std::uint32_t l = tracked_[i];
     const AttributeHierarchy& layer = hierarchy_.layers[l];
-    if (layer.parents_of_split.is_empty(index_of(s))) continue;  // 0 remains
-    const std::span<const CornerAt> corners = lists_.of(vertices_[slot].corners);
-    // MeshHierarchy::below() for all of them: what each attribute above comes from.
-    const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
-    const std::uint32_t of_first = layer.attribute_count(h_.first_child(s));
-    const std::size_t begin = second ? of_first : 0, end = second ? parents.size() : of_first;
-    below_.assign(layer.attribute_count(h_.node_of_split[index_of(s)]), {});
-    for (std::size_t from = begin; from < end; ++from) {
-      const RelativeAttribute to = parents[from];
-      if (to == kRemoved) continue;
-      Below& below = below_[to];
-      if (below.first == kRemoved) {
-        below.first = static_cast<RelativeAttribute>(from - begin);
-      } else {
-        below.has_more = true;
-      }
+    if (layer.parents_of_split.is_empty(index_of(s))) continue;  // neither has several
+    if (!has_several(i, vertices_[slot])) continue;
+    const bool had_several = l == normal_layer_
+                                 ? !had_one_normal
+                                 : layer.attribute_count(h_.node_of_split[index_of(s)]) > 1;
+    if (had_several && !layer.keeps_values.empty() && layer.keeps_values.test(index_of(s))) {
+      continue;
     }
-    for (const CornerAt& at : corners) {
-      RelativeAttribute& a =
-          parts_[at.corner.part()].relative[tracked_.size() * at.corner.index() + i];
-      const Below below = below_[a];
-      a = below.has_more            ? hierarchy_.below(l, s, second, a, at.wedge)
-          : below.first != kRemoved ? below.first
-                                    : RelativeAttribute{0};  // no such corner stands there
+    step_down(s, slot, second, i);
+  }
+}
+
+// MeshHierarchy::below() for all of them: what each attribute above comes from.
+void ActiveCut::step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place) {
+  const std::uint32_t l = tracked_[place];
+  const AttributeHierarchy& layer = hierarchy_.layers[l];
+  const CompactRanges& ranges = layer.attribute_ranges;
+  const CompactRanges::Range at_s = ranges.range(index_of(h_.node_of_split[index_of(s)]));
+  const CompactRanges::Range at_child = ranges.range(index_of(h_.child(s, second)));
+  const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
+  const std::size_t first = second ? parents.size() - (at_child.end - at_child.begin) : 0;
+  const bool had_several = at_s.end - at_s.begin > 1;
+  steps_.assign(at_s.end - at_s.begin, {});
+  for (std::uint32_t a = at_child.begin; a < at_child.end; ++a) {
+    const RelativeAttribute to = parents[first + a - at_child.begin];
+    if (to == kRemoved) continue;
+    Step& step = steps_[to];
+    step.has_more = step.below != kNone;
+    if (step.has_more) continue;
+    step = {layer.value_index(at_s.begin + to), layer.value_index(a), to, false};
+  }
+  const auto is_idle = [had_several](const Step& step) {
+    return step.below == kNone || (had_several && !step.has_more && step.above == step.below);
+  };
+  steps_.erase(std::remove_if(steps_.begin(), steps_.end(), is_idle), steps_.end());
+  for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
+    const std::uint32_t above =
+        parts_[at.corner.part()].values[tracked_.size() * at.corner.index() + place];
+    for (const Step& step : steps_) {
+      if (had_several && step.above != above) continue;
+      set_value(at, place,
+                step.has_more
+                    ? layer.value_index(at_child.begin +
+                                        hierarchy_.below(l, s, second, step.at_parent, at.wedge))
+                    : step.below);
+      break;
     }
   }
 }
@@ -318,12 +385,36 @@ void ActiveCut::pass_up(SplitId s, std::uint32_t slot, bool second) {
   for (std::size_t i = 0; i < tracked_.size(); ++i) {
     const AttributeHierarchy& layer = hierarchy_.layers[tracked_[i]];
     if (layer.parents_of_split.is_empty(index_of(s))) continue;
-    const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
-    const std::size_t begin = second ? layer.attribute_count(h_.first_child(s)) : 0;
-    for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
-      RelativeAttribute& a =
-          parts_[at.corner.part()].relative[tracked_.size() * at.corner.index() + i];
-      a = parents[begin + a];
+    const bool keeps = !layer.keeps_values.empty() && layer.keeps_values.test(index_of(s));
+    if (keeps && has_several(i, vertices_[slot])) continue;
+    step_up(s, slot, second, i);
+  }
+}
+
+// MeshHierarchy::above() for all of them.
+void ActiveCut::step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place) {
+  const AttributeHierarchy& layer = hierarchy_.layers[tracked_[place]];
+  const CompactRanges& ranges = layer.attribute_ranges;
+  const CompactRanges::Range at_s = ranges.range(index_of(h_.node_of_split[index_of(s)]));
+  if (at_s.end - at_s.begin <= 1) return;
+  const CompactRanges::Range at_child = ranges.range(index_of(h_.child(s, second)));
+  const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
+  const std::size_t first = second ? parents.size() - (at_child.end - at_child.begin) : 0;
+  const bool has_several = at_child.end - at_child.begin > 1;
+  steps_.clear();
+  for (std::uint32_t a = at_child.begin; a < at_child.end; ++a) {
+    const RelativeAttribute to = parents[first + a - at_child.begin];
+    if (to == kRemoved) continue;
+    const Step step{layer.value_index(at_s.begin + to), layer.value_index(a)};
+    if (!has_several || step.above != step.below) steps_.push_back(step);
+  }
+  for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
+    const std::uint32_t below =
+        parts_[at.corner.part()].values[tracked_.size() * at.corner.index() + place];
+    for (const Step& step : steps_) {
+      if (has_several && step.below != below) continue;
+      set_value(at, place, step.above);
+      break;
     }
   }
 }
@@ -335,7 +426,9 @@ void ActiveCut::touch_derived(SplitId s) {
     const WedgeId wedge = h_.triangles[index_of(t)][0];
     for (const CornerAt& at : lists_.of(vertices_[map_.slot_at(wedge)].corners)) {
       ActiveTriangles& part = parts_[at.corner.part()];
-      if (part.ids[at.corner.triangle()] == t) part.touched.mark(at.corner.triangle());
+      if (at.wedge != wedge || part.ids[at.corner.triangle()] != t) continue;
+      part.is_derived[at.corner.triangle()] = is_done(s) ? 0 : 1;
+      part.touched.mark(at.corner.triangle());
     }
   }
 }

@@ -1,5 +1,5 @@
 // A cut through a hierarchy that moves by splits and merges: the active vertices, the corners that
-// stand at each, the active triangles with their slots and relative attribute indices.
+// stand at each, the active triangles with their slots and the values of their corners.
 //
 //   ActiveCut cut(hierarchy);             // nothing is split
 //   cut.split(cut.slot_of(root));         // v_t keeps the slot, v_u gets one
@@ -8,6 +8,10 @@
 // A split costs: one look-up per introduced triangle (its third vertex, WedgeMap), one comparison
 // per corner at v_s, one write per corner that goes to v_u. Nothing depends on the model's size.
 // Normals, colours and kinds are not computed here: what may have changed is marked.
+//
+// A corner at a vertex with several attributes of a layer keeps its value, not the relative index
+// of G03 3.6: on the walls of a city values stay while indices change with every move. Where a
+// value does change (AttributeHierarchy::keeps_values), the way goes by indices.
 //
 // A vertex without triangles has no wedges and no slot; its splits and merges are never needed. So
 // a split one of whose children has no triangles only renames the slot.
@@ -37,11 +41,13 @@ struct alignas(128) ActiveVertex {
   NodeId node = kNoNode;     // kNoNode: the slot is free
   SplitId split = kNoSplit;  // of the node
   WedgeId begin{}, end{};
-  Vec3i position;                  // grid units
-  std::uint32_t one_normal = 0;    // all its corners have the same (SN of DB03)
-  std::uint32_t normal_count = 0;  // of the normal layer at the node
-  std::uint32_t normal_begin = 0;  // and the first of them
+  Vec3i position;                   // grid units
+  std::uint32_t normal = kSeveral;  // the value that all its corners show (SN of DB03)
   CornerList corners;
+
+  static constexpr std::uint32_t kSeveral = kNone;
+  static constexpr std::uint32_t kNoNormal = kNone - 1;  // no triangle of now shows one
+  bool has_one_normal() const { return normal != kSeveral; }
 };
 static_assert(sizeof(ActiveVertex) == 128);
 
@@ -94,16 +100,8 @@ class ActiveCut {
     return lists_.of(vertices_[slot].corners);
   }
 
-  // Which of its normals a derived triangle shows.
-  bool is_derived(TriangleId t) const {
-    if (normal_layer_ == kNone) return true;
-    const SplitId s = h_.deriving_split(t);
-    return s != kNoSplit && !is_done(s);
-  }
   std::uint32_t normal_layer() const { return normal_layer_; }  // kNone: there is none
   std::uint32_t color_layer() const { return color_layer_; }
-  std::size_t tracked_count() const { return tracked_.size(); }
-  std::span<const std::uint32_t> tracked_layers() const { return tracked_; }
 
   // By DB03, of what the corners have now.
   Part kind_of(const ActiveTriangles& part, std::uint32_t triangle) const;
@@ -118,24 +116,33 @@ class ActiveCut {
   std::size_t bytes() const;  // of the state, the hierarchy apart
 
  private:
+  // It shows its geometric normal.
+  bool is_derived_now(TriangleId t) const {
+    if (normal_layer_ == kNone) return true;
+    const SplitId s = h_.deriving_split(t);
+    return s != kNoSplit && !is_done(s);
+  }
   std::uint32_t take_slot();
   void stand(std::uint32_t slot, NodeId node, const Vec3i& position);
-  // `relative`: per corner one for each tracked layer.
-  Part kind_of(TriangleId t, std::span<const std::uint32_t, 3> slots,
-               std::span<const RelativeAttribute> relative) const;
-  void touch(const CornerAt& at, bool one_normal) {
-    if (at.corner.part() != kSnPart || !one_normal || color_layer_ != kNone) {
-      parts_[at.corner.part()].touched.mark(at.corner.triangle());
-    }
-  }
-  void pass_down(SplitId s, std::uint32_t slot, bool second);
+  void stand_at_children(SplitId s, std::uint32_t first, std::uint32_t second,
+                         const Vec3i& position);
+  std::uint32_t normal_in(const CompactRanges::Range& attributes) const;
+  // `values`: per corner one for each tracked layer.
+  Part kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
+               std::span<const std::uint32_t> values) const;
+  // The value at a corner that has `kept` one of a tracked layer.
+  std::uint32_t value_of(std::size_t place, std::uint32_t slot, std::uint32_t kept) const;
+  bool has_several(std::size_t place, const ActiveVertex& v) const;
+  void pass_down(SplitId s, std::uint32_t slot, bool second, bool had_one_normal);
   void pass_up(SplitId s, std::uint32_t slot, bool second);
-  void touch_corners(std::uint32_t slot);
+  void step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place);
+  void step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place);
+  void set_value(const CornerAt& at, std::size_t place, std::uint32_t value);
+  void touch_corners(std::uint32_t slot, bool had_one_normal);
   void give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle);
   void take_corners(std::uint32_t from, std::uint32_t to);
   void activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
                 const std::array<std::uint32_t, 3>& slots);
-  std::size_t value_of(std::size_t layer, std::uint32_t slot, RelativeAttribute a) const;
   void deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to);
   void touch_derived(SplitId s);
   void prefetch_vertex(std::uint32_t slot) const {
@@ -168,14 +175,15 @@ class ActiveCut {
   CornerLists lists_;
   std::array<ActiveTriangles, kPartCount> parts_;
   ChangeSet vertex_changes_;
-  std::vector<CornerAt> leaving_;            // scratch of one move
-  std::vector<RelativeAttribute> arriving_;  // scratch of one triangle
-  // Scratch of one split: per attribute above, its first one below, and whether it has more.
-  struct Below {
-    RelativeAttribute first = kRemoved;
-    bool has_more = false;
+  std::vector<CornerAt> leaving_;        // scratch of one move
+  std::vector<std::uint32_t> arriving_;  // scratch of one triangle
+  // Scratch of one move: an attribute of v_s and what it is at a child.
+  struct Step {
+    std::uint32_t above = kNone, below = kNone;  // values
+    RelativeAttribute at_parent = 0;
+    bool has_more = false;  // others of the child as well
   };
-  std::vector<Below> below_;
+  std::vector<Step> steps_;
   std::vector<std::uint32_t> collapsed_;  // scratch of one merge: triangle keys
 };
 

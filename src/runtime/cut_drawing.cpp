@@ -21,7 +21,7 @@ Vec3f normal_of(const AttributeHierarchy& layer, std::size_t index) {
 // Of a derived triangle its geometric normal.
 Vec3f shown_normal(const ActiveCut& cut, const ActiveTriangles& part, std::uint32_t corner_index) {
   const std::uint32_t triangle = corner_index / 3;
-  if (cut.is_derived(part.ids[triangle])) {
+  if (part.is_derived[triangle] != 0) {
     const Vec3f n = geometric_normal_of(cut, part, triangle);
     if (n != Vec3f{} || cut.normal_layer() == kNone) return n;
   }
@@ -72,12 +72,8 @@ void CutDrawing::refresh_vertices(ActiveCut& cut) {
     const ActiveVertex& v = cut.vertices()[slot];
     if (v.node == kNoNode) return;
     positions_[slot] = draw_position(hierarchy.vertices.grid, v.position);
-    if (v.one_normal == 0) return;
-    const AttributeHierarchy& layer = hierarchy.layers[cut.normal_layer()];
-    if (v.normal_count == 0) return;  // no triangle of now shows one
-    const std::size_t i = v.normal_begin;
-    const std::size_t index = layer.value_of_attribute.empty() ? i : layer.value_of_attribute[i];
-    vertex_normals_[slot] = normal_of(layer, index);
+    if (v.normal >= ActiveVertex::kNoNormal) return;
+    vertex_normals_[slot] = normal_of(hierarchy.layers[cut.normal_layer()], v.normal);
   };
   cut.vertex_changes().take(positions_.size(), changes_.positions, refresh);
   changes_.vertex_normals = changes_.positions;
