@@ -196,9 +196,12 @@ struct AttributeHierarchy {
   Interpolation interpolation = Interpolation::Linear;
   std::uint32_t dimension = 1;
 
-  CompactRanges attribute_ranges{1};                // per node: its attributes
-  std::vector<float> values;                        // dimension each
-  PackedIndices<> value_of_attribute;               // or empty: attribute i has value i
+  CompactRanges attribute_ranges{1};   // per node: its attributes
+  std::vector<float> values;           // dimension each
+  PackedIndices<> value_of_attribute;  // or empty: attribute i has value i
+  // Per attribute: it has its place in value_of_attribute; else its value is that of its parent. Or
+  // empty: all have.
+  RankedBits has_value;
   PackedIndices<RelativeAttribute> leaf_attribute;  // per wedge, at its leaf; or empty: all are 0
 
   // Per split the relative index at v_s of each attribute of v_t, then of each one of v_u (the
@@ -215,17 +218,16 @@ struct AttributeHierarchy {
   // both are empty.
   // Per wedge 1 + its value where that is the same at all nodes at which a cut can show it, or 0.
   PackedIndices<> constant_of_wedge;
-  // Per split: every attribute of v_t and v_u that is not removed has its parent's value.
+  // Per split: set only if every attribute of v_t and v_u that is not removed has its parent's
+  // value.
   BitArray keeps_values;
 
   std::uint32_t attribute_count(NodeId n) const { return attribute_ranges.count(index_of(n)); }
-  // Of an attribute by its place in attribute_ranges.
-  std::uint32_t value_index(std::uint32_t attribute) const {
-    return value_of_attribute.empty() ? attribute : value_of_attribute[attribute];
-  }
-  std::span<const float> value(NodeId n, RelativeAttribute a) const {
-    const std::size_t v = value_index(attribute_ranges.begin(index_of(n)) + a);
-    return std::span<const float>(values).subspan(v * dimension, dimension);
+  // Of an attribute by its place in attribute_ranges. The only one of a node always has its own.
+  bool has_own_value(std::uint32_t i) const { return has_value.size() == 0 || has_value.test(i); }
+  std::uint32_t own_value(std::uint32_t i) const {
+    if (has_value.size() != 0) i = has_value.rank(i);
+    return value_of_attribute.empty() ? i : value_of_attribute[i];
   }
 };
 
@@ -255,8 +257,16 @@ struct MeshHierarchy {
       const std::uint32_t constant = attributes.constant_of_wedge[index_of(wedge)];
       if (constant != 0) return constant - 1;
     }
-    return attributes.value_index(attributes.attribute_ranges.begin(index_of(n)) +
-                                  attribute_at(layer, n, wedge));
+    return value_index(layer, n, attribute_at(layer, n, wedge));
+  }
+  // The number of an attribute's value in its layer, and the value. Time O(1), but O(depth) within
+  // regions where values stay the same.
+  std::uint32_t value_index(std::size_t layer, NodeId n, RelativeAttribute a) const;
+  std::span<const float> value(std::size_t layer, NodeId n, RelativeAttribute a) const {
+    const AttributeHierarchy& attributes = layers[layer];
+    return std::span<const float>(attributes.values)
+        .subspan(std::size_t(value_index(layer, n, a)) * attributes.dimension,
+                 attributes.dimension);
   }
 };
 

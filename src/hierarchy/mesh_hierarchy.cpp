@@ -60,6 +60,18 @@ RelativeAttribute MeshHierarchy::attribute_at(std::size_t layer, NodeId n, Wedge
   return a;
 }
 
+std::uint32_t MeshHierarchy::value_index(std::size_t layer, NodeId n, RelativeAttribute a) const {
+  const AttributeHierarchy& attributes = layers[layer];
+  std::uint32_t i = attributes.attribute_ranges.begin(index_of(n)) + a;
+  while (!attributes.has_own_value(i)) {
+    const SplitId s = vertices.split_above(n);
+    a = above(layer, s, vertices.is_second(n), a, WedgeId{});
+    n = vertices.node_of_split[index_of(s)];
+    i = attributes.attribute_ranges.begin(index_of(n)) + a;
+  }
+  return attributes.own_value(i);
+}
+
 namespace {
 
 template <typename T>
@@ -85,7 +97,8 @@ HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy) {
   bytes.splits = v.is_split.bytes() + stored_bytes(v.node_of_split) + stored_bytes(v.second_wedge) +
                  stored_bytes(v.bounds);
   for (const AttributeHierarchy& layer : hierarchy.layers) {
-    bytes.values += stored_bytes(layer.values) + stored_bytes(layer.value_of_attribute);
+    bytes.values += stored_bytes(layer.values) + stored_bytes(layer.value_of_attribute) +
+                    layer.has_value.bytes();
     bytes.attributes += layer.attribute_ranges.bytes() + stored_bytes(layer.leaf_attribute) +
                         layer.parents_of_split.bytes() + layer.branches_of_split.bytes() +
                         stored_bytes(layer.constant_of_wedge) + layer.keeps_values.bytes();

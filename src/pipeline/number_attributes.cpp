@@ -112,7 +112,10 @@ AttributeHierarchy number_attributes(const AttributeInput& input, std::size_t la
     result.branches_of_split.push_back(part(grown.branches, grown.branches_at[i]));
   }
   store_leaves(input.wedges.layers[layer], result);
-  if (!value_of_id.empty() && has_several(result)) {
+  // Where most wedges vary, as along the creases of a machine, it would not pay.
+  const auto varying = std::count(grown.varies_of_wedge.begin(), grown.varies_of_wedge.end(), true);
+  const bool most_stay = 2 * static_cast<std::size_t>(varying) <= grown.varies_of_wedge.size();
+  if (!value_of_id.empty() && has_several(result) && most_stay) {
     note_constants(input, layer, grown, value_of_id, result);
   }
   return result;

@@ -103,7 +103,7 @@ void ActiveCut::stand_at_children(SplitId s, std::uint32_t first, std::uint32_t 
 
 std::uint32_t ActiveCut::normal_in(const CompactRanges::Range& attributes) const {
   const std::uint32_t count = attributes.end - attributes.begin;
-  if (count == 1) return hierarchy_.layers[normal_layer_].value_index(attributes.begin);
+  if (count == 1) return hierarchy_.layers[normal_layer_].own_value(attributes.begin);
   return count == 0 ? ActiveVertex::kNoNormal : ActiveVertex::kSeveral;
 }
 
@@ -348,19 +348,23 @@ void ActiveCut::step_down(SplitId s, std::uint32_t slot, bool second, std::size_
   const std::uint32_t l = tracked_[place];
   const AttributeHierarchy& layer = hierarchy_.layers[l];
   const CompactRanges& ranges = layer.attribute_ranges;
-  const CompactRanges::Range at_s = ranges.range(index_of(h_.node_of_split[index_of(s)]));
-  const CompactRanges::Range at_child = ranges.range(index_of(h_.child(s, second)));
+  const NodeId node = h_.node_of_split[index_of(s)], child = h_.child(s, second);
+  const std::uint32_t count_above = ranges.count(index_of(node));
+  const std::uint32_t count_below = ranges.count(index_of(child));
   const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
-  const std::size_t first = second ? parents.size() - (at_child.end - at_child.begin) : 0;
-  const bool had_several = at_s.end - at_s.begin > 1;
-  steps_.assign(at_s.end - at_s.begin, {});
-  for (std::uint32_t a = at_child.begin; a < at_child.end; ++a) {
-    const RelativeAttribute to = parents[first + a - at_child.begin];
+  const std::size_t first = second ? parents.size() - count_below : 0;
+  const bool had_several = count_above > 1;
+  const auto value_below = [&](std::size_t a) {
+    return hierarchy_.value_index(l, child, static_cast<RelativeAttribute>(a));
+  };
+  steps_.assign(count_above, {});
+  for (std::size_t a = 0; a < count_below; ++a) {
+    const RelativeAttribute to = parents[first + a];
     if (to == kRemoved) continue;
     Step& step = steps_[to];
     step.has_more = step.below != kNone;
     if (step.has_more) continue;
-    step = {layer.value_index(at_s.begin + to), layer.value_index(a), to, false};
+    step = {hierarchy_.value_index(l, node, to), value_below(a), to, false};
   }
   const auto is_idle = [had_several](const Step& step) {
     return step.below == kNone || (had_several && !step.has_more && step.above == step.below);
@@ -373,8 +377,7 @@ void ActiveCut::step_down(SplitId s, std::uint32_t slot, bool second, std::size_
       if (had_several && step.above != above) continue;
       set_value(at, place,
                 step.has_more
-                    ? layer.value_index(at_child.begin +
-                                        hierarchy_.below(l, s, second, step.at_parent, at.wedge))
+                    ? value_below(hierarchy_.below(l, s, second, step.at_parent, at.wedge))
                     : step.below);
       break;
     }
@@ -393,19 +396,22 @@ void ActiveCut::pass_up(SplitId s, std::uint32_t slot, bool second) {
 
 // MeshHierarchy::above() for all of them.
 void ActiveCut::step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place) {
-  const AttributeHierarchy& layer = hierarchy_.layers[tracked_[place]];
+  const std::uint32_t l = tracked_[place];
+  const AttributeHierarchy& layer = hierarchy_.layers[l];
   const CompactRanges& ranges = layer.attribute_ranges;
-  const CompactRanges::Range at_s = ranges.range(index_of(h_.node_of_split[index_of(s)]));
-  if (at_s.end - at_s.begin <= 1) return;
-  const CompactRanges::Range at_child = ranges.range(index_of(h_.child(s, second)));
+  const NodeId node = h_.node_of_split[index_of(s)], child = h_.child(s, second);
+  if (ranges.count(index_of(node)) <= 1) return;
+  const std::uint32_t count_below = ranges.count(index_of(child));
   const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
-  const std::size_t first = second ? parents.size() - (at_child.end - at_child.begin) : 0;
-  const bool has_several = at_child.end - at_child.begin > 1;
+  const std::size_t first = second ? parents.size() - count_below : 0;
+  const bool has_several = count_below > 1;
+  const bool keeps = !layer.keeps_values.empty() && layer.keeps_values.test(index_of(s));
   steps_.clear();
-  for (std::uint32_t a = at_child.begin; a < at_child.end; ++a) {
-    const RelativeAttribute to = parents[first + a - at_child.begin];
+  for (std::size_t a = 0; a < count_below; ++a) {
+    const RelativeAttribute to = parents[first + a];
     if (to == kRemoved) continue;
-    const Step step{layer.value_index(at_s.begin + to), layer.value_index(a)};
+    const std::uint32_t below = hierarchy_.value_index(l, child, static_cast<RelativeAttribute>(a));
+    const Step step{keeps ? below : hierarchy_.value_index(l, node, to), below};
     if (!has_several || step.above != step.below) steps_.push_back(step);
   }
   for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {

@@ -19,7 +19,7 @@ std::uint32_t ActiveCut::value_of(std::size_t place, std::uint32_t slot, std::ui
   if (l == normal_layer_) return v.has_one_normal() ? v.normal : kept;
   const AttributeHierarchy& layer = hierarchy_.layers[l];
   const CompactRanges::Range range = layer.attribute_ranges.range(index_of(v.node));
-  return range.end - range.begin > 1 ? kept : layer.value_index(range.begin);
+  return range.end - range.begin > 1 ? kept : layer.own_value(range.begin);
 }
 
 Part ActiveCut::kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
@@ -58,7 +58,7 @@ std::size_t ActiveCut::value_index(const ActiveTriangles& part, std::uint32_t co
   }
   if (layer == normal_layer_) return vertices_[slot].normal;
   const AttributeHierarchy& source = hierarchy_.layers[layer];
-  return source.value_index(source.attribute_ranges.begin(index_of(vertices_[slot].node)));
+  return source.own_value(source.attribute_ranges.begin(index_of(vertices_[slot].node)));
 }
 
 SplitId ActiveCut::introducing_split(TriangleId t) const {

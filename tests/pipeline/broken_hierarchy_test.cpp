@@ -156,6 +156,7 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
       {"value out of range",
        [](MeshHierarchy& h) {
          AttributeHierarchy& layer = h.layers[0];
+         layer.has_value = {};
          PackedIndices<> indices(32);
          for (std::size_t i = 0; i < layer.attribute_ranges.total(); ++i) {
            indices.push_back(std::uint32_t(layer.values.size()));
@@ -206,6 +207,14 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
          for (RelativeAttribute& p : parents) p = kRemoved;
          set_parents(h.layers[0], rich_split(h), parents);
        }},
+      {"a value that should stay changes",
+       [](MeshHierarchy& h) {
+         BitArray& keeps = h.layers[0].keeps_values;
+         REQUIRE(!keeps.empty());
+         const std::size_t split_count = keeps.size();
+         keeps = {};
+         for (std::size_t s = 0; s < split_count; ++s) keeps.append(1, 1);
+       }},
       {"no cut can show",
        [](MeshHierarchy& h) {
          AttributeHierarchy& layer = h.layers[0];
@@ -219,6 +228,7 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
            layer.values.resize(layer.values.size() + layer.dimension, 1.0f);
          } else {
            layer.value_of_attribute.push_back(0);
+           if (layer.has_value.size() != 0) layer.has_value.push_back(true);
          }
          const std::size_t split = index_of(h.vertices.split_above(NodeId(std::uint32_t(last))));
          ParentMap parents = parents_of(layer, split);
@@ -230,6 +240,39 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
          layer.attribute_ranges = ranges;
          set_parents(layer, split, parents);
        }},
+  };
+  for (const Harm& harm : harms) check_named(harm, c.hierarchy);
+}
+
+// Walls keep their normals, whatever becomes of their corners.
+HierarchyCase city_case() {
+  return simplified_case(city_blocks(6, 2));
+}
+
+TEST_CASE("a hierarchy that is wrong about values that stay is refused, with the reason") {
+  const HierarchyCase c = city_case();
+  REQUIRE(check_hierarchy(c.hierarchy).ok());
+  REQUIRE(c.hierarchy.layers[0].has_value.size() != 0);
+  const Harm harms[] = {
+      {"where values stay is not told of all",
+       [](MeshHierarchy& h) { h.layers[0].keeps_values.append(1, 1); }},
+      {"where values stay is not told of all",
+       [](MeshHierarchy& h) { h.layers[0].constant_of_wedge = {}; }},
+      {"a constant value changes",
+       [](MeshHierarchy& h) {
+         auto& constants = h.layers[0].constant_of_wedge;
+         set(constants, 0, constants[0] == 1 ? 2u : 1u);
+       }},
+      {"nowhere to have a value from",
+       [](MeshHierarchy& h) {
+         AttributeHierarchy& layer = h.layers[0];
+         RankedBits none;
+         for (std::size_t i = 0; i < layer.has_value.size(); ++i) none.push_back(false);
+         layer.has_value = none;
+         layer.value_of_attribute = PackedIndices<>(1);
+         layer.values = {};
+       }},
+      {"an attribute lacks its value", [](MeshHierarchy& h) { h.layers[0].has_value = {}; }},
   };
   for (const Harm& harm : harms) check_named(harm, c.hierarchy);
 }

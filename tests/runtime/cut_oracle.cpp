@@ -207,10 +207,8 @@ std::string difference(const CutOracle& oracle, const ActiveCut& cut) {
       for (std::size_t l = 0; l < h.layers.size(); ++l) {
         const RelativeAttribute a = expected->relative[l][k];
         if (a >= h.layers[l].attribute_count(v.node)) return "missing attribute" + of;
-        const std::size_t i = h.layers[l].attribute_ranges.begin(index_of(v.node)) + a;
-        const std::size_t value =
-            h.layers[l].value_of_attribute.empty() ? i : h.layers[l].value_of_attribute[i];
-        if (cut.value_index(part, corner, l) != value) return h.layers[l].name + of;
+        if (cut.value_index(part, corner, l) != h.value_index(l, v.node, a))
+          return h.layers[l].name + of;
       }
     }
   }
