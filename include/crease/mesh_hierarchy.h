@@ -218,6 +218,7 @@ struct AttributeHierarchy {
   // both are empty.
   // Per wedge 1 + its value where that is the same at all nodes at which a cut can show it, or 0.
   PackedIndices<> constant_of_wedge;
+  // Where a split does not keep values, all attributes of v_s, v_t and v_u have their own.
   // Per split: set only if every attribute of v_t and v_u that is not removed has its parent's
   // value.
   BitArray keeps_values;
@@ -225,9 +226,13 @@ struct AttributeHierarchy {
   std::uint32_t attribute_count(NodeId n) const { return attribute_ranges.count(index_of(n)); }
   // Of an attribute by its place in attribute_ranges. The only one of a node always has its own.
   bool has_own_value(std::uint32_t i) const { return has_value.size() == 0 || has_value.test(i); }
-  std::uint32_t own_value(std::uint32_t i) const {
-    if (has_value.size() != 0) i = has_value.rank(i);
-    return value_of_attribute.empty() ? i : value_of_attribute[i];
+  std::uint32_t own_value(std::uint32_t i) const { return stored_value(place_of_value(i)); }
+  // The same in two steps: what has its own value side by side has its places so.
+  std::uint32_t place_of_value(std::uint32_t i) const {
+    return has_value.size() == 0 ? i : has_value.rank(i);
+  }
+  std::uint32_t stored_value(std::uint32_t place) const {
+    return value_of_attribute.empty() ? place : value_of_attribute[place];
   }
 };
 
@@ -250,15 +255,6 @@ struct MeshHierarchy {
   // is what a triangle that becomes active needs. Time O(1) if n has one attribute, else O(depth
   // from n to the next node that has one, or to the leaf).
   RelativeAttribute attribute_at(std::size_t layer, NodeId n, WedgeId wedge) const;
-  // And its value. Time O(1) where the wedge has one for all.
-  std::uint32_t value_at(std::size_t layer, NodeId n, WedgeId wedge) const {
-    const AttributeHierarchy& attributes = layers[layer];
-    if (!attributes.constant_of_wedge.empty()) {
-      const std::uint32_t constant = attributes.constant_of_wedge[index_of(wedge)];
-      if (constant != 0) return constant - 1;
-    }
-    return value_index(layer, n, attribute_at(layer, n, wedge));
-  }
   // The number of an attribute's value in its layer, and the value. Time O(1), but O(depth) within
   // regions where values stay the same.
   std::uint32_t value_index(std::size_t layer, NodeId n, RelativeAttribute a) const;
@@ -268,6 +264,9 @@ struct MeshHierarchy {
         .subspan(std::size_t(value_index(layer, n, a)) * attributes.dimension,
                  attributes.dimension);
   }
+
+ private:
+  RelativeAttribute attribute_far_below(std::size_t layer, NodeId n, WedgeId wedge) const;
 };
 
 // Where the bytes are.

@@ -121,20 +121,28 @@ class ValueCheck {
     const ParentMaps::Map parents = layer_.parents_of_split.of(index_of(s));
     const std::uint32_t above = begin(h_.node_of_split[index_of(s)]);
     std::size_t member = 0;
+    const bool is_said_to_keep =
+        !layer_.keeps_values.empty() && layer_.keeps_values.test(index_of(s));
+    const NodeId node = h_.node_of_split[index_of(s)];
+    for (std::uint32_t i = above; !is_said_to_keep && i < end(node); ++i) {
+      if (!layer_.has_own_value(i)) return broken_value(node);
+    }
     bool keeps = true;
     for (NodeId child : {h_.first_child(s), h_.second_child(s)}) {
       const bool is_only = end(child) - begin(child) == 1;
       for (std::uint32_t i = begin(child); i < end(child); ++i, ++member) {
         const RelativeAttribute parent = parents.empty() ? kRemoved : parents[member];
         const bool has_own = layer_.has_own_value(i);
-        if (!has_own && (is_only || parent == kRemoved)) return broken_value(child);
+        if (!has_own && (is_only || parent == kRemoved || !is_said_to_keep)) {
+          return broken_value(child);
+        }
         value_of_attribute_[i] =
             has_own ? layer_.own_value(i) : value_of_attribute_[above + parent];
         keeps &=
             parent == kRemoved || value_of_attribute_[i] == value_of_attribute_[above + parent];
       }
     }
-    if (!keeps && !layer_.keeps_values.empty() && layer_.keeps_values.test(index_of(s))) {
+    if (!keeps && is_said_to_keep) {
       return broken_layer(layer_, "a value that should stay changes" + at_split(index_of(s)));
     }
     return std::nullopt;

@@ -43,7 +43,9 @@ RelativeAttribute MeshHierarchy::below(std::size_t layer, SplitId s, bool second
   return after == runs.begin() ? RelativeAttribute{0} : (after - 1)->at_child;
 }
 
-RelativeAttribute MeshHierarchy::attribute_at(std::size_t layer, NodeId n, WedgeId wedge) const {
+// As attribute_at(), however deep it is.
+RelativeAttribute MeshHierarchy::attribute_far_below(std::size_t layer, NodeId n,
+                                                     WedgeId wedge) const {
   const AttributeHierarchy& attributes = layers[layer];
   NodeId at = n;
   SplitId s = kNoSplit;
@@ -56,6 +58,42 @@ RelativeAttribute MeshHierarchy::attribute_at(std::size_t layer, NodeId n, Wedge
   }
   for (; at != n; at = vertices.parent(at)) {
     a = above(layer, vertices.split_above(at), vertices.is_second(at), a, wedge);
+  }
+  return a;
+}
+
+// Down to where there is no choice, and up again by parent maps. What both ways need is noted on
+// the way down; deeper than kMost is rare.
+RelativeAttribute MeshHierarchy::attribute_at(std::size_t layer, NodeId n, WedgeId wedge) const {
+  constexpr std::size_t kMost = 64;
+  struct Step {
+    SplitId split;
+    std::uint32_t first;  // of the child's attributes in the map
+  };
+  Step steps[kMost];
+  std::size_t count = 0;
+  const AttributeHierarchy& attributes = layers[layer];
+  std::uint32_t choices = attributes.attribute_count(n);
+  SplitId s = kNoSplit;
+  while (choices > 1 && (s = vertices.split_of(n)) != kNoSplit) {
+    const bool second = vertices.goes_to_second(s, wedge);
+    if (count == kMost) break;
+    const auto ranges = attributes.attribute_ranges.two_ranges(index_of(vertices.first_child(s)));
+    const std::uint32_t first = ranges[0].end - ranges[0].begin;
+    steps[count++] = {s, second ? first : 0};
+    choices = second ? ranges[1].end - ranges[1].begin : first;
+    n = vertices.child(s, second);
+  }
+  RelativeAttribute a = 0;
+  if (count == kMost && choices > 1 && s != kNoSplit) {
+    a = attribute_far_below(layer, n, wedge);
+  } else if (choices > 1 && !attributes.leaf_attribute.empty()) {
+    a = attributes.leaf_attribute[index_of(wedge)];
+  }
+  while (count > 0) {
+    const Step& step = steps[--count];
+    const ParentMaps::Map parents = attributes.parents_of_split.of(index_of(step.split));
+    a = parents.empty() ? RelativeAttribute{0} : parents[step.first + a];
   }
   return a;
 }

@@ -94,7 +94,13 @@ class ActiveCut {
   void prefetch_split_further(std::uint32_t slot, SplitId s) const;
   void prefetch_merge(std::uint32_t slot, SplitId s) const;
   void prefetch_merge_further(std::uint32_t slot, SplitId s) const;
+  void prefetch_born(SplitId s) const;
   void prefetch_siblings(SplitId s) const;
+  void prefetch_siblings_further(SplitId s) const;
+  void prefetch_vertices_of(const ActiveTriangles& part, std::size_t triangle) const {
+    const std::uint32_t* const slots = &part.slots[3 * triangle];
+    for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[slots[k]]);
+  }
 
   std::span<const CornerAt> corners_of(std::uint32_t slot) const {
     return lists_.of(vertices_[slot].corners);
@@ -108,6 +114,12 @@ class ActiveCut {
   // The value that a corner shows, if its triangle shows stored ones: its index in the layer.
   std::size_t value_index(const ActiveTriangles& part, std::uint32_t corner_index,
                           std::size_t layer) const;
+  // Of the normal layer.
+  std::uint32_t normal_index(const ActiveTriangles& part, std::size_t corner_index) const {
+    const ActiveVertex& v = vertices_[part.slots[corner_index]];
+    if (v.has_one_normal()) return v.normal;
+    return part.values[tracked_.size() * corner_index + place_of_layer_[normal_layer_]];
+  }
   // Takes the triangle out of one part and into another one; nothing but its place changes.
   void move_triangle(Part from, std::uint32_t triangle, Part to);
   // No part has holes afterwards.
@@ -131,19 +143,38 @@ class ActiveCut {
   Part kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
                std::span<const std::uint32_t> values) const;
   // The value at a corner that has `kept` one of a tracked layer.
-  std::uint32_t value_of(std::size_t place, std::uint32_t slot, std::uint32_t kept) const;
-  bool has_several(std::size_t place, const ActiveVertex& v) const;
-  void pass_down(SplitId s, std::uint32_t slot, bool second, bool had_one_normal);
-  void pass_up(SplitId s, std::uint32_t slot, bool second);
+  std::uint32_t value_of(std::size_t place, std::uint32_t slot, std::uint32_t kept) const {
+    const ActiveVertex& v = vertices_[slot];
+    if (tracked_[place] == normal_layer_) return v.has_one_normal() ? v.normal : kept;
+    const AttributeHierarchy& layer = hierarchy_.layers[tracked_[place]];
+    const CompactRanges::Range range = layer.attribute_ranges.range(index_of(v.node));
+    return range.end - range.begin > 1 ? kept : layer.own_value(range.begin);
+  }
+  bool has_several(std::size_t place, const ActiveVertex& v) const {
+    const std::uint32_t l = tracked_[place];
+    return l == normal_layer_ ? !v.has_one_normal()
+                              : hierarchy_.layers[l].attribute_count(v.node) > 1;
+  }
+  std::uint32_t value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge) const;
+  // Of the corners at one child, or where `other` is one, at both.
+  void pass_down(SplitId s, std::uint32_t first, std::uint32_t second, bool had_one_normal);
+  void pass_up(SplitId s, std::uint32_t first, std::uint32_t second);
   void step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place);
   void step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place);
-  void set_value(const CornerAt& at, std::size_t place, std::uint32_t value);
+  std::uint32_t kept_value(const CornerAt& at, std::size_t place) const {
+    return parts_[at.corner.part()].values[tracked_.size() * at.corner.index() + place];
+  }
+  void set_value(const CornerAt& at, std::size_t place, std::uint32_t value) {
+    ActiveTriangles& part = parts_[at.corner.part()];
+    part.values[tracked_.size() * at.corner.index() + place] = value;
+    part.touched.mark(at.corner.triangle());
+  }
   void touch_corners(std::uint32_t slot, bool had_one_normal);
   void give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle);
   void take_corners(std::uint32_t from, std::uint32_t to);
   void activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
                 const std::array<std::uint32_t, 3>& slots);
-  void deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to);
+  void deactivate(CornerRef corner, std::uint32_t from);
   void touch_derived(SplitId s);
   void prefetch_vertex(std::uint32_t slot) const {
     const char* const vertex = reinterpret_cast<const char*>(&vertices_[slot]);
@@ -167,6 +198,7 @@ class ActiveCut {
   std::uint32_t normal_layer_ = kNone, color_layer_ = kNone;
   std::vector<std::uint32_t> tracked_;         // layers that have nodes of several attributes
   std::vector<std::uint32_t> place_of_layer_;  // in tracked_, or kNone
+  bool tracks_others_ = false;                 // layers beside normals
   bool touches_triangles_ = false;             // some triangle is, or may become, other than SN
   std::vector<std::uint64_t> done_;            // a bit a split
   WedgeMap map_;
@@ -184,7 +216,6 @@ class ActiveCut {
     bool has_more = false;  // others of the child as well
   };
   std::vector<Step> steps_;
-  std::vector<std::uint32_t> collapsed_;  // scratch of one merge: triangle keys
 };
 
 }  // namespace crease

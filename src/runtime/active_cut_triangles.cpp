@@ -7,21 +7,6 @@
 
 namespace crease {
 
-bool ActiveCut::has_several(std::size_t place, const ActiveVertex& v) const {
-  const std::uint32_t l = tracked_[place];
-  return l == normal_layer_ ? !v.has_one_normal()
-                            : hierarchy_.layers[l].attribute_count(v.node) > 1;
-}
-
-std::uint32_t ActiveCut::value_of(std::size_t place, std::uint32_t slot, std::uint32_t kept) const {
-  const ActiveVertex& v = vertices_[slot];
-  const std::uint32_t l = tracked_[place];
-  if (l == normal_layer_) return v.has_one_normal() ? v.normal : kept;
-  const AttributeHierarchy& layer = hierarchy_.layers[l];
-  const CompactRanges::Range range = layer.attribute_ranges.range(index_of(v.node));
-  return range.end - range.begin > 1 ? kept : layer.own_value(range.begin);
-}
-
 Part ActiveCut::kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
                         std::span<const std::uint32_t> values) const {
   if (normal_layer_ == kNone) return kFnPart;
@@ -116,6 +101,7 @@ void ActiveCut::fill_holes() {
       part.holes.pop_back();
       if (hole >= part.ids.size() || part.ids[hole] != kNoTriangle) continue;
       const auto last = static_cast<std::uint32_t>(part.ids.size() - 1);
+      if (last >= 4 && part.ids[last - 4] != kNoTriangle) prefetch_vertices_of(part, last - 4);
       copy_triangle(p, last, p, hole);
       part.ids[hole] = part.ids[last];
       part.ids.pop_back();

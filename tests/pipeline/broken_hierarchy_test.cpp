@@ -207,14 +207,6 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
          for (RelativeAttribute& p : parents) p = kRemoved;
          set_parents(h.layers[0], rich_split(h), parents);
        }},
-      {"a value that should stay changes",
-       [](MeshHierarchy& h) {
-         BitArray& keeps = h.layers[0].keeps_values;
-         REQUIRE(!keeps.empty());
-         const std::size_t split_count = keeps.size();
-         keeps = {};
-         for (std::size_t s = 0; s < split_count; ++s) keeps.append(1, 1);
-       }},
       {"no cut can show",
        [](MeshHierarchy& h) {
          AttributeHierarchy& layer = h.layers[0];
@@ -275,6 +267,21 @@ TEST_CASE("a hierarchy that is wrong about values that stay is refused, with the
       {"an attribute lacks its value", [](MeshHierarchy& h) { h.layers[0].has_value = {}; }},
   };
   for (const Harm& harm : harms) check_named(harm, c.hierarchy);
+}
+
+// Only some attributes have a value of their own that a split is said to keep.
+TEST_CASE("a split that changes a value and says it does not is found") {
+  const HierarchyCase c = city_case();
+  const PackedIndices<>& values = c.hierarchy.layers[0].value_of_attribute;
+  bool found = false;
+  for (std::size_t i = 0; i < values.size() && !found; ++i) {
+    MeshHierarchy h = c.hierarchy;
+    set(h.layers[0].value_of_attribute, i, values[i] == 0 ? 1u : 0u);
+    const Status status = check_hierarchy(h);
+    REQUIRE(!status.ok());
+    found = status.failure().message.find("a value that should stay changes") != std::string::npos;
+  }
+  CHECK(found);
 }
 
 TEST_CASE("leaves that are not the mesh are told from it") {
