@@ -202,7 +202,8 @@ struct AttributeHierarchy {
   // Per attribute: it has its place in value_of_attribute; else its value is that of its parent. Or
   // empty: all have.
   RankedBits has_value;
-  PackedIndices<RelativeAttribute> leaf_attribute;  // per wedge, at its leaf; or empty: all are 0
+  // Per wedge, at its leaf. Or empty: a leaf with several has a wedge for each, in their order.
+  PackedIndices<RelativeAttribute> leaf_attribute;
 
   // Per split the relative index at v_s of each attribute of v_t, then of each one of v_u (the
   // parent maps of G03 3.6). Empty where neither has more than one and all become attribute 0, and
@@ -251,6 +252,8 @@ struct MeshHierarchy {
   // And back: the attribute at v_t, or v_u if `second`, of a corner that stands at v_s with a.
   RelativeAttribute below(std::size_t layer, SplitId s, bool second, RelativeAttribute a,
                           WedgeId wedge) const;
+  // The attribute of a wedge at its leaf.
+  RelativeAttribute at_leaf(std::size_t layer, NodeId leaf, WedgeId wedge) const;
   // The attribute at node n, which the wedge's leaf is under, of a corner that can stand there. It
   // is what a triangle that becomes active needs. Time O(1) if n has one attribute, else O(depth
   // from n to the next node that has one, or to the leaf).

@@ -190,8 +190,7 @@ class CornerWalk {
 
  private:
   Broken walk(WedgeId wedge, NodeId node, NodeId end) {
-    RelativeAttribute a = layer_.leaf_attribute.empty() ? RelativeAttribute{0}
-                                                        : layer_.leaf_attribute[index_of(wedge)];
+    RelativeAttribute a = hierarchy_.at_leaf(number_, node, wedge);
     while (true) {
       if (a >= layer_.attribute_count(node)) {
         return broken_layer(layer_,

@@ -43,6 +43,21 @@ RelativeAttribute MeshHierarchy::below(std::size_t layer, SplitId s, bool second
   return after == runs.begin() ? RelativeAttribute{0} : (after - 1)->at_child;
 }
 
+RelativeAttribute MeshHierarchy::at_leaf(std::size_t layer, NodeId leaf, WedgeId wedge) const {
+  const AttributeHierarchy& attributes = layers[layer];
+  if (!attributes.leaf_attribute.empty()) return attributes.leaf_attribute[index_of(wedge)];
+  const std::uint32_t count = attributes.attribute_count(leaf);
+  if (count <= 1) return 0;
+  std::size_t first = 0;
+  if (vertices.is_root(leaf)) {
+    first = index_of(vertices.root_wedges[index_of(leaf)]);
+  } else {  // of two children, one begins where the other one ends
+    first = index_of(vertices.second_wedge[index_of(vertices.split_above(leaf))]);
+    if (!vertices.is_second(leaf)) first -= count;
+  }
+  return static_cast<RelativeAttribute>(index_of(wedge) - first);
+}
+
 // As attribute_at(), however deep it is.
 RelativeAttribute MeshHierarchy::attribute_far_below(std::size_t layer, NodeId n,
                                                      WedgeId wedge) const {
@@ -52,10 +67,8 @@ RelativeAttribute MeshHierarchy::attribute_far_below(std::size_t layer, NodeId n
   while (attributes.attribute_count(at) > 1 && (s = vertices.split_of(at)) != kNoSplit) {
     at = vertices.child(s, vertices.goes_to_second(s, wedge));
   }
-  RelativeAttribute a = 0;
-  if (attributes.attribute_count(at) > 1 && !attributes.leaf_attribute.empty()) {
-    a = attributes.leaf_attribute[index_of(wedge)];
-  }
+  RelativeAttribute a =
+      attributes.attribute_count(at) > 1 ? at_leaf(layer, at, wedge) : RelativeAttribute{0};
   for (; at != n; at = vertices.parent(at)) {
     a = above(layer, vertices.split_above(at), vertices.is_second(at), a, wedge);
   }
@@ -87,8 +100,8 @@ RelativeAttribute MeshHierarchy::attribute_at(std::size_t layer, NodeId n, Wedge
   RelativeAttribute a = 0;
   if (count == kMost && choices > 1 && s != kNoSplit) {
     a = attribute_far_below(layer, n, wedge);
-  } else if (choices > 1 && !attributes.leaf_attribute.empty()) {
-    a = attributes.leaf_attribute[index_of(wedge)];
+  } else if (choices > 1) {
+    a = at_leaf(layer, n, wedge);
   }
   while (count > 0) {
     const Step& step = steps[--count];

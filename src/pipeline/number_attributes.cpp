@@ -69,6 +69,25 @@ void note_constants(const AttributeInput& input, std::size_t layer, const GrownA
   }
 }
 
+// Of the attributes of leaves that have several: then wedges tell them apart by their order.
+bool each_has_one_wedge(const LeafAttributes& leaves,
+                        const std::vector<RelativeAttribute>& relative) {
+  std::vector<std::uint32_t> wedge_count(leaves.attributes.size(), 0);
+  for (std::uint32_t attribute : leaves.of_wedge) ++wedge_count[attribute];
+  for (std::size_t v = 0; v + 1 < leaves.first_of_vertex.size(); ++v) {
+    const std::uint32_t first = leaves.first_of_vertex[v], end = leaves.first_of_vertex[v + 1];
+    for (std::uint32_t a = first; a < end; ++a) {
+      if (end - first > 1 && wedge_count[a] != 1) return false;
+    }
+  }
+  // Another layer may have ordered them.
+  for (std::size_t w = 0; w < leaves.of_wedge.size(); ++w) {
+    const std::uint32_t a = leaves.of_wedge[w];
+    if (relative[a] > 0 && (w == 0 || leaves.of_wedge[w - 1] + 1 != a)) return false;
+  }
+  return true;
+}
+
 void store_leaves(const LeafAttributes& leaves, AttributeHierarchy& result) {
   std::vector<RelativeAttribute> relative;
   for (std::size_t v = 0; v + 1 < leaves.first_of_vertex.size(); ++v) {
@@ -79,6 +98,7 @@ void store_leaves(const LeafAttributes& leaves, AttributeHierarchy& result) {
   }
   const auto most = std::max_element(relative.begin(), relative.end());
   if (most == relative.end() || *most == 0) return;
+  if (result.parents_of_split.list_count() > 0 && each_has_one_wedge(leaves, relative)) return;
   result.leaf_attribute = PackedIndices<RelativeAttribute>(bits_for(*most + std::size_t(1)));
   for (std::uint32_t attribute : leaves.of_wedge) {
     result.leaf_attribute.push_back(relative[attribute]);

@@ -94,7 +94,7 @@ class ActiveCut {
   void prefetch_split_further(std::uint32_t slot, SplitId s) const;
   void prefetch_merge(std::uint32_t slot, SplitId s) const;
   void prefetch_merge_further(std::uint32_t slot, SplitId s) const;
-  void prefetch_born(SplitId s) const;
+  void prefetch_born(std::uint32_t slot, SplitId s) const;
   void prefetch_siblings(SplitId s) const;
   void prefetch_siblings_further(SplitId s) const;
   void prefetch_vertices_of(const ActiveTriangles& part, std::size_t triangle) const {

@@ -108,7 +108,7 @@ void Refiner::fetch_splits(const ActiveCut& cut) const {
   const std::size_t i = splits_.next, count = wishes.size();
   if (i + 12 < count) cut.prefetch_split(wishes[i + 12].slot, wishes[i + 12].split);
   if (i + 8 < count) cut.prefetch_split_further(wishes[i + 8].slot, wishes[i + 8].split);
-  if (i + 4 < count) cut.prefetch_born(wishes[i + 4].split);
+  if (i + 4 < count) cut.prefetch_born(wishes[i + 4].slot, wishes[i + 4].split);
 }
 
 void Refiner::do_merges(ActiveCut& cut) {

@@ -200,7 +200,11 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
          h.layers[0].branches_of_split = none;
        }},
       {"an attribute is missing",
-       [](MeshHierarchy& h) { set(h.layers[0].leaf_attribute, 0, RelativeAttribute{1000}); }},
+       [](MeshHierarchy& h) {
+         PackedIndices<RelativeAttribute> far(16);
+         for (std::size_t w = 0; w < h.vertices.wedge_count(); ++w) far.push_back(1000);
+         h.layers[0].leaf_attribute = far;
+       }},
       {"a live attribute is removed",
        [](MeshHierarchy& h) {
          ParentMap parents = parents_of(h.layers[0], rich_split(h));

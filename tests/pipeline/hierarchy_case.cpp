@@ -136,8 +136,7 @@ NodeId descend(const VertexHierarchy& h, const std::vector<bool>& done, WedgeId 
 RelativeAttribute walked_up(const HierarchyCase& c, std::size_t layer, NodeId leaf, NodeId to,
                             WedgeId wedge) {
   const MeshHierarchy& h = c.hierarchy;
-  const auto& at_leaf = h.layers[layer].leaf_attribute;
-  RelativeAttribute a = at_leaf.empty() ? RelativeAttribute{0} : at_leaf[index_of(wedge)];
+  RelativeAttribute a = h.at_leaf(layer, leaf, wedge);
   for (NodeId n = leaf; n != to; n = h.vertices.parent(n)) {
     a = h.above(layer, h.vertices.split_above(n), h.vertices.is_second(n), a, wedge);
   }

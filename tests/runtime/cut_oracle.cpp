@@ -79,8 +79,7 @@ NodeId CutOracle::active_ancestor(NodeId leaf) const {
 
 RelativeAttribute CutOracle::attribute(std::size_t layer, WedgeId wedge, NodeId node) const {
   const MeshHierarchy& h = hierarchy();
-  const auto& at_leaf = h.layers[layer].leaf_attribute;
-  RelativeAttribute a = at_leaf.empty() ? RelativeAttribute{0} : at_leaf[index_of(wedge)];
+  RelativeAttribute a = h.at_leaf(layer, leaf_of_wedge_[index_of(wedge)], wedge);
   for (NodeId n = leaf_of_wedge_[index_of(wedge)]; n != node; n = h.vertices.parent(n)) {
     a = h.above(layer, h.vertices.split_above(n), h.vertices.is_second(n), a, wedge);
   }
