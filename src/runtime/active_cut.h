@@ -156,7 +156,7 @@ class ActiveCut {
                               : hierarchy_.layers[l].attribute_count(v.node) > 1;
   }
   std::uint32_t value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge) const;
-  // Of the corners at one child, or where `other` is one, at both.
+  // Of the corners at both children; kNoSlot where one has no triangles.
   void pass_down(SplitId s, std::uint32_t first, std::uint32_t second, bool had_one_normal);
   void pass_up(SplitId s, std::uint32_t first, std::uint32_t second);
   void step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place);
