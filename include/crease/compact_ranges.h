@@ -8,6 +8,7 @@
 // A key that is ordinary costs 1.5 bits, another one 4 bytes on top. Everything is O(1).
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -91,6 +92,21 @@ class CompactRanges {
     const std::uint32_t begin = static_cast<std::uint32_t>(key) * usual_ + before;
     if (!is_unusual_.test(key)) return {begin, begin + usual_};
     return {begin, begin + usual_ + (excess_[rank + 1] - before)};
+  }
+  // Of this key and of the next one.
+  std::array<Range, 2> two_ranges(std::size_t key) const {
+    std::uint32_t rank = is_unusual_.rank(key);
+    std::uint32_t begin = static_cast<std::uint32_t>(key) * usual_ + excess_[rank];
+    std::array<Range, 2> found;
+    for (std::size_t i = 0; i < 2; ++i) {
+      found[i] = {begin, begin + usual_};
+      if (is_unusual_.test(key + i)) {
+        found[i].end += excess_[rank + 1] - excess_[rank];
+        ++rank;
+      }
+      begin = found[i].end;
+    }
+    return found;
   }
   bool is_usual(std::size_t key) const { return !is_unusual_.test(key); }
   std::uint32_t total() const {

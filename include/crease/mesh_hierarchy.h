@@ -96,9 +96,7 @@ struct TriangleRange {
 struct TriangleWedges {
   PackedIndices<WedgeId> of_corner;
 
-  std::array<WedgeId, 3> operator[](std::size_t t) const {
-    return {of_corner[3 * t], of_corner[3 * t + 1], of_corner[3 * t + 2]};
-  }
+  std::array<WedgeId, 3> operator[](std::size_t t) const { return of_corner.three_from(3 * t); }
   std::size_t size() const { return of_corner.size() / 3; }
 };
 
@@ -161,10 +159,9 @@ struct VertexHierarchy {
     const std::size_t i = index_of(n) - root_count;
     if (is_wide.test(i)) return wide_deltas[is_wide.rank(i)];
     const std::uint32_t half = 1u << (deltas.bits() - 1);
-    const auto component = [&](std::size_t k) {
-      return static_cast<std::int32_t>(deltas[3 * i + k] - half);
-    };
-    return {component(0), component(1), component(2)};
+    const auto [x, y, z] = deltas.three_from(3 * i);
+    return {static_cast<std::int32_t>(x - half), static_cast<std::int32_t>(y - half),
+            static_cast<std::int32_t>(z - half)};
   }
   // From the root on; a cut keeps the positions of its nodes instead. Time O(depth).
   Vec3i position_of(NodeId n) const;
@@ -199,10 +196,14 @@ struct AttributeHierarchy {
   Interpolation interpolation = Interpolation::Linear;
   std::uint32_t dimension = 1;
 
-  CompactRanges attribute_ranges{1};                // per node: its attributes
-  std::vector<float> values;                        // dimension each
-  PackedIndices<> value_of_attribute;               // or empty: attribute i has value i
-  PackedIndices<RelativeAttribute> leaf_attribute;  // per wedge, at its leaf; or empty: all are 0
+  CompactRanges attribute_ranges{1};   // per node: its attributes
+  std::vector<float> values;           // dimension each
+  PackedIndices<> value_of_attribute;  // or empty: attribute i has value i
+  // Per attribute: it has its place in value_of_attribute; else its value is that of its parent. Or
+  // empty: all have.
+  RankedBits has_value;
+  // Per wedge, at its leaf. Or empty: a leaf with several has a wedge for each, in their order.
+  PackedIndices<RelativeAttribute> leaf_attribute;
 
   // Per split the relative index at v_s of each attribute of v_t, then of each one of v_u (the
   // parent maps of G03 3.6). Empty where neither has more than one and all become attribute 0, and
@@ -213,11 +214,26 @@ struct AttributeHierarchy {
   // ascending.
   SparseLists<BranchRun> branches_of_split;
 
+  // Where nodes have several attributes and values repeat, as on the walls of a city, hardly any
+  // corner's value ever changes; that is told here, so that moves need not follow attributes. Else
+  // both are empty.
+  // Per wedge 1 + its value where that is the same at all nodes at which a cut can show it, or 0.
+  PackedIndices<> constant_of_wedge;
+  // Where a split does not keep values, all attributes of v_s, v_t and v_u have their own.
+  // Per split: set only if every attribute of v_t and v_u that is not removed has its parent's
+  // value.
+  BitArray keeps_values;
+
   std::uint32_t attribute_count(NodeId n) const { return attribute_ranges.count(index_of(n)); }
-  std::span<const float> value(NodeId n, RelativeAttribute a) const {
-    const std::uint32_t i = attribute_ranges.begin(index_of(n)) + a;
-    const std::size_t v = value_of_attribute.empty() ? i : value_of_attribute[i];
-    return std::span<const float>(values).subspan(v * dimension, dimension);
+  // Of an attribute by its place in attribute_ranges. The only one of a node always has its own.
+  bool has_own_value(std::uint32_t i) const { return has_value.size() == 0 || has_value.test(i); }
+  std::uint32_t own_value(std::uint32_t i) const { return stored_value(place_of_value(i)); }
+  // The same in two steps: what has its own value side by side has its places so.
+  std::uint32_t place_of_value(std::uint32_t i) const {
+    return has_value.size() == 0 ? i : has_value.rank(i);
+  }
+  std::uint32_t stored_value(std::uint32_t place) const {
+    return value_of_attribute.empty() ? place : value_of_attribute[place];
   }
 };
 
@@ -236,19 +252,34 @@ struct MeshHierarchy {
   // And back: the attribute at v_t, or v_u if `second`, of a corner that stands at v_s with a.
   RelativeAttribute below(std::size_t layer, SplitId s, bool second, RelativeAttribute a,
                           WedgeId wedge) const;
+  // The attribute of a wedge at its leaf.
+  RelativeAttribute at_leaf(std::size_t layer, NodeId leaf, WedgeId wedge) const;
   // The attribute at node n, which the wedge's leaf is under, of a corner that can stand there. It
   // is what a triangle that becomes active needs. Time O(1) if n has one attribute, else O(depth
   // from n to the next node that has one, or to the leaf).
   RelativeAttribute attribute_at(std::size_t layer, NodeId n, WedgeId wedge) const;
+  // The number of an attribute's value in its layer, and the value. Time O(1), but O(depth) within
+  // regions where values stay the same.
+  std::uint32_t value_index(std::size_t layer, NodeId n, RelativeAttribute a) const;
+  std::span<const float> value(std::size_t layer, NodeId n, RelativeAttribute a) const {
+    const AttributeHierarchy& attributes = layers[layer];
+    return std::span<const float>(attributes.values)
+        .subspan(std::size_t(value_index(layer, n, a)) * attributes.dimension,
+                 attributes.dimension);
+  }
+
+ private:
+  RelativeAttribute attribute_far_below(std::size_t layer, NodeId n, WedgeId wedge) const;
 };
 
 // Where the bytes are.
 struct HierarchyBytes {
-  std::size_t triangles = 0;   // wedges of triangles, materials, parts, ranges, derived ones
-  std::size_t positions = 0;   // deltas, roots
-  std::size_t splits = 0;      // nodes, second wedges, bounds, bits
-  std::size_t values = 0;      // attributes' values and indices
-  std::size_t attributes = 0;  // ranges, leaf attributes, parent maps, branch runs
+  std::size_t triangles = 0;  // wedges of triangles, materials, parts, ranges, derived ones
+  std::size_t positions = 0;  // deltas, roots
+  std::size_t splits = 0;     // nodes, second wedges, bounds, bits
+  std::size_t values = 0;     // attributes' values and indices
+  // Ranges, leaf attributes, parent maps, branch runs, and where values stay.
+  std::size_t attributes = 0;
   std::size_t total() const { return triangles + positions + splits + values + attributes; }
 };
 HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy);

@@ -10,6 +10,7 @@
 
 #include "crease/ids.h"
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -37,8 +38,14 @@ class BitArray {
     const std::uint64_t high = words_[bit / 64 + 1] << 1 << (63 - bit % 64);
     return static_cast<std::uint32_t>((low | high) & ((std::uint64_t(1) << bits) - 1));
   }
+  // The 64 bits from there on; what is beyond the end is of no meaning.
+  std::uint64_t read_word(std::size_t bit) const {
+    return words_[bit / 64] >> (bit % 64) | words_[bit / 64 + 1] << 1 << (63 - bit % 64);
+  }
+  bool test(std::size_t bit) const { return (words_[bit / 64] >> (bit % 64) & 1) != 0; }
   void prefetch(std::size_t bit) const { __builtin_prefetch(&words_[bit / 64]); }
   std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
   std::size_t bytes() const { return 8 * words_.size(); }
 
  private:
@@ -58,6 +65,16 @@ class PackedIndices {
   }
   Index operator[](std::size_t i) const {
     return static_cast<Index>(packed_.read(i * bits_, bits_));
+  }
+  // Those from i on. Three of up to 21 bits each are one look-up.
+  std::array<Index, 3> three_from(std::size_t i) const {
+    if (3 * bits_ > 64) return {(*this)[i], (*this)[i + 1], (*this)[i + 2]};
+    const std::uint64_t word = packed_.read_word(i * bits_);
+    const std::uint64_t mask = (std::uint64_t(1) << bits_) - 1;
+    const auto field = [&](unsigned k) {
+      return static_cast<Index>(static_cast<std::uint32_t>(word >> (k * bits_) & mask));
+    };
+    return {field(0), field(1), field(2)};
   }
   void prefetch(std::size_t i) const { packed_.prefetch(i * bits_); }
   std::size_t size() const { return size_; }

@@ -27,20 +27,21 @@ class ParentMaps {
     RelativeAttribute operator[](std::size_t i) const {  // 0 stands for kRemoved
       return static_cast<RelativeAttribute>(bits_->read(first_ + i * width_, width_) - 1);
     }
-    std::size_t size() const { return size_; }
-    bool empty() const { return size_ == 0; }
+    std::size_t size() const { return bit_count_ / width_; }
+    bool empty() const { return bit_count_ == 0; }
     Map subspan(std::size_t first, std::size_t size) const {
       Map map = *this;
       map.first_ += first * width_;
-      map.size_ = size;
+      map.bit_count_ = static_cast<std::uint32_t>(size) * width_;
       return map;
     }
 
    private:
     friend class ParentMaps;
     const BitArray* bits_ = nullptr;
-    std::size_t first_ = 0, size_ = 0;
-    unsigned width_ = 0;
+    std::size_t first_ = 0;
+    std::uint32_t bit_count_ = 0;  // 32 bits: whoever asks for the size divides
+    unsigned width_ = 1;
   };
 
   void push_back(std::span<const RelativeAttribute> parents) {
@@ -61,7 +62,7 @@ class ParentMaps {
     map.bits_ = &bits_;
     map.first_ = first + kWidthBits;
     map.width_ = bits_.read(first, kWidthBits) + 1;
-    map.size_ = (bits - kWidthBits) / map.width_;
+    map.bit_count_ = static_cast<std::uint32_t>(bits - kWidthBits);
     return map;
   }
   bool is_empty(std::size_t split) const { return bit_ranges_.is_usual(split); }

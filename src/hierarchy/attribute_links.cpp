@@ -39,11 +39,10 @@ void AttributeLinks::link_corners(SplitId s) {
 }
 
 void AttributeLinks::link_equal_values(SplitId s) {
-  const AttributeHierarchy& layer = hierarchy_.layers[number_];
   const auto value = [&](std::uint32_t m) {
     const bool second = m >= first_count_;
-    return layer.value(hierarchy_.vertices.child(s, second),
-                       static_cast<RelativeAttribute>(second ? m - first_count_ : m));
+    return hierarchy_.value(number_, hierarchy_.vertices.child(s, second),
+                            static_cast<RelativeAttribute>(second ? m - first_count_ : m));
   };
   const auto compare = [&](std::uint32_t a, std::uint32_t b) {
     const std::span<const float> of_a = value(a);

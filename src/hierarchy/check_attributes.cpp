@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace crease {
 
@@ -37,7 +38,10 @@ Broken check_layer_sizes(const VertexHierarchy& vertices, const AttributeHierarc
   }
   const std::size_t values = layer.values.size() / layer.dimension;
   const bool indexed = !layer.value_of_attribute.empty();
-  if (indexed ? layer.value_of_attribute.size() != attributes : values != attributes) {
+  const bool inherits = layer.has_value.size() != 0;
+  const std::size_t own = inherits ? layer.has_value.set_count() : attributes;
+  if ((inherits && layer.has_value.size() != attributes) ||
+      (indexed ? layer.value_of_attribute.size() != own : values != own)) {
     return broken_layer(layer, "an attribute lacks its value");
   }
   for (std::size_t i = 0; i < layer.value_of_attribute.size(); ++i) {
@@ -45,6 +49,11 @@ Broken check_layer_sizes(const VertexHierarchy& vertices, const AttributeHierarc
   }
   if (!layer.leaf_attribute.empty() && layer.leaf_attribute.size() != vertices.wedge_count()) {
     return broken_layer(layer, "a wedge lacks its attribute");
+  }
+  const bool tells = !layer.keeps_values.empty() || !layer.constant_of_wedge.empty();
+  if (tells && (layer.keeps_values.size() != splits ||
+                layer.constant_of_wedge.size() != vertices.wedge_count())) {
+    return broken_layer(layer, "where values stay is not told of all");
   }
   return std::nullopt;
 }
@@ -78,15 +87,83 @@ Broken check_maps(const VertexHierarchy& vertices, const AttributeHierarchy& lay
   return std::nullopt;
 }
 
+// The value of every attribute, from the roots down; and what is said of values that stay.
+class ValueCheck {
+ public:
+  ValueCheck(const VertexHierarchy& vertices, const AttributeHierarchy& layer)
+      : h_(vertices), layer_(layer), value_of_attribute_(layer.attribute_ranges.total()) {}
+
+  Broken run() {
+    for (std::uint32_t n = 0; n < h_.node_count(); ++n) {
+      if (h_.is_root(NodeId{n})) {
+        for (std::uint32_t i = begin(NodeId{n}); i < end(NodeId{n}); ++i) {
+          if (!layer_.has_own_value(i)) return broken_value(NodeId{n});
+          value_of_attribute_[i] = layer_.own_value(i);
+        }
+      }
+    }
+    for (std::uint32_t s = 0; s < h_.split_count(); ++s) {
+      if (auto broken = take_values(SplitId{s})) return broken;
+    }
+    return std::nullopt;
+  }
+  std::vector<std::uint32_t> take() { return std::move(value_of_attribute_); }
+
+ private:
+  std::uint32_t begin(NodeId n) const { return layer_.attribute_ranges.begin(index_of(n)); }
+  std::uint32_t end(NodeId n) const { return layer_.attribute_ranges.end(index_of(n)); }
+  Failure broken_value(NodeId n) const {
+    return broken_layer(layer_,
+                        "nowhere to have a value from at node " + std::to_string(index_of(n)));
+  }
+
+  Broken take_values(SplitId s) {
+    const ParentMaps::Map parents = layer_.parents_of_split.of(index_of(s));
+    const std::uint32_t above = begin(h_.node_of_split[index_of(s)]);
+    std::size_t member = 0;
+    const bool is_said_to_keep =
+        !layer_.keeps_values.empty() && layer_.keeps_values.test(index_of(s));
+    const NodeId node = h_.node_of_split[index_of(s)];
+    for (std::uint32_t i = above; !is_said_to_keep && i < end(node); ++i) {
+      if (!layer_.has_own_value(i)) return broken_value(node);
+    }
+    bool keeps = true;
+    for (NodeId child : {h_.first_child(s), h_.second_child(s)}) {
+      const bool is_only = end(child) - begin(child) == 1;
+      for (std::uint32_t i = begin(child); i < end(child); ++i, ++member) {
+        const RelativeAttribute parent = parents.empty() ? kRemoved : parents[member];
+        const bool has_own = layer_.has_own_value(i);
+        if (!has_own && (is_only || parent == kRemoved || !is_said_to_keep)) {
+          return broken_value(child);
+        }
+        value_of_attribute_[i] =
+            has_own ? layer_.own_value(i) : value_of_attribute_[above + parent];
+        keeps &=
+            parent == kRemoved || value_of_attribute_[i] == value_of_attribute_[above + parent];
+      }
+    }
+    if (!keeps && is_said_to_keep) {
+      return broken_layer(layer_, "a value that should stay changes" + at_split(index_of(s)));
+    }
+    return std::nullopt;
+  }
+
+  const VertexHierarchy& h_;
+  const AttributeHierarchy& layer_;
+  std::vector<std::uint32_t> value_of_attribute_;
+};
+
 class CornerWalk {
  public:
   CornerWalk(const MeshHierarchy& hierarchy, std::size_t layer,
-             const std::vector<NodeId>& leaf_of_wedge)
+             const std::vector<NodeId>& leaf_of_wedge,
+             const std::vector<std::uint32_t>& value_of_attribute)
       : hierarchy_(hierarchy),
         h_(hierarchy.vertices),
         number_(layer),
         layer_(hierarchy.layers[layer]),
         leaf_of_wedge_(leaf_of_wedge),
+        value_of_attribute_(value_of_attribute),
         is_used_(layer_.attribute_ranges.total(), false) {}
 
   Broken run() {
@@ -113,14 +190,20 @@ class CornerWalk {
 
  private:
   Broken walk(WedgeId wedge, NodeId node, NodeId end) {
-    RelativeAttribute a = layer_.leaf_attribute.empty() ? RelativeAttribute{0}
-                                                        : layer_.leaf_attribute[index_of(wedge)];
+    RelativeAttribute a = hierarchy_.at_leaf(number_, node, wedge);
     while (true) {
       if (a >= layer_.attribute_count(node)) {
         return broken_layer(layer_,
                             "an attribute is missing at node " + std::to_string(index_of(node)));
       }
-      is_used_[layer_.attribute_ranges.begin(index_of(node)) + a] = true;
+      const std::size_t i = layer_.attribute_ranges.begin(index_of(node)) + a;
+      is_used_[i] = true;
+      const std::uint32_t constant =
+          layer_.constant_of_wedge.empty() ? 0 : layer_.constant_of_wedge[index_of(wedge)];
+      if (constant != 0 && constant - 1 != value_of_attribute_[i]) {
+        return broken_layer(layer_,
+                            "a constant value changes at node " + std::to_string(index_of(node)));
+      }
       if (h_.is_root(node) || h_.parent(node) == end) return std::nullopt;
       const SplitId s = h_.split_above(node);
       const bool second = h_.is_second(node);
@@ -141,6 +224,7 @@ class CornerWalk {
   const std::size_t number_;
   const AttributeHierarchy& layer_;
   const std::vector<NodeId>& leaf_of_wedge_;
+  const std::vector<std::uint32_t>& value_of_attribute_;
   std::vector<bool> is_used_;
 };
 
@@ -156,7 +240,9 @@ Broken check_attribute_sizes(const MeshHierarchy& hierarchy) {
 Broken check_attributes(const MeshHierarchy& hierarchy, std::size_t layer,
                         const std::vector<NodeId>& leaf_of_wedge) {
   if (auto broken = check_maps(hierarchy.vertices, hierarchy.layers[layer])) return broken;
-  return CornerWalk(hierarchy, layer, leaf_of_wedge).run();
+  ValueCheck values(hierarchy.vertices, hierarchy.layers[layer]);
+  if (auto broken = values.run()) return broken;
+  return CornerWalk(hierarchy, layer, leaf_of_wedge, values.take()).run();
 }
 
 }  // namespace crease

@@ -45,8 +45,31 @@ class VertexChecker {
     find_places();
     if (auto broken = check_triangles()) return broken;
     if (auto broken = check_derived()) return broken;
-    if (auto broken = check_spheres()) return broken;
-    return check_cones();
+    return check_spheres();
+  }
+
+  // The attributes must hold.
+  Broken check_cones() {
+    for (const SplitBounds& bounds : h_.bounds) {
+      const NormalCone cone = bounds.cone();
+      const bool all = bounds.cone_angle == 255;
+      constexpr float kRounding = 2e-6f;
+      cones_.push_back({cone.axis, all ? -2 : std::cos(cone.half_angle_rad) - kRounding});
+    }
+    if (auto broken = check_cones_of_triangles()) return broken;
+    for (std::size_t l = 0; l < hierarchy_.layers.size(); ++l) {
+      const AttributeHierarchy& layer = hierarchy_.layers[l];
+      if (layer.role != AttributeRole::Normal) continue;
+      for (std::uint32_t n = 0; n < h_.node_count(); ++n) {
+        for (std::uint32_t a = 0; a < layer.attribute_count(NodeId{n}); ++a) {
+          const auto value = hierarchy_.value(l, NodeId{n}, static_cast<RelativeAttribute>(a));
+          if (auto broken = check_cones_above(NodeId{n}, {value[0], value[1], value[2]})) {
+            return broken;
+          }
+        }
+      }
+    }
+    return std::nullopt;
   }
 
   const std::vector<NodeId>& leaf_of_wedge() const { return leaf_of_wedge_; }
@@ -216,13 +239,7 @@ class VertexChecker {
     }
   }
 
-  Broken check_cones() {
-    for (const SplitBounds& bounds : h_.bounds) {
-      const NormalCone cone = bounds.cone();
-      const bool all = bounds.cone_angle == 255;
-      constexpr float kRounding = 2e-6f;
-      cones_.push_back({cone.axis, all ? -2 : std::cos(cone.half_angle_rad) - kRounding});
-    }
+  Broken check_cones_of_triangles() const {
     for (std::size_t i = 0; i < h_.triangles.size(); ++i) {
       const std::array<WedgeId, 3> t = h_.triangles[i];
       NodeId leaf[3];
@@ -231,17 +248,6 @@ class VertexChecker {
                                        positions_[index_of(leaf[2])]);
       for (NodeId node : leaf) {
         if (auto broken = check_cones_above(node, n)) return broken;
-      }
-    }
-    for (const AttributeHierarchy& layer : hierarchy_.layers) {
-      if (layer.role != AttributeRole::Normal) continue;
-      for (std::uint32_t n = 0; n < h_.node_count(); ++n) {
-        for (std::uint32_t a = 0; a < layer.attribute_count(NodeId{n}); ++a) {
-          const auto value = layer.value(NodeId{n}, static_cast<RelativeAttribute>(a));
-          if (auto broken = check_cones_above(NodeId{n}, {value[0], value[1], value[2]})) {
-            return broken;
-          }
-        }
       }
     }
     return std::nullopt;
@@ -268,6 +274,7 @@ Status check_hierarchy(const MeshHierarchy& hierarchy) {
   for (std::size_t l = 0; l < hierarchy.layers.size(); ++l) {
     if (auto broken = check_attributes(hierarchy, l, vertices.leaf_of_wedge())) return *broken;
   }
+  if (auto broken = vertices.check_cones()) return *broken;
   return Done{};
 }
 

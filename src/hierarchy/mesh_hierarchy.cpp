@@ -43,21 +43,84 @@ RelativeAttribute MeshHierarchy::below(std::size_t layer, SplitId s, bool second
   return after == runs.begin() ? RelativeAttribute{0} : (after - 1)->at_child;
 }
 
-RelativeAttribute MeshHierarchy::attribute_at(std::size_t layer, NodeId n, WedgeId wedge) const {
+RelativeAttribute MeshHierarchy::at_leaf(std::size_t layer, NodeId leaf, WedgeId wedge) const {
+  const AttributeHierarchy& attributes = layers[layer];
+  if (!attributes.leaf_attribute.empty()) return attributes.leaf_attribute[index_of(wedge)];
+  const std::uint32_t count = attributes.attribute_count(leaf);
+  if (count <= 1) return 0;
+  std::size_t first = 0;
+  if (vertices.is_root(leaf)) {
+    first = index_of(vertices.root_wedges[index_of(leaf)]);
+  } else {  // of two children, one begins where the other one ends
+    first = index_of(vertices.second_wedge[index_of(vertices.split_above(leaf))]);
+    if (!vertices.is_second(leaf)) first -= count;
+  }
+  return static_cast<RelativeAttribute>(index_of(wedge) - first);
+}
+
+// As attribute_at(), however deep it is.
+RelativeAttribute MeshHierarchy::attribute_far_below(std::size_t layer, NodeId n,
+                                                     WedgeId wedge) const {
   const AttributeHierarchy& attributes = layers[layer];
   NodeId at = n;
   SplitId s = kNoSplit;
   while (attributes.attribute_count(at) > 1 && (s = vertices.split_of(at)) != kNoSplit) {
     at = vertices.child(s, vertices.goes_to_second(s, wedge));
   }
-  RelativeAttribute a = 0;
-  if (attributes.attribute_count(at) > 1 && !attributes.leaf_attribute.empty()) {
-    a = attributes.leaf_attribute[index_of(wedge)];
-  }
+  RelativeAttribute a =
+      attributes.attribute_count(at) > 1 ? at_leaf(layer, at, wedge) : RelativeAttribute{0};
   for (; at != n; at = vertices.parent(at)) {
     a = above(layer, vertices.split_above(at), vertices.is_second(at), a, wedge);
   }
   return a;
+}
+
+// Down to where there is no choice, and up again by parent maps. What both ways need is noted on
+// the way down; deeper than kMost is rare.
+RelativeAttribute MeshHierarchy::attribute_at(std::size_t layer, NodeId n, WedgeId wedge) const {
+  constexpr std::size_t kMost = 64;
+  struct Step {
+    SplitId split;
+    std::uint32_t first;  // of the child's attributes in the map
+  };
+  Step steps[kMost];
+  std::size_t count = 0;
+  const AttributeHierarchy& attributes = layers[layer];
+  std::uint32_t choices = attributes.attribute_count(n);
+  SplitId s = kNoSplit;
+  while (choices > 1 && (s = vertices.split_of(n)) != kNoSplit) {
+    const bool second = vertices.goes_to_second(s, wedge);
+    if (count == kMost) break;
+    const auto ranges = attributes.attribute_ranges.two_ranges(index_of(vertices.first_child(s)));
+    const std::uint32_t first = ranges[0].end - ranges[0].begin;
+    steps[count++] = {s, second ? first : 0};
+    choices = second ? ranges[1].end - ranges[1].begin : first;
+    n = vertices.child(s, second);
+  }
+  RelativeAttribute a = 0;
+  if (count == kMost && choices > 1 && s != kNoSplit) {
+    a = attribute_far_below(layer, n, wedge);
+  } else if (choices > 1) {
+    a = at_leaf(layer, n, wedge);
+  }
+  while (count > 0) {
+    const Step& step = steps[--count];
+    const ParentMaps::Map parents = attributes.parents_of_split.of(index_of(step.split));
+    a = parents.empty() ? RelativeAttribute{0} : parents[step.first + a];
+  }
+  return a;
+}
+
+std::uint32_t MeshHierarchy::value_index(std::size_t layer, NodeId n, RelativeAttribute a) const {
+  const AttributeHierarchy& attributes = layers[layer];
+  std::uint32_t i = attributes.attribute_ranges.begin(index_of(n)) + a;
+  while (!attributes.has_own_value(i)) {
+    const SplitId s = vertices.split_above(n);
+    a = above(layer, s, vertices.is_second(n), a, WedgeId{});
+    n = vertices.node_of_split[index_of(s)];
+    i = attributes.attribute_ranges.begin(index_of(n)) + a;
+  }
+  return attributes.own_value(i);
 }
 
 namespace {
@@ -85,9 +148,11 @@ HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy) {
   bytes.splits = v.is_split.bytes() + stored_bytes(v.node_of_split) + stored_bytes(v.second_wedge) +
                  stored_bytes(v.bounds);
   for (const AttributeHierarchy& layer : hierarchy.layers) {
-    bytes.values += stored_bytes(layer.values) + stored_bytes(layer.value_of_attribute);
+    bytes.values += stored_bytes(layer.values) + stored_bytes(layer.value_of_attribute) +
+                    layer.has_value.bytes();
     bytes.attributes += layer.attribute_ranges.bytes() + stored_bytes(layer.leaf_attribute) +
-                        layer.parents_of_split.bytes() + layer.branches_of_split.bytes();
+                        layer.parents_of_split.bytes() + layer.branches_of_split.bytes() +
+                        stored_bytes(layer.constant_of_wedge) + layer.keeps_values.bytes();
   }
   return bytes;
 }

@@ -23,6 +23,7 @@ struct Standing {
   std::uint32_t relative = 0;  // its index at the node where it stands now
   std::uint32_t first_wedge = kNone, last_wedge = kNone;  // chained by next_wedge_
   bool is_face_value = false;
+  bool all_vary = false;  // of its wedges those that are live
 };
 
 class AttributeForest {
@@ -53,6 +54,7 @@ class AttributeForest {
     grown_.at_birth.resize(in_.forest.node_of_birth.size());
     grown_.parents_at.resize(in_.forest.contraction_count());
     grown_.branches_at.resize(in_.forest.contraction_count());
+    grown_.varies_of_wedge.assign(leaves_.of_wedge.size(), false);
     for (std::uint32_t v = 0; v < in_.forest.leaf_count; ++v) {
       const std::uint32_t first = leaves_.first_of_vertex[v];
       grown_.at_birth[v] = {first, leaves_.first_of_vertex[v + 1] - first};
@@ -219,6 +221,7 @@ class AttributeForest {
     for (const Group& group : groups_) {
       const std::uint32_t relative = parent_[group.member];
       const std::uint32_t member = members_[group.member];
+      if (standing_[member].id != group.id) note_varying(standing_[member], time);
       if (relative == previous) {
         grown_.at_node.back().set = unite(grown_.at_node.back().set, member);
       } else {
@@ -228,6 +231,15 @@ class AttributeForest {
       s.id = group.id;
       s.relative = relative;
       previous = relative;
+    }
+  }
+
+  // Its wedges are about to have another id.
+  void note_varying(Standing& s, std::uint32_t time) {
+    if (s.all_vary) return;
+    s.all_vary = true;
+    for (std::uint32_t w = s.first_wedge; w != kNone; w = next_wedge_[w]) {
+      if (in_.times.wedge_live_until[w] > time) grown_.varies_of_wedge[w] = true;
     }
   }
 
@@ -242,6 +254,7 @@ class AttributeForest {
     std::tie(all.region, all.corner) =
         std::min(std::tuple(all.region, all.corner), std::tuple(other.region, other.corner));
     all.is_face_value = all.is_face_value || other.is_face_value;
+    all.all_vary = all.all_vary && other.all_vary;
     append_wedges(all, other.first_wedge, other.last_wedge);
     return a;
   }

@@ -39,9 +39,11 @@ std::vector<Extent> extents_of_leaves(const Mesh& snapped, const std::vector<Vec
   return extents;
 }
 
-void add_normals(const AttributeHierarchy& layer, NodeId node, GrowingCone& cone) {
-  for (std::uint32_t a = 0; a < layer.attribute_count(node); ++a) {
-    const std::span<const float> n = layer.value(node, static_cast<RelativeAttribute>(a));
+void add_normals(const MeshHierarchy& hierarchy, std::size_t layer, NodeId node,
+                 GrowingCone& cone) {
+  for (std::uint32_t a = 0; a < hierarchy.layers[layer].attribute_count(node); ++a) {
+    const std::span<const float> n =
+        hierarchy.value(layer, node, static_cast<RelativeAttribute>(a));
     cone.add(GrowingCone::of({double(n[0]), double(n[1]), double(n[2])}));
   }
 }
@@ -51,14 +53,15 @@ void add_normals(const AttributeHierarchy& layer, NodeId node, GrowingCone& cone
 void bound_splits(const Mesh& snapped, const std::vector<Vec3i>& leaf_positions,
                   const VertexForest& forest, MeshHierarchy& hierarchy) {
   VertexHierarchy& h = hierarchy.vertices;
-  const AttributeHierarchy* normals = nullptr;
-  for (const AttributeHierarchy& layer : hierarchy.layers) {
-    if (layer.role == AttributeRole::Normal) normals = &layer;
+  std::size_t normals = hierarchy.layers.size();
+  for (std::size_t l = 0; l < hierarchy.layers.size(); ++l) {
+    if (hierarchy.layers[l].role == AttributeRole::Normal) normals = l;
   }
+  const bool has_normals = normals < hierarchy.layers.size();
   std::vector<Extent> extents = extents_of_leaves(snapped, leaf_positions);
-  if (normals != nullptr) {
+  if (has_normals) {
     for (std::uint32_t v = 0; v < forest.leaf_count; ++v) {
-      add_normals(*normals, forest.node_of_birth[v], extents[v].cone);
+      add_normals(hierarchy, normals, forest.node_of_birth[v], extents[v].cone);
     }
   }
   extents.resize(forest.node_of_birth.size());
@@ -71,7 +74,7 @@ void bound_splits(const Mesh& snapped, const std::vector<Vec3i>& leaf_positions,
       all.radius = std::max(all.radius, away + child.radius);
       all.cone.add(child.cone);
     }
-    if (normals != nullptr) add_normals(*normals, h.node_of_split[index_of(s)], all.cone);
+    if (has_normals) add_normals(hierarchy, normals, h.node_of_split[index_of(s)], all.cone);
     SplitBounds& bounds = h.bounds[index_of(s)];
     bounds.radius = RoundedUp::from(static_cast<float>(all.radius * h.grid.step * kSlack));
     bounds.set_cone({{float(all.cone.axis.x), float(all.cone.axis.y), float(all.cone.axis.z)},

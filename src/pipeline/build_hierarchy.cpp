@@ -3,6 +3,7 @@
 
 #include "pipeline/attribute_forest.h"
 #include "pipeline/bound_splits.h"
+#include "pipeline/inherit_values.h"
 #include "pipeline/introduce_triangles.h"
 #include "pipeline/join_roots.h"
 #include "pipeline/leaf_wedges.h"
@@ -38,6 +39,7 @@ Result<MeshHierarchy> build_hierarchy(const Mesh& snapped, const ContractionSequ
     hierarchy.layers.push_back(*std::move(layer));
   }
   bound_splits(snapped, leaf_positions, forest, hierarchy);
+  for (AttributeHierarchy& layer : hierarchy.layers) inherit_values(hierarchy.vertices, layer);
 
   if (maps != nullptr) {
     maps->leaf_of_vertex.assign(forest.node_of_birth.begin(),

@@ -28,6 +28,7 @@ struct GrownAttributes {
   std::vector<Slice> parents_at;
   std::vector<BranchRun> branches;
   std::vector<Slice> branches_at;
+  std::vector<bool> varies_of_wedge;  // its id changes while a cut can show it
 };
 
 // From births to nodes, from contractions to splits, from ids to values.

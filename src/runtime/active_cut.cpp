@@ -14,6 +14,10 @@ bool has_choices(const AttributeHierarchy& layer) {
   return !layer.leaf_attribute.empty() || layer.parents_of_split.list_count() > 0;
 }
 
+bool keeps_values(const AttributeHierarchy& layer, SplitId s) {
+  return !layer.keeps_values.empty() && layer.keeps_values.test(index_of(s));
+}
+
 }  // namespace
 
 ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
@@ -29,7 +33,9 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
     if (!has_choices(layer)) continue;
     place_of_layer_[l] = static_cast<std::uint32_t>(tracked_.size());
     tracked_.push_back(l);
+    tracks_others_ |= l != normal_layer_;
   }
+  arriving_.assign(3 * tracked_.size(), kNone);
   touches_triangles_ = normal_layer_ == kNone || color_layer_ != kNone ||
                        place_of_layer_[normal_layer_] != kNone || !h_.deriving_splits.empty();
   for (std::uint32_t r = 0; r < h_.root_count; ++r) {
@@ -72,12 +78,39 @@ void ActiveCut::stand(std::uint32_t slot, NodeId node, const Vec3i& position) {
   v.position = position;
   if (normal_layer_ != kNone) {
     const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
-    const CompactRanges::Range range = layer.attribute_ranges.range(index_of(node));
-    v.normal_begin = range.begin;
-    v.normal_count = range.end - range.begin;
-    v.one_normal = v.normal_count <= 1;
+    v.normal = normal_in(layer.attribute_ranges.range(index_of(node)));
   }
   vertex_changes_.mark(slot);
+}
+
+// As stand() for each, with one look-up for both where there is one.
+void ActiveCut::stand_at_children(SplitId s, std::uint32_t first, std::uint32_t second,
+                                  const Vec3i& position) {
+  const NodeId node = h_.first_child(s);
+  ActiveVertex& v = vertices_[first];
+  ActiveVertex& other = vertices_[second];
+  const std::uint32_t rank = h_.is_split.rank(index_of(node));
+  const bool is_split = h_.is_split.test(index_of(node));
+  v.node = node;
+  v.split = is_split ? SplitId{rank} : kNoSplit;
+  v.position = grid_sum(position, h_.delta_of(node));
+  other.node = h_.second_child(s);
+  other.split = h_.is_split.test(index_of(other.node)) ? SplitId{rank + is_split} : kNoSplit;
+  other.position = grid_sum(position, h_.delta_of(other.node));
+  if (normal_layer_ != kNone) {
+    const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
+    const auto ranges = layer.attribute_ranges.two_ranges(index_of(node));
+    v.normal = normal_in(ranges[0]);
+    other.normal = normal_in(ranges[1]);
+  }
+  vertex_changes_.mark(first);
+  vertex_changes_.mark(second);
+}
+
+std::uint32_t ActiveCut::normal_in(const CompactRanges::Range& attributes) const {
+  const std::uint32_t count = attributes.end - attributes.begin;
+  if (count == 1) return hierarchy_.layers[normal_layer_].own_value(attributes.begin);
+  return count == 0 ? ActiveVertex::kNoNormal : ActiveVertex::kSeveral;
 }
 
 ActiveCut::Children ActiveCut::children(SplitId s) const {
@@ -98,15 +131,16 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
   const SplitId s = vertices_[slot].split;
   const WedgeId begin = vertices_[slot].begin, end = vertices_[slot].end;
   const Vec3i position = vertices_[slot].position;
+  const bool had_one = vertices_[slot].has_one_normal();
   CREASE_ASSERT(s != kNoSplit);
   set_done(s, true);
   const WedgeId middle = h_.second_wedge[index_of(s)];
-  const NodeId first = h_.first_child(s), second = h_.second_child(s);
   if (middle == begin || middle == end) {
     const bool is_second = middle == begin;
-    stand(slot, is_second ? second : first,
-          grid_sum(position, h_.delta_of(is_second ? second : first)));
-    pass_down(s, slot, is_second);
+    const NodeId child = h_.child(s, is_second);
+    stand(slot, child, grid_sum(position, h_.delta_of(child)));
+    touch_corners(slot, had_one);
+    pass_down(s, is_second ? kNoSlot : slot, is_second ? slot : kNoSlot, had_one);
     touch_derived(s);
     return kNoSlot;
   }
@@ -115,11 +149,11 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
   vertices_[other].begin = middle;
   vertices_[other].end = end;
   map_.set(middle, other);
-  stand(slot, first, grid_sum(position, h_.delta_of(first)));
-  stand(other, second, grid_sum(position, h_.delta_of(second)));
+  stand_at_children(s, slot, other, position);
   give_corners(slot, other, middle);
-  pass_down(s, slot, false);
-  pass_down(s, other, true);
+  touch_corners(slot, had_one);
+  touch_corners(other, had_one);
+  pass_down(s, slot, other, had_one);
 
   const TriangleRange born = h_.triangles_of(s);
   for (std::uint32_t t = born.begin; t < born.end; ++t) {
@@ -177,22 +211,23 @@ void ActiveCut::merge(SplitId s, const Children& slots) {
     const std::uint32_t slot = is_second ? slots.second : slots.first;
     if (slot == kNoSlot) return;
     const Vec3i delta = h_.delta_of(vertices_[slot].node);
-    pass_up(s, slot, is_second);
+    pass_up(s, slots.first, slots.second);
+    const bool had_one = vertices_[slot].has_one_normal();
     stand(slot, node, grid_difference(vertices_[slot].position, delta));
-    touch_corners(slot);
+    touch_corners(slot, had_one);
     touch_derived(s);
     return;
   }
   ActiveVertex& first = vertices_[slots.first];
   ActiveVertex& second = vertices_[slots.second];
   const Vec3i position = grid_difference(first.position, h_.delta_of(first.node));
-  pass_up(s, slots.first, false);
-  pass_up(s, slots.second, true);
+  pass_up(s, slots.first, slots.second);
   map_.clear(second.begin);
   first.end = second.end;
   take_corners(slots.second, slots.first);
+  const bool had_one = first.has_one_normal() || second.has_one_normal();
   stand(slots.first, node, position);
-  touch_corners(slots.first);
+  touch_corners(slots.first, had_one);
   lists_.clear(second.corners);
   second.node = kNoNode;
   second.split = kNoSplit;
@@ -202,128 +237,214 @@ void ActiveCut::merge(SplitId s, const Children& slots) {
 
 // All of them, but for those of triangles that have a corner at either.
 void ActiveCut::take_corners(std::uint32_t from, std::uint32_t to) {
-  leaving_.clear();
-  collapsed_.clear();
-  for (const CornerAt& at : lists_.of(vertices_[from].corners)) {
-    std::uint32_t* const slots = slots_of(at.corner);
-    if (slots[0] == to || slots[1] == to || slots[2] == to) {
-      collapsed_.push_back(at.corner.triangle_key());
-      deactivate(at.corner, from, to);
+  CornerList& list = vertices_[to].corners;
+  const std::span<const CornerAt> all = lists_.of(vertices_[from].corners);
+  if (leaving_.size() < all.size()) leaving_.resize(2 * all.size());
+  CornerAt* leaving = leaving_.data();
+  for (const CornerAt& at : all) {
+    ActiveTriangles& part = parts_[at.corner.part()];
+    std::uint32_t* const slots = &part.slots[3 * std::size_t(at.corner.triangle())];
+    if ((slots[0] == to) | (slots[1] == to) | (slots[2] == to)) {
+      deactivate(at.corner, from);
     } else {
       slots[at.corner.corner()] = to;
-      parts_[at.corner.part()].moved.mark(at.corner.triangle());
-      leaving_.push_back(at);
+      part.moved.mark(at.corner.triangle());
+      *leaving++ = at;
     }
   }
-  CornerList& list = vertices_[to].corners;
-  if (!collapsed_.empty()) {
-    if (collapsed_.size() > 8) std::sort(collapsed_.begin(), collapsed_.end());
-    const auto is_collapsed = [this](const CornerAt& at) {
-      const std::uint32_t key = at.corner.triangle_key();
-      return collapsed_.size() > 8
-                 ? std::binary_search(collapsed_.begin(), collapsed_.end(), key)
-                 : std::find(collapsed_.begin(), collapsed_.end(), key) != collapsed_.end();
-    };
-    const std::span<CornerAt> all = lists_.of(list);
-    const auto last = std::remove_if(all.begin(), all.end(), is_collapsed);
-    list.count = static_cast<std::uint32_t>(last - all.begin());
-  }
   const std::size_t staying = list.count;
-  lists_.resize(list, staying + leaving_.size());
-  std::copy(leaving_.begin(), leaving_.end(), lists_.of(list).begin() + std::ptrdiff_t(staying));
+  lists_.resize(list, staying + static_cast<std::size_t>(leaving - leaving_.data()));
+  std::copy(leaving_.data(), leaving, lists_.of(list).begin() + std::ptrdiff_t(staying));
 }
 
 void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
                          const std::array<std::uint32_t, 3>& slots) {
   const std::size_t tracked = tracked_.size();
-  arriving_.resize(3 * tracked);
+  ActiveVertex* const vertices = vertices_.data();
   bool one_normal = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const ActiveVertex& v = vertices_[slots[k]];
-    one_normal &= v.one_normal != 0;
+  for (std::size_t k = 0; k < 3; ++k) one_normal &= vertices[slots[k]].has_one_normal();
+  const bool has_values = tracked > 0 && (tracks_others_ || !one_normal);
+  for (std::size_t k = 0; has_values && k < 3; ++k) {
+    const ActiveVertex& v = vertices[slots[k]];
     for (std::size_t i = 0; i < tracked; ++i) {
-      const std::uint32_t l = tracked_[i];
-      const bool is_only = l == normal_layer_ && v.one_normal != 0;
-      arriving_[k * tracked + i] =
-          is_only ? RelativeAttribute{0} : hierarchy_.attribute_at(l, v.node, wedges[k]);
+      if (!has_several(i, v)) continue;  // what is kept is of no use
+      arriving_[k * tracked + i] = value_at(i, v, wedges[k]);
     }
   }
-  const bool is_smooth = !touches_triangles_ || (one_normal && !is_derived(t));
-  const Part kind = is_smooth ? kSnPart : kind_of(t, slots, arriving_);
+  const bool is_derived = touches_triangles_ && is_derived_now(t);
+  const bool is_smooth = !touches_triangles_ || (one_normal && !is_derived);
+  const Part kind = is_smooth ? kSnPart : kind_of(is_derived, slots, arriving_);
   ActiveTriangles& part = parts_[kind];
   const std::uint32_t place = part.add(t, arriving_.size());
-  for (std::size_t i = 0; i < arriving_.size(); ++i) {
-    part.relative[arriving_.size() * place + i] = arriving_[i];
-  }
+  if (has_values) std::copy(arriving_.begin(), arriving_.end(), &part.values[3 * tracked * place]);
+  part.is_derived[place] = is_derived ? 1 : 0;
+  std::uint32_t* const placed = &part.slots[3 * std::size_t(place)];
   for (std::uint32_t k = 0; k < 3; ++k) {
-    part.slots[3 * std::size_t(place) + k] = slots[k];
-    lists_.push_back(vertices_[slots[k]].corners, {CornerRef(kind, place, k), wedges[k]});
+    placed[k] = slots[k];
+    lists_.push_back(vertices[slots[k]].corners, {CornerRef(kind, place, k), wedges[k]});
   }
   part.moved.mark(place);
   if (kind != kSnPart || color_layer_ != kNone) part.shaded.mark(place);
 }
 
-// Which has corners at `from` and at `to`; the lists of these two are left as they are.
-void ActiveCut::deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to) {
+// What a corner that comes to v shows. Where the wedge varies, another corner of it often stands
+// there already.
+std::uint32_t ActiveCut::value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge) const {
+  const std::uint32_t l = tracked_[place];
+  const PackedIndices<>& constants = hierarchy_.layers[l].constant_of_wedge;
+  const std::uint32_t constant = constants.empty() ? 0 : constants[index_of(wedge)];
+  if (constant != 0) return constant - 1;
+  for (const CornerAt& at : lists_.of(v.corners)) {
+    if (at.wedge == wedge) return kept_value(at, place);
+  }
+  return hierarchy_.value_index(l, v.node, hierarchy_.attribute_at(l, v.node, wedge));
+}
+
+// Which has a corner at `from`, whose list is left as it is.
+void ActiveCut::deactivate(CornerRef corner, std::uint32_t from) {
   const std::uint32_t* const slots = slots_of(corner);
   for (std::uint32_t k = 0; k < 3; ++k) {
-    if (slots[k] == from || slots[k] == to) continue;
+    if (slots[k] == from) continue;
     lists_.erase(vertices_[slots[k]].corners, CornerRef(corner.part(), corner.triangle(), k));
   }
   parts_[corner.part()].remove(corner.triangle());
 }
 
-void ActiveCut::touch_corners(std::uint32_t slot) {
+// Of the corners at a vertex that has moved those whose triangle may have another kind or shading:
+// its values are looked after by pass_down() and pass_up().
+void ActiveCut::touch_corners(std::uint32_t slot, bool had_one_normal) {
   if (!touches_triangles_) return;
-  for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
-    touch(at, vertices_[slot].one_normal != 0);
+  const bool has_one = vertices_[slot].has_one_normal();
+  const bool only_derived = !has_one && !had_one_normal;
+  if (only_derived && color_layer_ == kNone && normal_layer_ != kNone &&
+      h_.deriving_splits.empty()) {
+    return;
+  }
+  const std::span<const CornerAt> corners = lists_.of(vertices_[slot].corners);
+  if (color_layer_ != kNone) {
+    for (const CornerAt& at : corners) parts_[at.corner.part()].touched.mark(at.corner.triangle());
+    return;
+  }
+  for (const CornerAt& at : corners) {
+    const std::uint32_t part = at.corner.part(), triangle = at.corner.triangle();
+    const bool touched =
+        part == kSnPart ? !has_one : !only_derived || parts_[part].is_derived[triangle] != 0;
+    if (touched) parts_[part].touched.mark(triangle);
   }
 }
 
-// The corners at the child of s in `slot` had their attributes at v_s.
-void ActiveCut::pass_down(SplitId s, std::uint32_t slot, bool second) {
-  touch_corners(slot);
+// The corners at the children of s had their values at v_s.
+void ActiveCut::pass_down(SplitId s, std::uint32_t first, std::uint32_t second,
+                          bool had_one_normal) {
   for (std::size_t i = 0; i < tracked_.size(); ++i) {
     const std::uint32_t l = tracked_[i];
     const AttributeHierarchy& layer = hierarchy_.layers[l];
-    if (layer.parents_of_split.is_empty(index_of(s))) continue;  // 0 remains
-    const std::span<const CornerAt> corners = lists_.of(vertices_[slot].corners);
-    // MeshHierarchy::below() for all of them: what each attribute above comes from.
-    const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
-    const std::uint32_t of_first = layer.attribute_count(h_.first_child(s));
-    const std::size_t begin = second ? of_first : 0, end = second ? parents.size() : of_first;
-    below_.assign(layer.attribute_count(h_.node_of_split[index_of(s)]), {});
-    for (std::size_t from = begin; from < end; ++from) {
-      const RelativeAttribute to = parents[from];
-      if (to == kRemoved) continue;
-      Below& below = below_[to];
-      if (below.first == kRemoved) {
-        below.first = static_cast<RelativeAttribute>(from - begin);
-      } else {
-        below.has_more = true;
-      }
-    }
-    for (const CornerAt& at : corners) {
-      RelativeAttribute& a =
-          parts_[at.corner.part()].relative[tracked_.size() * at.corner.index() + i];
-      const Below below = below_[a];
-      a = below.has_more            ? hierarchy_.below(l, s, second, a, at.wedge)
-          : below.first != kRemoved ? below.first
-                                    : RelativeAttribute{0};  // no such corner stands there
+    if (layer.parents_of_split.is_empty(index_of(s))) continue;  // neither has several
+    const bool had_several = l == normal_layer_
+                                 ? !had_one_normal
+                                 : layer.attribute_count(h_.node_of_split[index_of(s)]) > 1;
+    if (had_several && keeps_values(layer, s)) continue;
+    for (const std::uint32_t slot : {first, second}) {
+      if (slot == kNoSlot || !has_several(i, vertices_[slot])) continue;
+      step_down(s, slot, slot == second, i);
     }
   }
 }
 
-void ActiveCut::pass_up(SplitId s, std::uint32_t slot, bool second) {
+// MeshHierarchy::below() for all of them: what each attribute above comes from. Where values stay,
+// v_s has a single one.
+void ActiveCut::step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place) {
+  const std::uint32_t l = tracked_[place];
+  const AttributeHierarchy& layer = hierarchy_.layers[l];
+  const CompactRanges::Range at_s =
+      layer.attribute_ranges.range(index_of(h_.node_of_split[index_of(s)]));
+  const CompactRanges::Range at_child =
+      layer.attribute_ranges.range(index_of(vertices_[slot].node));
+  const std::uint32_t count_above = at_s.end - at_s.begin;
+  const std::uint32_t count_below = at_child.end - at_child.begin;
+  const std::uint32_t above = layer.place_of_value(at_s.begin);
+  if (keeps_values(layer, s)) {
+    const std::uint32_t value = layer.stored_value(above);
+    for (const CornerAt& at : corners_of(slot)) set_value(at, place, value);
+    return;
+  }
+  const std::uint32_t below = layer.place_of_value(at_child.begin);
+  const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
+  const std::size_t first = second ? parents.size() - count_below : 0;
+  const bool had_several = count_above > 1;
+  steps_.assign(count_above, {});
+  for (std::uint32_t a = 0; a < count_below; ++a) {
+    const RelativeAttribute to = parents[first + a];
+    if (to == kRemoved) continue;
+    Step& step = steps_[to];
+    step.has_more = step.below != kNone;
+    if (step.has_more) continue;
+    step = {layer.stored_value(above + to), layer.stored_value(below + a), to, false};
+  }
+  const auto is_idle = [had_several](const Step& step) {
+    return step.below == kNone || (had_several && !step.has_more && step.above == step.below);
+  };
+  steps_.erase(std::remove_if(steps_.begin(), steps_.end(), is_idle), steps_.end());
+  if (steps_.empty()) return;
+  for (const CornerAt& at : corners_of(slot)) {
+    const std::uint32_t value = kept_value(at, place);
+    for (const Step& step : steps_) {
+      if (had_several && step.above != value) continue;
+      set_value(
+          at, place,
+          step.has_more
+              ? layer.stored_value(below + hierarchy_.below(l, s, second, step.at_parent, at.wedge))
+              : step.below);
+      break;
+    }
+  }
+}
+
+void ActiveCut::pass_up(SplitId s, std::uint32_t first, std::uint32_t second) {
   for (std::size_t i = 0; i < tracked_.size(); ++i) {
     const AttributeHierarchy& layer = hierarchy_.layers[tracked_[i]];
     if (layer.parents_of_split.is_empty(index_of(s))) continue;
-    const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
-    const std::size_t begin = second ? layer.attribute_count(h_.first_child(s)) : 0;
-    for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
-      RelativeAttribute& a =
-          parts_[at.corner.part()].relative[tracked_.size() * at.corner.index() + i];
-      a = parents[begin + a];
+    const bool keeps = keeps_values(layer, s);
+    for (const std::uint32_t slot : {first, second}) {
+      if (slot == kNoSlot || (keeps && has_several(i, vertices_[slot]))) continue;
+      step_up(s, slot, slot == second, i);
+    }
+  }
+}
+
+// MeshHierarchy::above() for all of them. Where values stay, the child has a single one.
+void ActiveCut::step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place) {
+  const AttributeHierarchy& layer = hierarchy_.layers[tracked_[place]];
+  const CompactRanges::Range at_s =
+      layer.attribute_ranges.range(index_of(h_.node_of_split[index_of(s)]));
+  if (at_s.end - at_s.begin <= 1) return;
+  const CompactRanges::Range at_child =
+      layer.attribute_ranges.range(index_of(vertices_[slot].node));
+  const std::uint32_t count_below = at_child.end - at_child.begin;
+  const std::uint32_t below = layer.place_of_value(at_child.begin);
+  if (keeps_values(layer, s)) {
+    const std::uint32_t value = layer.stored_value(below);
+    for (const CornerAt& at : corners_of(slot)) set_value(at, place, value);
+    return;
+  }
+  const std::uint32_t above = layer.place_of_value(at_s.begin);
+  const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
+  const std::size_t first = second ? parents.size() - count_below : 0;
+  const bool has_several = count_below > 1;
+  steps_.clear();
+  for (std::uint32_t a = 0; a < count_below; ++a) {
+    const RelativeAttribute to = parents[first + a];
+    if (to == kRemoved) continue;
+    const Step step{layer.stored_value(above + to), layer.stored_value(below + a)};
+    if (!has_several || step.above != step.below) steps_.push_back(step);
+  }
+  if (steps_.empty()) return;
+  for (const CornerAt& at : corners_of(slot)) {
+    const std::uint32_t value = kept_value(at, place);
+    for (const Step& step : steps_) {
+      if (has_several && step.below != value) continue;
+      set_value(at, place, step.above);
+      break;
     }
   }
 }
@@ -335,7 +456,9 @@ void ActiveCut::touch_derived(SplitId s) {
     const WedgeId wedge = h_.triangles[index_of(t)][0];
     for (const CornerAt& at : lists_.of(vertices_[map_.slot_at(wedge)].corners)) {
       ActiveTriangles& part = parts_[at.corner.part()];
-      if (part.ids[at.corner.triangle()] == t) part.touched.mark(at.corner.triangle());
+      if (at.wedge != wedge || part.ids[at.corner.triangle()] != t) continue;
+      part.is_derived[at.corner.triangle()] = is_done(s) ? 0 : 1;
+      part.touched.mark(at.corner.triangle());
     }
   }
 }
@@ -382,10 +505,38 @@ void ActiveCut::prefetch_merge_further(std::uint32_t slot, SplitId s) const {
   h_.deltas.prefetch(3 * (index_of(node) - h_.root_count));
 }
 
+// As children(), but what is not there yet is not waited for.
 void ActiveCut::prefetch_siblings(SplitId s) const {
-  const Children slots = children(s);
-  for (const std::uint32_t slot : {slots.first, slots.second}) {
-    if (slot != kNoSlot) prefetch_vertex(slot);
+  const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
+  if (middle == 0 || middle >= h_.wedge_count()) return;
+  prefetch_vertex(map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle)}));
+  prefetch_vertex(map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle - 1)}));
+}
+
+// The third vertices of the triangles that collapse.
+void ActiveCut::prefetch_siblings_further(SplitId s) const {
+  const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
+  if (middle == 0 || middle >= h_.wedge_count()) return;
+  const std::uint32_t second = map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle)});
+  const std::uint32_t first = map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle - 1)});
+  for (const CornerAt& at : corners_of(second)) {
+    const std::uint32_t* const of =
+        &parts_[at.corner.part()].slots[3 * std::size_t(at.corner.triangle())];
+    if ((of[0] == first) | (of[1] == first) | (of[2] == first)) {
+      prefetch_vertex(of[0] ^ of[1] ^ of[2] ^ first ^ second);
+    }
+  }
+}
+
+// The third vertices of what a split brings.
+void ActiveCut::prefetch_born(std::uint32_t slot, SplitId s) const {
+  const WedgeId begin = vertices_[slot].begin, end = vertices_[slot].end;
+  const TriangleRange born = h_.triangles_of(s);
+  const std::uint32_t last = std::min(born.end, born.begin + 4);
+  for (std::uint32_t t = born.begin; t < last; ++t) {
+    for (const WedgeId wedge : h_.triangles[t]) {
+      if (wedge < begin || wedge >= end) prefetch_vertex(map_.slot_at(wedge));
+    }
   }
 }
 

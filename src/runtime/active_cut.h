@@ -1,5 +1,5 @@
 // A cut through a hierarchy that moves by splits and merges: the active vertices, the corners that
-// stand at each, the active triangles with their slots and relative attribute indices.
+// stand at each, the active triangles with their slots and the values of their corners.
 //
 //   ActiveCut cut(hierarchy);             // nothing is split
 //   cut.split(cut.slot_of(root));         // v_t keeps the slot, v_u gets one
@@ -8,6 +8,10 @@
 // A split costs: one look-up per introduced triangle (its third vertex, WedgeMap), one comparison
 // per corner at v_s, one write per corner that goes to v_u. Nothing depends on the model's size.
 // Normals, colours and kinds are not computed here: what may have changed is marked.
+//
+// A corner at a vertex with several attributes of a layer keeps its value, not the relative index
+// of G03 3.6: on the walls of a city values stay while indices change with every move. Where a
+// value does change (AttributeHierarchy::keeps_values), the way goes by indices.
 //
 // A vertex without triangles has no wedges and no slot; its splits and merges are never needed. So
 // a split one of whose children has no triangles only renames the slot.
@@ -37,11 +41,13 @@ struct alignas(128) ActiveVertex {
   NodeId node = kNoNode;     // kNoNode: the slot is free
   SplitId split = kNoSplit;  // of the node
   WedgeId begin{}, end{};
-  Vec3i position;                  // grid units
-  std::uint32_t one_normal = 0;    // all its corners have the same (SN of DB03)
-  std::uint32_t normal_count = 0;  // of the normal layer at the node
-  std::uint32_t normal_begin = 0;  // and the first of them
+  Vec3i position;                   // grid units
+  std::uint32_t normal = kSeveral;  // the value that all its corners show (SN of DB03)
   CornerList corners;
+
+  static constexpr std::uint32_t kSeveral = kNone;
+  static constexpr std::uint32_t kNoNormal = kNone - 1;  // no triangle of now shows one
+  bool has_one_normal() const { return normal != kSeveral; }
 };
 static_assert(sizeof(ActiveVertex) == 128);
 
@@ -88,28 +94,32 @@ class ActiveCut {
   void prefetch_split_further(std::uint32_t slot, SplitId s) const;
   void prefetch_merge(std::uint32_t slot, SplitId s) const;
   void prefetch_merge_further(std::uint32_t slot, SplitId s) const;
+  void prefetch_born(std::uint32_t slot, SplitId s) const;
   void prefetch_siblings(SplitId s) const;
+  void prefetch_siblings_further(SplitId s) const;
+  void prefetch_vertices_of(const ActiveTriangles& part, std::size_t triangle) const {
+    const std::uint32_t* const slots = &part.slots[3 * triangle];
+    for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[slots[k]]);
+  }
 
   std::span<const CornerAt> corners_of(std::uint32_t slot) const {
     return lists_.of(vertices_[slot].corners);
   }
 
-  // Which of its normals a derived triangle shows.
-  bool is_derived(TriangleId t) const {
-    if (normal_layer_ == kNone) return true;
-    const SplitId s = h_.deriving_split(t);
-    return s != kNoSplit && !is_done(s);
-  }
   std::uint32_t normal_layer() const { return normal_layer_; }  // kNone: there is none
   std::uint32_t color_layer() const { return color_layer_; }
-  std::size_t tracked_count() const { return tracked_.size(); }
-  std::span<const std::uint32_t> tracked_layers() const { return tracked_; }
 
   // By DB03, of what the corners have now.
   Part kind_of(const ActiveTriangles& part, std::uint32_t triangle) const;
   // The value that a corner shows, if its triangle shows stored ones: its index in the layer.
   std::size_t value_index(const ActiveTriangles& part, std::uint32_t corner_index,
                           std::size_t layer) const;
+  // Of the normal layer.
+  std::uint32_t normal_index(const ActiveTriangles& part, std::size_t corner_index) const {
+    const ActiveVertex& v = vertices_[part.slots[corner_index]];
+    if (v.has_one_normal()) return v.normal;
+    return part.values[tracked_.size() * corner_index + place_of_layer_[normal_layer_]];
+  }
   // Takes the triangle out of one part and into another one; nothing but its place changes.
   void move_triangle(Part from, std::uint32_t triangle, Part to);
   // No part has holes afterwards.
@@ -118,25 +128,53 @@ class ActiveCut {
   std::size_t bytes() const;  // of the state, the hierarchy apart
 
  private:
+  // It shows its geometric normal.
+  bool is_derived_now(TriangleId t) const {
+    if (normal_layer_ == kNone) return true;
+    const SplitId s = h_.deriving_split(t);
+    return s != kNoSplit && !is_done(s);
+  }
   std::uint32_t take_slot();
   void stand(std::uint32_t slot, NodeId node, const Vec3i& position);
-  // `relative`: per corner one for each tracked layer.
-  Part kind_of(TriangleId t, std::span<const std::uint32_t, 3> slots,
-               std::span<const RelativeAttribute> relative) const;
-  void touch(const CornerAt& at, bool one_normal) {
-    if (at.corner.part() != kSnPart || !one_normal || color_layer_ != kNone) {
-      parts_[at.corner.part()].touched.mark(at.corner.triangle());
-    }
+  void stand_at_children(SplitId s, std::uint32_t first, std::uint32_t second,
+                         const Vec3i& position);
+  std::uint32_t normal_in(const CompactRanges::Range& attributes) const;
+  // `values`: per corner one for each tracked layer.
+  Part kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
+               std::span<const std::uint32_t> values) const;
+  // The value at a corner that has `kept` one of a tracked layer.
+  std::uint32_t value_of(std::size_t place, std::uint32_t slot, std::uint32_t kept) const {
+    const ActiveVertex& v = vertices_[slot];
+    if (tracked_[place] == normal_layer_) return v.has_one_normal() ? v.normal : kept;
+    const AttributeHierarchy& layer = hierarchy_.layers[tracked_[place]];
+    const CompactRanges::Range range = layer.attribute_ranges.range(index_of(v.node));
+    return range.end - range.begin > 1 ? kept : layer.own_value(range.begin);
   }
-  void pass_down(SplitId s, std::uint32_t slot, bool second);
-  void pass_up(SplitId s, std::uint32_t slot, bool second);
-  void touch_corners(std::uint32_t slot);
+  bool has_several(std::size_t place, const ActiveVertex& v) const {
+    const std::uint32_t l = tracked_[place];
+    return l == normal_layer_ ? !v.has_one_normal()
+                              : hierarchy_.layers[l].attribute_count(v.node) > 1;
+  }
+  std::uint32_t value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge) const;
+  // Of the corners at both children; kNoSlot where one has no triangles.
+  void pass_down(SplitId s, std::uint32_t first, std::uint32_t second, bool had_one_normal);
+  void pass_up(SplitId s, std::uint32_t first, std::uint32_t second);
+  void step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place);
+  void step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place);
+  std::uint32_t kept_value(const CornerAt& at, std::size_t place) const {
+    return parts_[at.corner.part()].values[tracked_.size() * at.corner.index() + place];
+  }
+  void set_value(const CornerAt& at, std::size_t place, std::uint32_t value) {
+    ActiveTriangles& part = parts_[at.corner.part()];
+    part.values[tracked_.size() * at.corner.index() + place] = value;
+    part.touched.mark(at.corner.triangle());
+  }
+  void touch_corners(std::uint32_t slot, bool had_one_normal);
   void give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle);
   void take_corners(std::uint32_t from, std::uint32_t to);
   void activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
                 const std::array<std::uint32_t, 3>& slots);
-  std::size_t value_of(std::size_t layer, std::uint32_t slot, RelativeAttribute a) const;
-  void deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to);
+  void deactivate(CornerRef corner, std::uint32_t from);
   void touch_derived(SplitId s);
   void prefetch_vertex(std::uint32_t slot) const {
     const char* const vertex = reinterpret_cast<const char*>(&vertices_[slot]);
@@ -160,6 +198,7 @@ class ActiveCut {
   std::uint32_t normal_layer_ = kNone, color_layer_ = kNone;
   std::vector<std::uint32_t> tracked_;         // layers that have nodes of several attributes
   std::vector<std::uint32_t> place_of_layer_;  // in tracked_, or kNone
+  bool tracks_others_ = false;                 // layers beside normals
   bool touches_triangles_ = false;             // some triangle is, or may become, other than SN
   std::vector<std::uint64_t> done_;            // a bit a split
   WedgeMap map_;
@@ -168,15 +207,15 @@ class ActiveCut {
   CornerLists lists_;
   std::array<ActiveTriangles, kPartCount> parts_;
   ChangeSet vertex_changes_;
-  std::vector<CornerAt> leaving_;            // scratch of one move
-  std::vector<RelativeAttribute> arriving_;  // scratch of one triangle
-  // Scratch of one split: per attribute above, its first one below, and whether it has more.
-  struct Below {
-    RelativeAttribute first = kRemoved;
-    bool has_more = false;
+  std::vector<CornerAt> leaving_;        // scratch of one move
+  std::vector<std::uint32_t> arriving_;  // scratch of one triangle
+  // Scratch of one move: an attribute of v_s and what it is at a child.
+  struct Step {
+    std::uint32_t above = kNone, below = kNone;  // values
+    RelativeAttribute at_parent = 0;
+    bool has_more = false;  // others of the child as well
   };
-  std::vector<Below> below_;
-  std::vector<std::uint32_t> collapsed_;  // scratch of one merge: triangle keys
+  std::vector<Step> steps_;
 };
 
 }  // namespace crease

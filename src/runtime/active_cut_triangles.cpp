@@ -7,49 +7,43 @@
 
 namespace crease {
 
-std::size_t ActiveCut::value_of(std::size_t l, std::uint32_t slot, RelativeAttribute a) const {
-  const AttributeHierarchy& layer = hierarchy_.layers[l];
-  const ActiveVertex& v = vertices_[slot];
-  const std::size_t begin =
-      l == normal_layer_ ? v.normal_begin : layer.attribute_ranges.begin(index_of(v.node));
-  return layer.value_of_attribute.empty() ? begin + a : layer.value_of_attribute[begin + a];
-}
-
-Part ActiveCut::kind_of(TriangleId t, std::span<const std::uint32_t, 3> slots,
-                        std::span<const RelativeAttribute> relative) const {
+Part ActiveCut::kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
+                        std::span<const std::uint32_t> values) const {
   if (normal_layer_ == kNone) return kFnPart;
-  const bool derived = is_derived(t);
-  if (derived) {
+  if (is_derived) {
     const Vec3f n = geometric_normal(vertices_[slots[0]].position, vertices_[slots[1]].position,
                                      vertices_[slots[2]].position);
     if (n != Vec3f{}) return kFnPart;
   }
-  const auto has_one = [&](std::uint32_t slot) { return vertices_[slot].one_normal != 0; };
+  const auto has_one = [&](std::uint32_t slot) { return vertices_[slot].has_one_normal(); };
   // A derived one without area shows what it stores, for as long as its corners stay: no SN.
-  if (!derived && std::all_of(slots.begin(), slots.end(), has_one)) return kSnPart;
+  if (!is_derived && std::all_of(slots.begin(), slots.end(), has_one)) return kSnPart;
   const std::uint32_t place = place_of_layer_[normal_layer_];
-  std::size_t values[3];
+  std::uint32_t at[3];
   for (std::size_t k = 0; k < 3; ++k) {
-    const RelativeAttribute a =
-        place == kNone ? RelativeAttribute{0} : relative[k * tracked_.size() + place];
-    values[k] = value_of(normal_layer_, slots[k], a);
+    at[k] = place == kNone ? vertices_[slots[k]].normal
+                           : value_of(place, slots[k], values[k * tracked_.size() + place]);
   }
-  return values[0] == values[1] && values[1] == values[2] ? kFnPart : kNsnPart;
+  return at[0] == at[1] && at[1] == at[2] ? kFnPart : kNsnPart;
 }
 
 Part ActiveCut::kind_of(const ActiveTriangles& part, std::uint32_t triangle) const {
   const std::size_t each = 3 * tracked_.size();
-  return kind_of(part.ids[triangle],
+  return kind_of(part.is_derived[triangle] != 0,
                  std::span<const std::uint32_t, 3>(&part.slots[3 * std::size_t(triangle)], 3),
-                 std::span<const RelativeAttribute>(part.relative).subspan(each * triangle, each));
+                 std::span<const std::uint32_t>(part.values).subspan(each * triangle, each));
 }
 
 std::size_t ActiveCut::value_index(const ActiveTriangles& part, std::uint32_t corner_index,
                                    std::size_t layer) const {
   const std::uint32_t place = place_of_layer_[layer];
-  const RelativeAttribute a =
-      place == kNone ? RelativeAttribute{0} : part.relative[tracked_.size() * corner_index + place];
-  return value_of(layer, part.slots[corner_index], a);
+  const std::uint32_t slot = part.slots[corner_index];
+  if (place != kNone) {
+    return value_of(place, slot, part.values[tracked_.size() * corner_index + place]);
+  }
+  if (layer == normal_layer_) return vertices_[slot].normal;
+  const AttributeHierarchy& source = hierarchy_.layers[layer];
+  return source.own_value(source.attribute_ranges.begin(index_of(vertices_[slot].node)));
 }
 
 SplitId ActiveCut::introducing_split(TriangleId t) const {
@@ -81,8 +75,9 @@ void ActiveCut::copy_triangle(Part from, std::uint32_t source, Part to, std::uin
   std::copy_n(&old.slots[3 * std::size_t(source)], 3, &part.slots[3 * std::size_t(target)]);
   const std::size_t each = 3 * tracked_.size();
   for (std::size_t i = 0; i < each; ++i) {
-    part.relative[each * target + i] = old.relative[each * source + i];
+    part.values[each * target + i] = old.values[each * source + i];
   }
+  part.is_derived[target] = old.is_derived[source];
   part.moved.mark(target);
   part.shaded.mark(target);
 }
@@ -106,6 +101,7 @@ void ActiveCut::fill_holes() {
       part.holes.pop_back();
       if (hole >= part.ids.size() || part.ids[hole] != kNoTriangle) continue;
       const auto last = static_cast<std::uint32_t>(part.ids.size() - 1);
+      if (last >= 4 && part.ids[last - 4] != kNoTriangle) prefetch_vertices_of(part, last - 4);
       copy_triangle(p, last, p, hole);
       part.ids[hole] = part.ids[last];
       part.ids.pop_back();
@@ -113,7 +109,8 @@ void ActiveCut::fill_holes() {
     }
     part.holes.clear();
     part.slots.resize(3 * part.ids.size());
-    part.relative.resize(3 * tracked_.size() * part.ids.size());
+    part.values.resize(3 * tracked_.size() * part.ids.size());
+    part.is_derived.resize(part.ids.size());
   }
 }
 
@@ -122,9 +119,8 @@ std::size_t ActiveCut::bytes() const {
                     sizeof(ActiveVertex) * vertices_.capacity() + 4 * free_slots_.capacity();
   for (const ActiveTriangles& part : parts_) {
     sum += 4 * (part.ids.capacity() + part.slots.capacity() + part.holes.capacity() +
-                part.materials.capacity()) +
-           2 * part.relative.capacity() + 12 * part.normals.capacity() +
-           16 * part.colors.capacity();
+                part.materials.capacity() + part.values.capacity()) +
+           part.is_derived.capacity() + 12 * part.normals.capacity() + 16 * part.colors.capacity();
   }
   return sum;
 }

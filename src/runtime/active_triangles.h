@@ -4,8 +4,9 @@
 // when all moves are done are filled from the end (CutDrawing). So a frame that splits as much as
 // it merges moves no triangle in memory and uploads nothing but what changed.
 //
-// Memory per triangle: slots 12, id 4, 6 per attribute layer that ever has two attributes at a
-// vertex; for drawing FN normal 12, NSN normals 36, colours 48, material 4; 3 bits of marks.
+// Memory per triangle: slots 12, id 4, a flag 1, 12 per attribute layer that ever has two
+// attributes at a vertex; for drawing FN normal 12, NSN normals 36, colours 48, material 4; 3 bits
+// of marks.
 #pragma once
 
 #include "crease/mesh_hierarchy.h"
@@ -23,14 +24,16 @@ enum Part : std::uint32_t { kSnPart, kFnPart, kNsnPart, kPartCount };
 inline constexpr TriangleId kNoTriangle{kNone};
 
 struct ActiveTriangles {
-  std::vector<TriangleId> ids;              // kNoTriangle: a hole
-  std::vector<std::uint32_t> slots;         // 3 a triangle: the active vertices
-  std::vector<RelativeAttribute> relative;  // per corner one for each tracked layer
-  std::vector<std::uint32_t> holes;         // may name triangles beyond the end
-  std::size_t hole_count = 0;               // in front of the end
-  ChangeSet moved;                          // slots changed
-  ChangeSet touched;                        // kind, normals or colours may have changed
-  ChangeSet shaded;                         // normals or colours did
+  std::vector<TriangleId> ids;       // kNoTriangle: a hole
+  std::vector<std::uint32_t> slots;  // 3 a triangle: the active vertices
+  // Per corner one for each tracked layer: its value, where its vertex has several.
+  std::vector<std::uint32_t> values;
+  std::vector<std::uint8_t> is_derived;  // it shows its geometric normal, if it has one
+  std::vector<std::uint32_t> holes;      // may name triangles beyond the end
+  std::size_t hole_count = 0;            // in front of the end
+  ChangeSet moved;                       // slots changed
+  ChangeSet touched;                     // kind, normals or colours may have changed
+  ChangeSet shaded;                      // normals or colours did
 
   // What is drawn beside the slots; CutDrawing keeps it.
   std::vector<Vec3f> normals;                // FN: 1 a triangle, NSN: 3
@@ -43,7 +46,7 @@ struct ActiveTriangles {
   static constexpr std::size_t kMoreAtOnce = 255;
 
   // A place for a triangle, in a hole or at the end.
-  std::uint32_t add(TriangleId id, std::size_t relative_per_triangle) {
+  std::uint32_t add(TriangleId id, std::size_t values_per_triangle) {
     while (hole_count > 0) {
       const std::uint32_t hole = holes.back();
       holes.pop_back();
@@ -57,7 +60,8 @@ struct ActiveTriangles {
     if (slots.size() < 3 * ids.size()) {  // too large until the holes are filled
       const std::size_t size = ids.size() + kMoreAtOnce;
       slots.resize(3 * size);
-      relative.resize(relative_per_triangle * size);
+      values.resize(values_per_triangle * size);
+      is_derived.resize(size);
       for (ChangeSet* set : {&moved, &touched, &shaded}) set->grow(size);
     }
     return static_cast<std::uint32_t>(ids.size() - 1);

@@ -5,7 +5,7 @@
 //   for (CornerAt& at : lists.of(list)) ...
 //
 // A corner comes with its wedge, so that a split reads one run of memory and no triangle to tell
-// which corners go to v_u. Up to 10 stand in the list itself, beside what else a move needs of the
+// which corners go to v_u. Up to 11 stand in the list itself, beside what else a move needs of the
 // vertex; more of them in a block of 16, 32, 64, ... corners in a pool that all lists share.
 #pragma once
 
@@ -44,7 +44,7 @@ struct CornerAt {
 };
 
 struct CornerList {
-  static constexpr std::uint32_t kOwn = 10;
+  static constexpr std::uint32_t kOwn = 11;
 
   std::uint32_t count = 0;
   std::uint32_t block = kNone;  // in the pool, or kNone: in `own`

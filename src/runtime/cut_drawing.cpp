@@ -3,6 +3,8 @@
 #include "hierarchy/geometric_normal.h"
 #include "runtime/draw_values.h"
 
+#include <algorithm>
+
 namespace crease {
 
 namespace {
@@ -19,14 +21,17 @@ Vec3f normal_of(const AttributeHierarchy& layer, std::size_t index) {
 }
 
 // Of a derived triangle its geometric normal.
-Vec3f shown_normal(const ActiveCut& cut, const ActiveTriangles& part, std::uint32_t corner_index) {
-  const std::uint32_t triangle = corner_index / 3;
-  if (cut.is_derived(part.ids[triangle])) {
+void show_normals(const ActiveCut& cut, const ActiveTriangles& part, std::uint32_t triangle,
+                  std::span<Vec3f> shown) {
+  if (part.is_derived[triangle] != 0) {
     const Vec3f n = geometric_normal_of(cut, part, triangle);
-    if (n != Vec3f{} || cut.normal_layer() == kNone) return n;
+    std::fill(shown.begin(), shown.end(), n);
+    if (n != Vec3f{} || cut.normal_layer() == kNone) return;
   }
-  const std::uint32_t l = cut.normal_layer();
-  return normal_of(cut.hierarchy().layers[l], cut.value_index(part, corner_index, l));
+  const AttributeHierarchy& layer = cut.hierarchy().layers[cut.normal_layer()];
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    shown[k] = normal_of(layer, cut.normal_index(part, 3 * std::size_t(triangle) + k));
+  }
 }
 
 }  // namespace
@@ -52,7 +57,9 @@ void CutDrawing::sort_touched(ActiveCut& cut) {
     ActiveTriangles& part = cut.parts()[p];
     part.touched.take(part.size(), ranges_,
                       [this](std::size_t i) { touched_.push_back(static_cast<std::uint32_t>(i)); });
-    for (const std::uint32_t t : touched_) {
+    for (std::size_t i = 0; i < touched_.size(); ++i) {
+      const std::uint32_t t = touched_[i];
+      if (i + 8 < touched_.size()) cut.prefetch_vertices_of(part, touched_[i + 8]);
       if (part.ids[t] == kNoTriangle) continue;
       const Part now = cut.kind_of(part, t);
       if (now == p) {
@@ -72,12 +79,8 @@ void CutDrawing::refresh_vertices(ActiveCut& cut) {
     const ActiveVertex& v = cut.vertices()[slot];
     if (v.node == kNoNode) return;
     positions_[slot] = draw_position(hierarchy.vertices.grid, v.position);
-    if (v.one_normal == 0) return;
-    const AttributeHierarchy& layer = hierarchy.layers[cut.normal_layer()];
-    if (v.normal_count == 0) return;  // no triangle of now shows one
-    const std::size_t i = v.normal_begin;
-    const std::size_t index = layer.value_of_attribute.empty() ? i : layer.value_of_attribute[i];
-    vertex_normals_[slot] = normal_of(layer, index);
+    if (v.normal >= ActiveVertex::kNoNormal) return;
+    vertex_normals_[slot] = normal_of(hierarchy.layers[cut.normal_layer()], v.normal);
   };
   cut.vertex_changes().take(positions_.size(), changes_.positions, refresh);
   changes_.vertex_normals = changes_.positions;
@@ -92,8 +95,9 @@ void CutDrawing::refresh_part(ActiveCut& cut, Part p) {
   if (color_layer != kNone) part.colors.resize(3 * part.size());
   const auto refresh_shading = [&](std::size_t t) {
     const auto corner = static_cast<std::uint32_t>(3 * t);
-    for (std::uint32_t k = 0; k < normal_count; ++k) {
-      part.normals[normal_count * t + k] = shown_normal(cut, part, corner + k);
+    if (normal_count > 0) {
+      show_normals(cut, part, static_cast<std::uint32_t>(t),
+                   std::span<Vec3f>(part.normals).subspan(normal_count * t, normal_count));
     }
     for (std::uint32_t k = 0; color_layer != kNone && k < 3; ++k) {
       const std::size_t value = cut.value_index(part, corner + k, color_layer);

@@ -61,7 +61,7 @@ AttributeLayer extract_layer(const ActiveCut& cut, const std::vector<ActiveTrian
   std::vector<std::uint32_t> id_of_value(source.values.size() / source.dimension, kNone);
   for (const ActiveTriangle& t : triangles) {
     const ActiveTriangles& part = cut.parts()[t.part];
-    if (l == cut.normal_layer() && cut.is_derived(t.id)) {
+    if (l == cut.normal_layer() && part.is_derived[t.place] != 0) {
       const Vec3f n = geometric_normal_of(cut, part, t.place);
       if (n != Vec3f{}) {
         const float value[] = {n.x, n.y, n.z};

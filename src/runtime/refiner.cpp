@@ -99,7 +99,8 @@ void Refiner::fetch_merges(const ActiveCut& cut) const {
   const std::size_t i = merges_.next, count = wishes.size();
   if (i + 12 < count) cut.prefetch_merge(wishes[i + 12].slot, wishes[i + 12].split);
   if (i + 8 < count) cut.prefetch_merge_further(wishes[i + 8].slot, wishes[i + 8].split);
-  if (i + 4 < count) cut.prefetch_siblings(wishes[i + 4].split);
+  if (i + 5 < count) cut.prefetch_siblings(wishes[i + 5].split);
+  if (i + 2 < count) cut.prefetch_siblings_further(wishes[i + 2].split);
 }
 
 void Refiner::fetch_splits(const ActiveCut& cut) const {
@@ -107,19 +108,23 @@ void Refiner::fetch_splits(const ActiveCut& cut) const {
   const std::size_t i = splits_.next, count = wishes.size();
   if (i + 12 < count) cut.prefetch_split(wishes[i + 12].slot, wishes[i + 12].split);
   if (i + 8 < count) cut.prefetch_split_further(wishes[i + 8].slot, wishes[i + 8].split);
+  if (i + 4 < count) cut.prefetch_born(wishes[i + 4].slot, wishes[i + 4].split);
 }
 
 void Refiner::do_merges(ActiveCut& cut) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
   while (!merges_.empty() && !out_of_time()) {
+    if (!is_ordered_) fetch_merges(cut);
     const Wish wish =
         take(merges_, [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
     const NodeId node = cut.vertices()[wish.slot].node;
     if (node == kNoNode || h.is_root(node) || h.split_above(node) != wish.split) continue;
-    if (!cut.can_merge(wish.split)) {
+    const ActiveCut::Children children = cut.children(wish.split);
+    const bool has_both = children.first != kNoSlot && children.second != kNoSlot;
+    if (!has_both && !cut.can_merge(wish.split)) {
       drop_pair(wish.slot);
     } else if (!is_needed(cut, wish.split)) {
-      merge(cut, wish.split);
+      merge(cut, wish.split, children);
     }
   }
   if (merges_.empty()) merges_.clear();
@@ -177,7 +182,9 @@ void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t roo
     std::pop_heap(least_visible_.begin(), least_visible_.end(), more_visible);
     least_visible_.pop_back();
     if (wish.split == above) continue;
-    if (cut.can_merge(wish.split) && !is_needed(cut, wish.split)) merge(cut, wish.split);
+    if (cut.can_merge(wish.split) && !is_needed(cut, wish.split)) {
+      merge(cut, wish.split, cut.children(wish.split));
+    }
   }
 }
 
@@ -201,9 +208,8 @@ void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
   if (counts_all_merges_) count_merge(cut, s, slot);
 }
 
-void Refiner::merge(ActiveCut& cut, SplitId s) {
+void Refiner::merge(ActiveCut& cut, SplitId s, const ActiveCut::Children& children) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
-  const ActiveCut::Children children = cut.children(s);
   cut.merge(s, children);
   ++report_.merges;
   for (const std::uint32_t slot : {children.first, children.second}) {
@@ -218,7 +224,7 @@ void Refiner::merge(ActiveCut& cut, SplitId s) {
   if (counts_all_merges_ && error_.is_wrong(wrong_.get(slot))) wish_split(cut, slot);
   if (h.is_root(v.node)) return;
   const SplitId above = h.split_above(v.node);
-  if (!cut.can_merge(above)) return;
+  if (!cut.is_cut_leaf(h.child(above, !h.is_second(v.node)))) return;  // its sibling
   const Watch watch = watch_above(cut, v, above);
   watch_pair(slot, above, watch);
   if (!error_.is_wrong(watch)) wish_merge(cut, above, slot);

@@ -78,7 +78,7 @@ class Refiner {
   void keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t room);
   void split(ActiveCut& cut, std::uint32_t slot);
   void split_consistently(ActiveCut& cut, std::uint32_t slot);
-  void merge(ActiveCut& cut, SplitId s);
+  void merge(ActiveCut& cut, SplitId s, const ActiveCut::Children& children);
   bool needs_split(const ActiveCut& cut, SplitId s, std::uint32_t& third) const;
   bool is_needed(const ActiveCut& cut, SplitId s) const;
 

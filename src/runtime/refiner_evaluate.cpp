@@ -76,7 +76,7 @@ void Refiner::watch_pair(std::uint32_t slot, SplitId s, const Watch& watch) {
   if (pair == kNone) {
     pair = static_cast<std::uint32_t>(pairs_.size());
     pairs_.push_back({});
-    merged_.resize(pairs_.size(), error_.uses_cones());
+    merged_.grow(pairs_.size(), error_.uses_cones());
   }
   pairs_[pair] = {s, slot};
   merged_.set(pair, watch);
@@ -93,7 +93,7 @@ void Refiner::drop_pair(std::uint32_t slot) {
     pair_of_slot_[pairs_[pair].slot] = pair;
   }
   pairs_.pop_back();
-  merged_.resize(last, error_.uses_cones());
+  merged_.shrink(last);
 }
 
 // Of the parent of v, as something that is to be merged.

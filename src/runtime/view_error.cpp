@@ -44,29 +44,13 @@ ViewError::ViewError(const ViewParameters& view, const Grid& grid)
   gaze4_.outside = spread(gaze_.outside);
 }
 
-Watch ViewError::watch(const SplitBounds& bounds, const Vec3f& position, float limit) const {
-  Watch watch;
-  const float radius = decoded(bounds.radius);
-  watch.center = position;
-  watch.radius = radius;
-  const float error = std::max(decoded(bounds.surface), decoded(bounds.line)) * pixels_at_one_;
-  const float turned = decoded(bounds.degrees) * per_degree_;
-  const auto reach_for = [&](float weight) {
-    float reach = error * weight / limit;
-    if (turned * weight > limit) {
-      reach = std::max(reach, turned * weight / limit * radius * full_size_at_one_);
-    }
-    return reach > 0 ? reach + radius : -kNever;
-  };
-  watch.reach = reach_for(1);
-  if (!uses_cones_) return watch;
-  watch.reach_aside = reach_for(silhouette_weight_);
-  if (bounds.cone_angle >= 128) return watch;
+void ViewError::look_aside(const SplitBounds& bounds, float limit, Watch& watch) const {
+  watch.reach_aside = reach_for(bounds, silhouette_weight_, limit);
+  if (bounds.cone_angle >= 128) return;
   const NormalCone cone = bounds.cone();
   watch.axis = cone.axis;
   watch.sine = std::sin(cone.half_angle_rad);
   watch.cosine = std::max(0.0f, std::cos(cone.half_angle_rad));
-  return watch;
 }
 
 // Directions change by at most the root of the sum of squares that the frame's three do, over the

@@ -16,6 +16,7 @@
 
 #include "crease/adaptive_mesh.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -44,9 +45,19 @@ inline Float4 magnitude(const Float4& x) {
   return std::bit_cast<Float4>(std::bit_cast<Int4>(x) & 0x7fffffff);
 }
 
-template <typename Real>
-Real smaller(const Real& a, const Real& b) {
+inline float smaller(float a, float b) {
   return a < b ? a : b;
+}
+inline Float4 smaller(const Float4& a, const Float4& b) {
+#if defined(__SSE__)
+  return _mm_min_ps(a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
+inline float smallest(const Float4& x) {
+  const Float4 pairs = smaller(x, Float4{x[2], x[3], x[0], x[1]});
+  return smaller(pairs[0], pairs[1]);
 }
 
 inline Float4 root(const Float4& x) {
@@ -132,6 +143,10 @@ class ViewError {
   static constexpr float kFullSizePixels = 16;
   static constexpr float kMost = 1e30f;  // where the camera is inside the sphere
 
+  float reach_for(const SplitBounds& bounds, float weight, float limit) const;
+  // What facing adds to a watch.
+  void look_aside(const SplitBounds& bounds, float limit, Watch& watch) const;
+
   // As RoundedUp::value(), here for speed.
   static float decoded(RoundedUp f) { return std::bit_cast<float>(std::uint32_t(f.bits) << 15); }
 
@@ -158,6 +173,26 @@ class ViewError {
   float per_degree_ = 0, silhouette_weight_ = 1;
   bool coarse_backfaces_ = false, uses_cones_ = false;
 };
+
+inline float ViewError::reach_for(const SplitBounds& bounds, float weight, float limit) const {
+  const float radius = decoded(bounds.radius);
+  const float error = std::max(decoded(bounds.surface), decoded(bounds.line)) * pixels_at_one_;
+  const float turned = decoded(bounds.degrees) * per_degree_;
+  float reach = error * weight / limit;
+  if (turned * weight > limit) {
+    reach = std::max(reach, turned * weight / limit * radius * full_size_at_one_);
+  }
+  return reach > 0 ? reach + radius : -kNever;
+}
+
+inline Watch ViewError::watch(const SplitBounds& bounds, const Vec3f& position, float limit) const {
+  Watch watch;
+  watch.center = position;
+  watch.radius = decoded(bounds.radius);
+  watch.reach = reach_for(bounds, 1, limit);
+  if (uses_cones_) look_aside(bounds, limit, watch);
+  return watch;
+}
 
 inline bool ViewError::is_wrong(const Watch& w) const {
   const Vec3f& c = w.center;

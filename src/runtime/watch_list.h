@@ -44,6 +44,11 @@ class WatchList {
     if (!with_facing) return facings_.clear();
     if (spheres_.size() > facings_.size()) facings_.resize(spheres_.size());
   }
+  void grow(std::size_t count, bool with_facing) {
+    if (count > kLanes * spheres_.size()) return resize(count, with_facing);
+    size_ = count;
+  }
+  void shrink(std::size_t count) { size_ = count; }
   std::size_t size() const { return size_; }
 
   void set(std::size_t i, const Watch& watch) {
@@ -80,11 +85,16 @@ class WatchList {
   template <bool kWrong, typename Found>
   std::size_t find(const ViewError& error, const Odometer& now, Found found) {
     const auto travel = static_cast<float>(now.travel), turn = static_cast<float>(now.turn);
+    // So much sooner that no rounding makes a date late.
+    const Dates from{static_cast<float>(now.travel * (1 - 1e-6)) - now.slop,
+                     static_cast<float>(now.turn * (1 - 1e-6)) - kRounding};
     std::size_t looked_at = 0;
-    for (std::size_t b = 0; kLanes * b < size_; ++b) {
-      if (due_[b].travel > travel && due_[b].turn > turn) continue;
+    const Dates* const due = due_.data();
+    const std::size_t block_count = (size_ + kLanes - 1) / kLanes;
+    for (std::size_t b = 0; b < block_count; ++b) {
+      if ((due[b].travel > travel) & (due[b].turn > turn)) continue;
       looked_at += kLanes;
-      const Int4 hit = look<kWrong>(error, now, b);
+      const Int4 hit = look<kWrong>(error, from, b);
       if (!any(hit)) continue;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const std::size_t i = kLanes * b + lane;
@@ -110,19 +120,20 @@ class WatchList {
   struct Dates {
     float travel, turn;
   };
+  static constexpr float kRounding = 1e-6f;
   static constexpr Dates kNow{-kNever, -kNever};
   static constexpr Spheres kOff{{}, {}, {}, {-kNever, -kNever, -kNever, -kNever}, {}};
 
   // The lanes to be found. Dates what has none.
   template <bool kWrong>
-  Int4 look(const ViewError& error, const Odometer& now, std::size_t b) {
+  Int4 look(const ViewError& error, const Dates& from, std::size_t b) {
     const Spheres& s = spheres_[b];
     const Float4 distance = error.distance(s.x, s.y, s.z);
     const Int4 is_near = distance < reach_of(error, b);
     const Float4 gap = magnitude(s.reach - distance);
     // Hardly any of what is not split is near, unless it is out of view.
     if (kWrong && !any(is_near)) {
-      date(now, b, distance, gap, Float4{} + kNever);
+      date(from, b, distance, gap, Float4{} + kNever);
       return is_near;
     }
     const Float4 never = Float4{} + kNever;
@@ -132,9 +143,9 @@ class WatchList {
     if (any(hit)) {
       due_[b] = kNow;
     } else if (kWrong) {  // either far or out of view
-      date(now, b, distance, is_near ? never : gap, is_near ? magnitude(inside) : never);
+      date(from, b, distance, is_near ? never : gap, is_near ? magnitude(inside) : never);
     } else {  // near and in view
-      date(now, b, distance, gap, inside);
+      date(from, b, distance, gap, inside);
     }
     return hit;
   }
@@ -142,18 +153,16 @@ class WatchList {
   // None of four may change sides before the eye has come so much nearer or farther, or the planes
   // so much. A plane moves by what the eye travels, and by what it turns times the distance; each
   // of them may use up half.
-  void date(const Odometer& now, std::size_t b, const Float4& distance, const Float4& gap,
+  void date(const Dates& from, std::size_t b, const Float4& distance, const Float4& gap,
             const Float4& inside) {
     if (!facings_.empty()) return;  // what faces where changes sooner
-    constexpr float kSafe = 0.999f, kRounding = 1e-6f;
-    const Float4 half = 0.5f * inside;
-    const Float4 turn = inside < kNever ? half / (distance + half) : inside;
+    constexpr float kSafe = 0.999f, kFar = 1e30f;
+    const Float4 half = smaller(0.5f * inside, Float4{} + kFar);
+    const Float4 turn = half / (distance + half);  // 1 and more is never: all around
     const Float4 travel = smaller(gap, half) - kRounding * distance;
-    const auto least = [](const Float4& x) {
-      return smaller(smaller(x[0], x[1]), smaller(x[2], x[3]));
-    };
-    due_[b].travel = static_cast<float>(now.travel * (1 - 1e-6)) + kSafe * least(travel) - now.slop;
-    due_[b].turn = static_cast<float>(now.turn * (1 - 1e-6)) + kSafe * least(turn) - kRounding;
+    const float least_turn = smallest(turn);
+    due_[b].travel = from.travel + kSafe * smallest(travel);
+    due_[b].turn = least_turn < 1 ? from.turn + kSafe * least_turn : kNever;
   }
 
   Float4 reach_of(const ViewError& error, std::size_t b) const {

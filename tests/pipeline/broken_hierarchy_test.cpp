@@ -156,6 +156,7 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
       {"value out of range",
        [](MeshHierarchy& h) {
          AttributeHierarchy& layer = h.layers[0];
+         layer.has_value = {};
          PackedIndices<> indices(32);
          for (std::size_t i = 0; i < layer.attribute_ranges.total(); ++i) {
            indices.push_back(std::uint32_t(layer.values.size()));
@@ -199,7 +200,11 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
          h.layers[0].branches_of_split = none;
        }},
       {"an attribute is missing",
-       [](MeshHierarchy& h) { set(h.layers[0].leaf_attribute, 0, RelativeAttribute{1000}); }},
+       [](MeshHierarchy& h) {
+         PackedIndices<RelativeAttribute> far(16);
+         for (std::size_t w = 0; w < h.vertices.wedge_count(); ++w) far.push_back(1000);
+         h.layers[0].leaf_attribute = far;
+       }},
       {"a live attribute is removed",
        [](MeshHierarchy& h) {
          ParentMap parents = parents_of(h.layers[0], rich_split(h));
@@ -219,6 +224,7 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
            layer.values.resize(layer.values.size() + layer.dimension, 1.0f);
          } else {
            layer.value_of_attribute.push_back(0);
+           if (layer.has_value.size() != 0) layer.has_value.push_back(true);
          }
          const std::size_t split = index_of(h.vertices.split_above(NodeId(std::uint32_t(last))));
          ParentMap parents = parents_of(layer, split);
@@ -232,6 +238,54 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
        }},
   };
   for (const Harm& harm : harms) check_named(harm, c.hierarchy);
+}
+
+// Walls keep their normals, whatever becomes of their corners.
+HierarchyCase city_case() {
+  return simplified_case(city_blocks(6, 2));
+}
+
+TEST_CASE("a hierarchy that is wrong about values that stay is refused, with the reason") {
+  const HierarchyCase c = city_case();
+  REQUIRE(check_hierarchy(c.hierarchy).ok());
+  REQUIRE(c.hierarchy.layers[0].has_value.size() != 0);
+  const Harm harms[] = {
+      {"where values stay is not told of all",
+       [](MeshHierarchy& h) { h.layers[0].keeps_values.append(1, 1); }},
+      {"where values stay is not told of all",
+       [](MeshHierarchy& h) { h.layers[0].constant_of_wedge = {}; }},
+      {"a constant value changes",
+       [](MeshHierarchy& h) {
+         auto& constants = h.layers[0].constant_of_wedge;
+         set(constants, 0, constants[0] == 1 ? 2u : 1u);
+       }},
+      {"nowhere to have a value from",
+       [](MeshHierarchy& h) {
+         AttributeHierarchy& layer = h.layers[0];
+         RankedBits none;
+         for (std::size_t i = 0; i < layer.has_value.size(); ++i) none.push_back(false);
+         layer.has_value = none;
+         layer.value_of_attribute = PackedIndices<>(1);
+         layer.values = {};
+       }},
+      {"an attribute lacks its value", [](MeshHierarchy& h) { h.layers[0].has_value = {}; }},
+  };
+  for (const Harm& harm : harms) check_named(harm, c.hierarchy);
+}
+
+// Only some attributes have a value of their own that a split is said to keep.
+TEST_CASE("a split that changes a value and says it does not is found") {
+  const HierarchyCase c = city_case();
+  const PackedIndices<>& values = c.hierarchy.layers[0].value_of_attribute;
+  bool found = false;
+  for (std::size_t i = 0; i < values.size() && !found; ++i) {
+    MeshHierarchy h = c.hierarchy;
+    set(h.layers[0].value_of_attribute, i, values[i] == 0 ? 1u : 0u);
+    const Status status = check_hierarchy(h);
+    REQUIRE(!status.ok());
+    found = status.failure().message.find("a value that should stay changes") != std::string::npos;
+  }
+  CHECK(found);
 }
 
 TEST_CASE("leaves that are not the mesh are told from it") {

@@ -130,7 +130,7 @@ std::string symbols(const HierarchyCase& c, std::size_t contraction) {
     RelativeAttribute a = 0;
     for (AttributeSymbol symbol : second ? code.second : code.first) {
       text += "RCMX"[static_cast<int>(symbol)];
-      text += char(c.hierarchy.layers[0].value(child, a++)[0]);
+      text += char(c.hierarchy.value(0, child, a++)[0]);
       text += ' ';
     }
     text += second ? "" : "/ ";
@@ -144,7 +144,7 @@ std::vector<float> values_above(const HierarchyCase& c, std::size_t contraction)
   const NodeId node = c.hierarchy.vertices.node_of_split[index_of(s)];
   std::vector<float> values;
   for (std::uint32_t a = 0; a < c.hierarchy.layers[0].attribute_count(node); ++a) {
-    values.push_back(c.hierarchy.layers[0].value(node, RelativeAttribute(a))[0]);
+    values.push_back(c.hierarchy.value(0, node, RelativeAttribute(a))[0]);
   }
   return values;
 }
@@ -227,7 +227,7 @@ TEST_CASE("6 e: a collapsed semi-sharp edge merges three attributes, with a bran
     const std::size_t n = index_of(c.maps.new_of_triangle[triangle]);
     const WedgeId wedge = c.hierarchy.vertices.triangles[n][2];
     const RelativeAttribute a = c.hierarchy.below(0, s, false, 0, wedge);
-    CHECK(layer.value(c.hierarchy.vertices.first_child(s), a)[0] == float(expected));
+    CHECK(c.hierarchy.value(0, c.hierarchy.vertices.first_child(s), a)[0] == float(expected));
   }
 }
 

@@ -136,8 +136,7 @@ NodeId descend(const VertexHierarchy& h, const std::vector<bool>& done, WedgeId 
 RelativeAttribute walked_up(const HierarchyCase& c, std::size_t layer, NodeId leaf, NodeId to,
                             WedgeId wedge) {
   const MeshHierarchy& h = c.hierarchy;
-  const auto& at_leaf = h.layers[layer].leaf_attribute;
-  RelativeAttribute a = at_leaf.empty() ? RelativeAttribute{0} : at_leaf[index_of(wedge)];
+  RelativeAttribute a = h.at_leaf(layer, leaf, wedge);
   for (NodeId n = leaf; n != to; n = h.vertices.parent(n)) {
     a = h.above(layer, h.vertices.split_above(n), h.vertices.is_second(n), a, wedge);
   }
@@ -165,7 +164,7 @@ std::span<const float> value_at_cut(const HierarchyCase& c, const CutTriangle& t
   const TriangleId n = c.maps.new_of_triangle[index_of(t)];
   const WedgeId wedge = h.vertices.triangles[index_of(n)][corner];
   const NodeId node = triangle.nodes[corner];
-  return h.layers[layer].value(node, h.attribute_at(layer, node, wedge));
+  return h.value(layer, node, h.attribute_at(layer, node, wedge));
 }
 
 std::string difference_at_cut(const HierarchyCase& c, const Cut& cut) {
@@ -219,8 +218,7 @@ std::string difference_at_level(const HierarchyCase& c, std::size_t applied) {
       }
       for (std::size_t l = 0; l < c.mesh.layers.size(); ++l) {
         if (derived && c.mesh.layers[l].role == AttributeRole::Normal) continue;
-        const AttributeHierarchy& layer = c.hierarchy.layers[l];
-        const auto got = layer.value(node, c.hierarchy.attribute_at(l, node, wedge));
+        const auto got = c.hierarchy.value(l, node, c.hierarchy.attribute_at(l, node, wedge));
         const auto expected =
             attribute_value(c.mesh.layers[l], c.sequence, l, level.of_corner[l][3 * t + k]);
         if (std::memcmp(got.data(), expected.data(), got.size_bytes()) != 0) {

@@ -79,8 +79,7 @@ NodeId CutOracle::active_ancestor(NodeId leaf) const {
 
 RelativeAttribute CutOracle::attribute(std::size_t layer, WedgeId wedge, NodeId node) const {
   const MeshHierarchy& h = hierarchy();
-  const auto& at_leaf = h.layers[layer].leaf_attribute;
-  RelativeAttribute a = at_leaf.empty() ? RelativeAttribute{0} : at_leaf[index_of(wedge)];
+  RelativeAttribute a = h.at_leaf(layer, leaf_of_wedge_[index_of(wedge)], wedge);
   for (NodeId n = leaf_of_wedge_[index_of(wedge)]; n != node; n = h.vertices.parent(n)) {
     a = h.above(layer, h.vertices.split_above(n), h.vertices.is_second(n), a, wedge);
   }
@@ -207,10 +206,8 @@ std::string difference(const CutOracle& oracle, const ActiveCut& cut) {
       for (std::size_t l = 0; l < h.layers.size(); ++l) {
         const RelativeAttribute a = expected->relative[l][k];
         if (a >= h.layers[l].attribute_count(v.node)) return "missing attribute" + of;
-        const std::size_t i = h.layers[l].attribute_ranges.begin(index_of(v.node)) + a;
-        const std::size_t value =
-            h.layers[l].value_of_attribute.empty() ? i : h.layers[l].value_of_attribute[i];
-        if (cut.value_index(part, corner, l) != value) return h.layers[l].name + of;
+        if (cut.value_index(part, corner, l) != h.value_index(l, v.node, a))
+          return h.layers[l].name + of;
       }
     }
   }
