@@ -140,14 +140,10 @@ class BlockCoder {
   void code_general(std::uint32_t v);
   void apply(std::uint32_t v, std::uint32_t u);
   void code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s);
-  // How far from where it was expected a vertex was found, in its tangent plane and along the
-  // normal; below zero: it has no residual.
-  struct Miss {
-    float tangent = -1, normal = -1;
-  };
   Miss expected_miss(std::uint32_t v, const Surroundings& around) const;
-  Vec3i code_position(std::uint32_t v, const Vec3i& position, const Vec3i& predicted,
-                      const Surroundings& around, std::size_t kind);
+  ChildRing child_ring(bool second, const Vec3i& s, const Vec3i& sibling);
+  Vec3i code_position(std::uint32_t v, bool second, const Vec3i& position,
+                      const Surroundings& around, Leaving leaving, const Vec3i& sibling);
 
   // What triangles and corners have at the fine end.
   static constexpr std::size_t kBends = 4;
@@ -198,6 +194,9 @@ class BlockCoder {
 
   Ring ring_;
   Shape shape_;
+  Fan fan_;                     // the shape of a closed fan
+  bool is_closed_fan_ = false;  // that the present split is one of
+  std::vector<Vec3d> arc_;
   std::vector<std::uint32_t> ring_vertices_;  // scratch
   std::vector<char> was_derived_;             // per coarse triangle
   std::vector<char> is_known_;                // per corner, of the present layer
@@ -208,7 +207,7 @@ class BlockCoder {
   std::vector<LabelBox> boxes_;
 
   static constexpr std::size_t kMostTried = 6, kMostRanked = 16;
-  static constexpr std::size_t kGenerations = 6, kScales = 32, kSizes = 12, kValences = 12;
+  static constexpr std::size_t kGenerations = 6, kSizes = 12, kValences = 12;
   MagnitudeModel root_count_, root_triangle_count_;
   std::array<SignedModel, 3> root_position_;
   struct FlagModels {
@@ -228,20 +227,8 @@ class BlockCoder {
   AdaptiveBit is_in_ring_, first_leads_;
   std::array<AdaptiveBit, 3> to_second_;
   std::array<std::array<AdaptiveBit, 2>, 2> stays_;
-  // Residuals of positions: by which child, axis, how large its neighbours' were, and how large the
-  // axes before are beside that.
-  struct ResidualModels {
-    ResidualModels() {
-      for (std::size_t scale = 0; scale < kScales; ++scale) {
-        length[scale].fill(length_model(magnitude_of(scale), kKnown));
-      }
-    }
-    static constexpr int kKnown = 10;
-    std::array<std::array<LengthModel, 3>, kScales> length;
-    FirstBitsModel first_bits;
-    AdaptiveBit is_negative;
-  };
-  std::array<std::array<ResidualModels, 3>, 3> residual_;
+  // How likely each component is, by which child and how many triangles it has.
+  PlaceWeightsByChild place_weights_ = known_place_weights();
   std::array<AdaptiveBit, 2> same_part_;
   std::array<std::array<AdaptiveBit, 4>, 8> same_material_;
   TreeModel<6> other_material_;

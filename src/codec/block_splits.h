@@ -138,6 +138,7 @@ bool BlockCoder<Coder, Guide>::split(std::uint32_t v, bool fan) {
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
   shape_.introduced.clear();
+  is_closed_fan_ = false;
   if (fan) {
     shape_.triangles = ring_.triangles;
   } else {
@@ -159,6 +160,7 @@ void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
     }
     if (coder_.bit(is_fan_[ring_.closed], is_fan)) {
       code_fan(found, v);
+      is_closed_fan_ = ring_.closed;
       return;
     }
   }
@@ -226,6 +228,7 @@ void BlockCoder<Coder, Guide>::code_fan(Fan fan, std::uint32_t v) {
     fan.last = fan.first + 1 + code_below(vertices - 1 - fan.first, fan.last - fan.first - 1);
   }
   make_fan(fan);
+  fan_ = fan;
 }
 
 // Which of all pairs of the ring's vertices, in the order in which they are likely.
@@ -328,29 +331,20 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
   const bool t_stays = coder_.bit(stays_[0][0], at_t == s);
   const bool u_stays = coder_.bit(stays_[1][t_stays], at_u == s);
   const Surroundings around = surroundings(mesh_, around_[t], around_[u], t, u, s);
-  if (t_stays || u_stays) {
-    if (u_stays) {
-      at_u = s;
-    } else {
-      at_u = code_position(u, at_u, around.beside_parent(true), around, 0);
-    }
-    if (t_stays) {
-      at_t = s;
-    } else {
-      at_t = code_position(t, at_t, around.beside_parent(false), around, 0);
-    }
-  } else {
-    at_u = code_position(u, at_u, around.second_of_both(), around, 1);
-    at_t = code_position(t, at_t, around.first_of_both(at_u), around, 2);
-  }
+  const bool both = !t_stays && !u_stays;
+  at_u = u_stays
+             ? s
+             : code_position(u, true, at_u, around, both ? Leaving::SecondOfBoth : Leaving::One, s);
+  at_t = t_stays ? s
+                 : code_position(t, false, at_t, around, both ? Leaving::FirstOfBoth : Leaving::One,
+                                 at_u);
   mesh_.positions[u] = at_u;
   mesh_.positions[t] = at_t;
 }
 
 // As its neighbours' on average, or a quarter of their distance.
 template <class Coder, class Guide>
-typename BlockCoder<Coder, Guide>::Miss BlockCoder<Coder, Guide>::expected_miss(
-    std::uint32_t v, const Surroundings& around) const {
+Miss BlockCoder<Coder, Guide>::expected_miss(std::uint32_t v, const Surroundings& around) const {
   Miss sum{0, 0};
   float count = 0;
   const std::size_t triangles = std::min(around_[v].size(), kLargestRing);
@@ -366,40 +360,52 @@ typename BlockCoder<Coder, Guide>::Miss BlockCoder<Coder, Guide>::expected_miss(
   return {(sum.tangent + start) / (count + 1), (sum.normal + 0.25f * start) / (count + 1)};
 }
 
+// The neighbours of a child of the present split, if both have closed fans.
 template <class Coder, class Guide>
-Vec3i BlockCoder<Coder, Guide>::code_position(std::uint32_t v, const Vec3i& position,
-                                              const Vec3i& predicted, const Surroundings& around,
-                                              std::size_t kind) {
-  // The two minor axes, then the one along the normal, on which they say where the tangent plane
-  // is.
-  const Miss expected = expected_miss(v, around);
-  const std::size_t tangent = half_octave(expected.tangent), normal = half_octave(expected.normal);
-  std::array<std::int32_t, 3> residual{};
-  float size = 0;
+ChildRing BlockCoder<Coder, Guide>::child_ring(bool second, const Vec3i& s, const Vec3i& sibling) {
+  ChildRing result;
+  const auto from_parent = [&](const Vec3i& p) {
+    return Vec3d{double(p.x) - s.x, double(p.y) - s.y, double(p.z) - s.z};
+  };
+  result.sibling = from_parent(sibling);
+  if (!is_closed_fan_) return result;
+  const std::uint32_t n = static_cast<std::uint32_t>(ring_.vertices.size());
+  const auto at = [&](std::uint32_t i) {
+    return from_parent(mesh_.positions[ring_.vertices[i % n]]);
+  };
+  const std::uint32_t first = second ? fan_.first : fan_.last;
+  const std::uint32_t last = second ? fan_.last : fan_.first + n;
+  arc_.clear();
+  for (std::uint32_t i = first; i <= last; ++i) arc_.push_back(at(i));
+  result.arc = arc_;
+  result.beyond = {at(first + n - 1), at(last + 1)};
+  return result;
+}
+
+template <class Coder, class Guide>
+Vec3i BlockCoder<Coder, Guide>::code_position(std::uint32_t v, bool second, const Vec3i& position,
+                                              const Surroundings& around, Leaving leaving,
+                                              const Vec3i& sibling) {
+  PlaceWeights& weights =
+      place_weights_[std::size_t(leaving)][std::clamp<std::size_t>(around_[v].size(), 3, 8) - 3];
+  PlaceMixture mixture =
+      place_mixture(around, leaving, second, child_ring(second, around.parent, sibling),
+                    expected_miss(v, around), weights.of);
+  std::array<std::int32_t, 3> step;
   for (std::size_t i = 0; i < 3; ++i) {
-    const int axis = around.axis[i];
-    const std::int32_t sheared = i < 2 ? 0 : around.shear(residual[0], residual[1]);
-    const std::int32_t given = wrapped_difference(position[axis], predicted[axis]);
-    const std::size_t so_far = i == 0                           ? 0
-                               : size < 0.5f * expected.tangent ? 0
-                               : size < 1.5f * expected.tangent ? 1
-                                                                : 2;
-    ResidualModels& models = residual_[kind][i];
-    const std::int32_t own =
-        code_signed(coder_, models.length[i < 2 ? tangent : normal][so_far], models.first_bits,
-                    models.is_negative, wrapped_difference(given, sheared));
-    residual[i] = wrapped_sum(own, sheared);
-    if (i < 2) {
-      size = std::max(size, std::abs(static_cast<float>(own)));
-    } else {
-      miss_[v] = {size, std::abs(static_cast<float>(own))};
-    }
+    step[i] = wrapped_difference(position[around.axis[i]], around.parent[around.axis[i]]);
   }
+  step = code_place(coder_, mixture, step);
+  weights.learn(mixture.weight);
   Vec3i result;
   for (std::size_t i = 0; i < 3; ++i) {
-    const int axis = around.axis[i];
-    result[axis] = wrapped_sum(predicted[axis], residual[i]);
+    result[around.axis[i]] = wrapped_sum(around.parent[around.axis[i]], step[i]);
   }
+  const auto off = [&](std::size_t i) {
+    const double rest = i < 2 ? step[i] : step[2] - rise(mixture.direction, step[0], step[1]);
+    return static_cast<float>(std::abs(rest - mixture.center[i][0]));
+  };
+  miss_[v] = {std::max(off(0), off(1)), off(2)};
   return result;
 }
 

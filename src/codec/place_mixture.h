@@ -1,0 +1,177 @@
+// Where a vertex may be, as a mixture of distributions that each have a centre of their own, and
+// the coding of where it is: one axis after the other, each by halving an interval with the odds
+// that the mixture gives. Which component was right is never coded: what an axis tells of that
+// changes the components' weights for the next.
+//
+// Every component has the distribution function 1/2 + z / 2 sqrt(1 + z^2) along each axis: long
+// tails, and nothing that machines disagree on. Doubles without fused products, as in
+// predict_position.h.
+#pragma once
+
+#include "codec/adaptive_bit.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace crease::codec {
+
+// A probability that is given, in 1 / 2^16.
+class KnownBit {
+ public:
+  // Of `part` of `whole`; even odds where there is nothing to go by.
+  KnownBit(double part, double whole) {
+    const double p = whole > 0 ? part / whole : 0.5;
+    probability_ = static_cast<std::uint32_t>(std::clamp(p * 65536, kLeast, 65536 - kLeast));
+  }
+  std::uint32_t probability() const { return probability_; }
+  void learn(bool) {}
+
+ private:
+  static constexpr double kLeast = 24;
+  std::uint32_t probability_;
+};
+
+inline constexpr std::size_t kComponents = 8;
+using PerComponent = std::array<double, kComponents>;
+
+// One axis: what each component expects, and how far it may be off.
+struct AxisMixture {
+  PerComponent weight{}, center{}, inverse_scale{};
+
+  // Each component's distribution function at x, from -1 to 1, and the weighed sum.
+  double at(double x, PerComponent& each) const {
+    for (std::size_t k = 0; k < kComponents; ++k) {
+      const double z = (x - center[k]) * inverse_scale[k];
+      each[k] = z / std::sqrt(1 + z * z);
+    }
+    return sum(each);
+  }
+  double sum(const PerComponent& each) const {
+    PerComponent part;
+    for (std::size_t k = 0; k < kComponents; ++k) part[k] = weight[k] * each[k];
+    return ((part[0] + part[1]) + (part[2] + part[3])) +
+           ((part[4] + part[5]) + (part[6] + part[7]));
+  }
+};
+
+// `value` is coded relative to `start`, near which it is likely, about `size` away; differences go
+// round at 2^32. The weights learn what the value says.
+template <class Coder>
+std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, double size,
+                       std::int32_t value) {
+  const std::int64_t away = static_cast<std::int32_t>(static_cast<std::uint32_t>(value) -
+                                                      static_cast<std::uint32_t>(start));
+  const int first =
+      2 + static_cast<int>(std::bit_width(static_cast<std::uint32_t>(std::clamp(size, 0.0, 1e8))));
+  std::int64_t low = -(std::int64_t(1) << first), high = -low;
+  PerComponent each_low, each_high, each_middle;
+  const auto at = [&](std::int64_t x, PerComponent& each) {
+    return mixture.at(static_cast<double>(x) + start - 0.5, each);
+  };
+  double below = at(low, each_low), above = at(high, each_high);
+  PerComponent one;
+  one.fill(1);
+  const double all = mixture.sum(one);
+  KnownBit is_inside(above - below, 2 * all);
+  if (!coder.bit(is_inside, low <= away && away < high)) {
+    KnownBit is_above(all - above, (all - above) + (below + all));
+    const bool up = coder.bit(is_above, away >= high);
+    // Away from the start interval after interval, each twice as long as the one before.
+    for (int i = first;; ++i) {
+      const std::int64_t near = std::int64_t(1) << i;
+      if (up) {
+        low = near, high = 2 * near;
+        below = above, each_low = each_high;
+        above = at(high, each_high);
+      } else {
+        low = -2 * near, high = -near;
+        above = below, each_high = each_low;
+        below = at(low, each_low);
+      }
+      if (i == 30) break;
+      KnownBit is_here(above - below, up ? all - below : above + all);
+      if (coder.bit(is_here, low <= away && away < high)) break;
+    }
+  }
+  while (high - low > 1) {
+    const std::int64_t middle = (low + high) / 2;
+    const double there = at(middle, each_middle);
+    KnownBit is_upper(above - there, above - below);
+    if (coder.bit(is_upper, away >= middle)) {
+      low = middle, below = there, each_low = each_middle;
+    } else {
+      high = middle, above = there, each_high = each_middle;
+    }
+  }
+  for (std::size_t k = 0; k < kComponents; ++k) mixture.weight[k] *= each_high[k] - each_low[k];
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(start) +
+                                   static_cast<std::uint32_t>(low));
+}
+
+// A place as a mixture: what each component expects on two axes and, less what the tangent plane
+// rises over them, on the third, the one nearest to the normal.
+struct PlaceMixture {
+  std::array<PerComponent, 3> center{};
+  PerComponent weight{}, tangent{}, normal{};  // of being right; how far off then
+  std::array<double, 3> direction{0, 0, 1};    // of the normal along the axes, of unit length
+};
+
+// How far a step along the first two axes leads along the third in the tangent plane.
+inline double rise(const std::array<double, 3>& normal, double first, double second) {
+  return -(normal[0] * first + normal[1] * second) / normal[2];
+}
+inline std::int32_t rounded(double x) {
+  constexpr double kLimit = 1 << 30;
+  return static_cast<std::int32_t>(std::floor(std::clamp(x, -kLimit, kLimit) + 0.5));
+}
+
+// Leaves in `mixture.weight` how likely each component was right.
+template <class Coder>
+std::array<std::int32_t, 3> code_place(Coder& coder, PlaceMixture& mixture,
+                                       const std::array<std::int32_t, 3>& place) {
+  constexpr double kLeast = 0.2;  // of scales, beside which the grid is coarse
+  const auto& [n0, n1, n2] = mixture.direction;
+  const double across = std::sqrt(std::max(1 - n0 * n0, 0.0));
+  AxisMixture axis;
+  axis.weight = mixture.weight;
+  axis.center = mixture.center[0];
+  PerComponent scale;
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    scale[k] = mixture.tangent[k] * across + kLeast;
+    axis.inverse_scale[k] = 1 / scale[k];
+  }
+  std::array<std::int32_t, 3> result;
+  result[0] = code_axis(coder, axis, rounded(axis.center[0]), scale[0], place[0]);
+
+  // A step along the first axis leads some way along the second; one that is long for a component
+  // makes it expect more there as well.
+  const double along = n0 * n1 / (across * across), rest = std::abs(n2) / across;
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double off = result[0] - axis.center[k], z = off * axis.inverse_scale[k];
+    scale[k] = mixture.tangent[k] * rest * std::sqrt(0.5 + 0.5 * z * z) + kLeast;
+    axis.center[k] = mixture.center[1][k] - along * off;
+    axis.inverse_scale[k] = 1 / scale[k];
+  }
+  result[1] = code_axis(coder, axis, rounded(axis.center[0]), scale[0], place[1]);
+
+  axis.center = mixture.center[2];
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    scale[k] = mixture.normal[k] / std::abs(n2) + kLeast;
+    axis.inverse_scale[k] = 1 / scale[k];
+  }
+  const std::uint32_t plane =
+      static_cast<std::uint32_t>(rounded(rise(mixture.direction, result[0], result[1])));
+  const std::int32_t above =
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(place[2]) - plane);
+  result[2] = static_cast<std::int32_t>(
+      static_cast<std::uint32_t>(code_axis(coder, axis, rounded(axis.center[0]), scale[0], above)) +
+      plane);
+  mixture.weight = axis.weight;
+  return result;
+}
+
+}  // namespace crease::codec
