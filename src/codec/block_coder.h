@@ -140,6 +140,8 @@ class BlockCoder {
   void code_general(std::uint32_t v);
   void apply(std::uint32_t v, std::uint32_t u);
   void code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s);
+  bool code_stays(std::size_t question, const Surroundings& around, std::size_t triangles_t,
+                  std::size_t triangles_u, bool stays);
   Miss expected_miss(std::uint32_t v, const Surroundings& around) const;
   ChildRing child_ring(bool second, const Vec3i& s, const Vec3i& sibling);
   Vec3i code_position(std::uint32_t v, bool second, const Vec3i& position,
@@ -226,7 +228,13 @@ class BlockCoder {
   MagnitudeModel introduced_count_;
   AdaptiveBit is_in_ring_, first_leads_;
   std::array<AdaptiveBit, 3> to_second_;
-  std::array<std::array<AdaptiveBit, 2>, 2> stays_;
+  struct StaysModels {
+    std::array<AdaptiveBit, 16> by_share;
+    std::array<std::array<AdaptiveBit, 10>, 10> by_triangles;
+    std::array<std::array<AdaptiveBit, 3>, 8> by_both;
+    MixingWeights<3> weights;
+  };
+  std::array<StaysModels, 3> stays_;  // the first child; the second by whether the first does
   // How likely each component is, by which child and how many triangles it has.
   PlaceWeightsByChild place_weights_ = known_place_weights();
   std::array<AdaptiveBit, 2> same_part_;

@@ -328,9 +328,10 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
     at_t = guide_.position(t, false);
     at_u = guide_.position(t, true);
   }
-  const bool t_stays = coder_.bit(stays_[0][0], at_t == s);
-  const bool u_stays = coder_.bit(stays_[1][t_stays], at_u == s);
   const Surroundings around = surroundings(mesh_, around_[t], around_[u], t, u, s);
+  const bool t_stays = code_stays(0, around, around_[t].size(), around_[u].size(), at_t == s);
+  const bool u_stays =
+      code_stays(1 + t_stays, around, around_[t].size(), around_[u].size(), at_u == s);
   const bool both = !t_stays && !u_stays;
   at_u = u_stays
              ? s
@@ -340,6 +341,23 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
                                  at_u);
   mesh_.positions[u] = at_u;
   mesh_.positions[t] = at_t;
+}
+
+// Whether a child stays: mostly the one whose neighbours lie around the parent's place.
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::code_stays(std::size_t question, const Surroundings& around,
+                                          std::size_t triangles_t, std::size_t triangles_u,
+                                          bool stays) {
+  const double a = length(around.middle[0]), b = length(around.middle[1]);
+  const std::size_t share =
+      a + b > 0 ? std::min<std::size_t>(static_cast<std::size_t>(16 * a / (a + b)), 15) : 7;
+  const std::size_t first = std::min<std::size_t>(triangles_t, 9),
+                    second = std::min<std::size_t>(triangles_u, 9);
+  StaysModels& models = stays_[question];
+  MixedBit<3> bit({&models.by_share[share], &models.by_triangles[first][second],
+                   &models.by_both[share / 2][first < second ? 0 : first == second ? 1 : 2]},
+                  models.weights);
+  return coder_.bit(bit, stays);
 }
 
 // As its neighbours' on average, or a quarter of their distance.
