@@ -16,9 +16,9 @@
 #include "codec/block_end.h"
 #include "codec/coded_numbers.h"
 #include "codec/mixed_bit.h"
+#include "codec/pair_odds.h"
 #include "codec/patch_mesh.h"
 #include "codec/predict_position.h"
-#include "codec/rank_pairs.h"
 #include "codec/ring.h"
 #include "codec/stream.h"
 #include "crease/ids.h"
@@ -136,7 +136,7 @@ class BlockCoder {
   bool find_fan(Fan& fan);
   void make_fan(const Fan& fan);
   void code_fan(Fan fan, std::uint32_t v);
-  Fan code_ranked_fan(Fan fan, std::uint32_t v);
+  Fan code_likely_fan(Fan fan, std::uint32_t v);
   void code_general(std::uint32_t v);
   void apply(std::uint32_t v, std::uint32_t u);
   void code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s);
@@ -205,10 +205,9 @@ class BlockCoder {
   std::vector<std::uint32_t> corners_;        // of the present vertex
   std::vector<CodedValue> tried_;
   std::vector<RingVertex> ranked_;
-  std::vector<RingPair> pairs_;
   std::vector<LabelBox> boxes_;
 
-  static constexpr std::size_t kMostTried = 6, kMostRanked = 16;
+  static constexpr std::size_t kMostTried = 6;
   static constexpr std::size_t kGenerations = 6, kSizes = 12, kValences = 12;
   MagnitudeModel root_count_, root_triangle_count_;
   std::array<SignedModel, 3> root_position_;
@@ -224,7 +223,7 @@ class BlockCoder {
   std::array<MixingWeights<4>, 3> flag_weights_;
   std::array<AdaptiveBit, 3> is_fan_;
   AdaptiveBit is_single_;
-  std::array<MagnitudeModel, kMostRanked + 1> rank_;
+  PairOdds pair_odds_;
   MagnitudeModel introduced_count_;
   AdaptiveBit is_in_ring_, first_leads_;
   std::array<AdaptiveBit, 3> to_second_;

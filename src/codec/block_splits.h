@@ -218,8 +218,8 @@ template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_fan(Fan fan, std::uint32_t v) {
   const std::uint32_t vertices = static_cast<std::uint32_t>(ring_.vertices.size());
   fan.single = !ring_.closed && coder_.bit(is_single_, fan.single);
-  if (ring_.closed && vertices <= kMostRanked) {
-    fan = code_ranked_fan(fan, v);
+  if (ring_.closed && vertices <= PairOdds::kMost) {
+    fan = code_likely_fan(fan, v);
   } else if (fan.single) {
     fan.first = 0;
     fan.last = code_below(vertices, fan.last);
@@ -231,28 +231,21 @@ void BlockCoder<Coder, Guide>::code_fan(Fan fan, std::uint32_t v) {
   fan_ = fan;
 }
 
-// Which of all pairs of the ring's vertices, in the order in which they are likely.
 template <class Coder, class Guide>
-typename BlockCoder<Coder, Guide>::Fan BlockCoder<Coder, Guide>::code_ranked_fan(Fan fan,
+typename BlockCoder<Coder, Guide>::Fan BlockCoder<Coder, Guide>::code_likely_fan(Fan fan,
                                                                                  std::uint32_t v) {
   ranked_.clear();
   const Vec3i& center = mesh_.positions[v];
   for (const std::uint32_t w : ring_.vertices) {
     const Vec3i& p = mesh_.positions[w];
     ranked_.push_back({{double(p.x) - center.x, double(p.y) - center.y, double(p.z) - center.z},
-                       double(around_[w].size())});
+                       around_[w].size(),
+                       generation_[w] > 0});
   }
-  rank_pairs(ranked_, pairs_);
-  std::uint32_t rank = 0;
-  if constexpr (Coder::kEncodes) {
-    while (pairs_[rank].first != fan.first || pairs_[rank].last != fan.last) ++rank;
-  }
-  rank = code_magnitude(coder_, rank_[ranked_.size()], rank);
-  if (rank >= pairs_.size()) {
-    corrupt_ = true;
-    return {0, 1};
-  }
-  return {pairs_[rank].first, pairs_[rank].last};
+  pair_odds_.rate(ranked_);
+  const PairOdds::Pair pair = pair_odds_.code(coder_, {fan.first, fan.last});
+  pair_odds_.learn(pair);
+  return {pair.first, pair.last};
 }
 
 template <class Coder, class Guide>
@@ -355,7 +348,9 @@ bool BlockCoder<Coder, Guide>::code_stays(std::size_t question, const Surroundin
                     second = std::min<std::size_t>(triangles_u, 9);
   StaysModels& models = stays_[question];
   MixedBit<3> bit({&models.by_share[share], &models.by_triangles[first][second],
-                   &models.by_both[share / 2][first < second ? 0 : first == second ? 1 : 2]},
+                   &models.by_both[share / 2][first < second    ? 0
+                                              : first == second ? 1
+                                                                : 2]},
                   models.weights);
   return coder_.bit(bit, stays);
 }

@@ -8,7 +8,7 @@
 // predict_position.h.
 #pragma once
 
-#include "codec/adaptive_bit.h"
+#include "codec/known_bit.h"
 
 #include <algorithm>
 #include <array>
@@ -18,22 +18,6 @@
 #include <cstdint>
 
 namespace crease::codec {
-
-// A probability that is given, in 1 / 2^16.
-class KnownBit {
- public:
-  // Of `part` of `whole`; even odds where there is nothing to go by.
-  KnownBit(double part, double whole) {
-    const double p = whole > 0 ? part / whole : 0.5;
-    probability_ = static_cast<std::uint32_t>(std::clamp(p * 65536, kLeast, 65536 - kLeast));
-  }
-  std::uint32_t probability() const { return probability_; }
-  void learn(bool) {}
-
- private:
-  static constexpr double kLeast = 24;
-  std::uint32_t probability_;
-};
 
 inline constexpr std::size_t kComponents = 8;
 using PerComponent = std::array<double, kComponents>;
