@@ -18,6 +18,7 @@
 #include "codec/mixed_bit.h"
 #include "codec/pair_odds.h"
 #include "codec/patch_mesh.h"
+#include "codec/place_model.h"
 #include "codec/predict_position.h"
 #include "codec/ring.h"
 #include "codec/stream.h"
@@ -234,8 +235,9 @@ class BlockCoder {
     MixingWeights<3> weights;
   };
   std::array<StaysModels, 3> stays_;  // the first child; the second by whether the first does
-  // How likely each component is, by which child and how many triangles it has.
-  PlaceWeightsByChild place_weights_ = known_place_weights();
+  std::array<PlaceModel, 3> place_models_{PlaceModel(Leaving::One),
+                                          PlaceModel(Leaving::SecondOfBoth),
+                                          PlaceModel(Leaving::FirstOfBoth)};
   std::array<AdaptiveBit, 2> same_part_;
   std::array<std::array<AdaptiveBit, 4>, 8> same_material_;
   TreeModel<6> other_material_;

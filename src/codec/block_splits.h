@@ -399,17 +399,17 @@ template <class Coder, class Guide>
 Vec3i BlockCoder<Coder, Guide>::code_position(std::uint32_t v, bool second, const Vec3i& position,
                                               const Surroundings& around, Leaving leaving,
                                               const Vec3i& sibling) {
-  PlaceWeights& weights =
-      place_weights_[std::size_t(leaving)][std::clamp<std::size_t>(around_[v].size(), 3, 8) - 3];
-  PlaceMixture mixture =
-      place_mixture(around, leaving, second, child_ring(second, around.parent, sibling),
-                    expected_miss(v, around), weights.of);
+  PlaceModel& model = place_models_[std::size_t(leaving)];
+  const std::size_t triangles = around_[v].size();
+  const Sizes expected = sizes(around, expected_miss(v, around));
+  PlaceMixture mixture = model.mixture(around, second, triangles,
+                                       child_ring(second, around.parent, sibling), expected);
   std::array<std::int32_t, 3> step;
   for (std::size_t i = 0; i < 3; ++i) {
     step[i] = wrapped_difference(position[around.axis[i]], around.parent[around.axis[i]]);
   }
   step = code_place(coder_, mixture, step);
-  weights.learn(mixture.weight);
+  model.learn(mixture, triangles, expected);
   Vec3i result;
   for (std::size_t i = 0; i < 3; ++i) {
     result[around.axis[i]] = wrapped_sum(around.parent[around.axis[i]], step[i]);

@@ -102,6 +102,7 @@ struct PlaceMixture {
   std::array<PerComponent, 3> center{};
   PerComponent weight{}, tangent{}, normal{};  // of being right; how far off then
   std::array<double, 3> direction{0, 0, 1};    // of the normal along the axes, of unit length
+  PerComponent tangent_excess{}, normal_excess{};
 };
 
 // How far a step along the first two axes leads along the third in the tangent plane.
@@ -111,6 +112,10 @@ inline double rise(const std::array<double, 3>& normal, double first, double sec
 inline std::int32_t rounded(double x) {
   constexpr double kLimit = 1 << 30;
   return static_cast<std::int32_t>(std::floor(std::clamp(x, -kLimit, kLimit) + 0.5));
+}
+
+inline double excess(double z2) {
+  return 3 * z2 / (1 + z2) - 1;
 }
 
 // Leaves in `mixture.weight` how likely each component was right.
@@ -136,12 +141,17 @@ std::array<std::int32_t, 3> code_place(Coder& coder, PlaceMixture& mixture,
   const double along = n0 * n1 / (across * across), rest = std::abs(n2) / across;
   for (std::size_t k = 0; k < kComponents; ++k) {
     const double off = result[0] - axis.center[k], z = off * axis.inverse_scale[k];
+    mixture.tangent_excess[k] = excess(z * z) * (1 - kLeast * axis.inverse_scale[k]);
     scale[k] = mixture.tangent[k] * rest * std::sqrt(0.5 + 0.5 * z * z) + kLeast;
     axis.center[k] = mixture.center[1][k] - along * off;
     axis.inverse_scale[k] = 1 / scale[k];
   }
   result[1] = code_axis(coder, axis, rounded(axis.center[0]), scale[0], place[1]);
 
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double z = (result[1] - axis.center[k]) * axis.inverse_scale[k];
+    mixture.tangent_excess[k] += excess(z * z) * (1 - kLeast * axis.inverse_scale[k]);
+  }
   axis.center = mixture.center[2];
   for (std::size_t k = 0; k < kComponents; ++k) {
     scale[k] = mixture.normal[k] / std::abs(n2) + kLeast;
@@ -151,9 +161,12 @@ std::array<std::int32_t, 3> code_place(Coder& coder, PlaceMixture& mixture,
       static_cast<std::uint32_t>(rounded(rise(mixture.direction, result[0], result[1])));
   const std::int32_t above =
       static_cast<std::int32_t>(static_cast<std::uint32_t>(place[2]) - plane);
-  result[2] = static_cast<std::int32_t>(
-      static_cast<std::uint32_t>(code_axis(coder, axis, rounded(axis.center[0]), scale[0], above)) +
-      plane);
+  const std::int32_t beside = code_axis(coder, axis, rounded(axis.center[0]), scale[0], above);
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double z = (beside - axis.center[k]) * axis.inverse_scale[k];
+    mixture.normal_excess[k] = excess(z * z) * (1 - kLeast * axis.inverse_scale[k]);
+  }
+  result[2] = static_cast<std::int32_t>(static_cast<std::uint32_t>(beside) + plane);
   mixture.weight = axis.weight;
   return result;
 }

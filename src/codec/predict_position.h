@@ -3,7 +3,6 @@
 #pragma once
 
 #include "codec/patch_mesh.h"
-#include "codec/place_mixture.h"
 
 #include <array>
 #include <cstdint>
@@ -25,10 +24,6 @@ struct Miss {
   float tangent = -1, normal = -1;
 };
 
-// Whose place is coded: a child whose sibling stays where the parent was; of two that leave the
-// second, which comes first; then the first.
-enum class Leaving : std::uint8_t { One, SecondOfBoth, FirstOfBoth };
-
 // A split's surroundings, seen from the parent's place.
 struct Surroundings {
   Vec3i parent{};
@@ -44,32 +39,5 @@ struct Surroundings {
 Surroundings surroundings(const PatchMesh& mesh, std::span<const std::uint32_t> around_t,
                           std::span<const std::uint32_t> around_u, std::uint32_t t, std::uint32_t u,
                           const Vec3i& parent);
-
-// A child's neighbours, where they are one closed fan, from the parent's place.
-struct ChildRing {
-  std::span<const Vec3d> arc;     // without the sibling, in order; empty: they are no such fan
-  std::array<Vec3d, 2> beyond{};  // what precedes and follows them at the sibling
-  Vec3d sibling{};                // or zero where its place is not known
-};
-
-// `miss`: what to expect by the neighbours; `weights`: of the components beforehand.
-PlaceMixture place_mixture(const Surroundings& around, Leaving leaving, bool second,
-                           const ChildRing& ring, const Miss& miss, const PerComponent& weights);
-
-// How likely each component is: moves towards what was right, an AdaptiveBit with more sides.
-struct PlaceWeights {
-  PerComponent of{};
-  int seen = 0;
-
-  void learn(const PerComponent& right) {
-    double sum = 0;
-    for (const double x : right) sum += x;
-    if (!(sum > 0)) return;
-    const double rate = 1.0 / (std::min(seen++, 200) + 40);
-    for (std::size_t k = 0; k < kComponents; ++k) of[k] += rate * (right[k] / sum - of[k]);
-  }
-};
-using PlaceWeightsByChild = std::array<std::array<PlaceWeights, 6>, 3>;
-PlaceWeightsByChild known_place_weights();
 
 }  // namespace crease::codec
