@@ -165,7 +165,7 @@ void PlaceModel::learn(const PlaceMixture& mixture, std::size_t triangles, const
   PerComponent right;
   for (std::size_t k = 0; k < kComponents; ++k) right[k] = mixture.weight[k] / sum;
   const std::size_t c = triangles_class(triangles);
-  const double rate = 1.0 / (std::min(seen_[c]++, 200) + 40);
+  const double rate = 1.0 / (std::min(seen_[c]++, 100) + 15);
   for (std::size_t k = 0; k < kComponents; ++k) {
     weights_[c][k] += rate * (right[k] - weights_[c][k]);
   }
