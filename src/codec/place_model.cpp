@@ -134,7 +134,7 @@ PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::s
     result.center[2][k] = place[axis[2]] - rise(result.direction, place[axis[0]], place[axis[1]]);
   };
   expect(0, mean);
-  expect(1, own * 0.6);
+  expect(1, leaving_ == Leaving::FirstOfBoth ? ring.sibling * -1.0 : own * 0.6);
   expect(7, {});
   const std::size_t arc = ring.arc.size(), all = arc + 1;
   if (arc > 0) {
