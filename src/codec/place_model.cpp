@@ -63,9 +63,6 @@ constexpr Start kStart[] = {
      {{{-0.335, 0.759, -0.373, 0.913}, {-0.202, 0.332, 0.144, 0.582}}}},
 };
 
-constexpr double kScaleRate = 0.15, kSlopeRate = 0.015, kMeanRate = 0.02;
-constexpr double kLeastScale = -12, kMostScale = 16, kMostSlope = 2;
-
 }  // namespace
 
 Sizes sizes(const Surroundings& around, const Miss& miss) {
@@ -75,43 +72,13 @@ Sizes sizes(const Surroundings& around, const Miss& miss) {
 
 PlaceModel::PlaceModel(Leaving leaving) : leaving_(leaving) {
   const Start& start = kStart[std::size_t(leaving)];
-  weights_ = start.weights;
+  for (std::size_t c = 0; c < kTriangles; ++c) weights_[c].of = start.weights[c];
   tangent_ = {start.tangent, start.tangent_slope};
   normal_ = {start.normal, start.normal_slope};
 }
 
 std::size_t PlaceModel::triangles_class(std::size_t triangles) {
   return std::clamp<std::size_t>(triangles, 3, kTriangles + 2) - 3;
-}
-
-std::array<double, 2> PlaceModel::Scale::at(const Sizes& sizes) const {
-  std::array<double, 2> result{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    for (std::size_t j = 0; j < sizes.size(); ++j) result[i] += slope[i][j] * sizes[j];
-  }
-  return result;
-}
-
-// The slopes turn around the mean of the sizes, so that they leave what is there where it is.
-void PlaceModel::Scale::learn(const PerComponent& right, const PerComponent& excess,
-                              const Sizes& sizes, const Sizes& mean) {
-  std::array<double, 2> sum{};
-  for (std::size_t k = 0; k < kComponents; ++k) {
-    const double step = right[k] * excess[k];
-    of[k] = std::clamp(of[k] + kScaleRate * step, kLeastScale, kMostScale);
-    sum[k > 1] += step;
-  }
-  for (std::size_t i = 0; i < 2; ++i) {
-    for (std::size_t j = 0; j < sizes.size(); ++j) {
-      const double step = kSlopeRate * sum[i] * std::clamp(sizes[j] - mean[j], -2.0, 2.0);
-      const double next = std::clamp(slope[i][j] + step, -kMostSlope, kMostSlope);
-      // What this moves at the mean comes off the others.
-      for (std::size_t k = i == 0 ? 0 : 2; k < (i == 0 ? 2 : kComponents); ++k) {
-        of[k] -= (next - slope[i][j]) * mean[j];
-      }
-      slope[i][j] = next;
-    }
-  }
 }
 
 PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::size_t triangles,
@@ -125,7 +92,7 @@ PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::s
                      ring.sibling * w.sibling + n * along;
 
   PlaceMixture result;
-  result.weight = weights_[triangles_class(triangles)];
+  result.weight = weights_[triangles_class(triangles)].of;
   const std::array<int, 3>& axis = around.axis;
   if (n[axis[2]] != 0) result.direction = {n[axis[0]], n[axis[1]], n[axis[2]]};
   const auto expect = [&](std::size_t k, const Vec3d& place) {
@@ -150,30 +117,18 @@ PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::s
     for (std::size_t k = 2; k < 7; ++k) result.weight[k] = 0;
   }
 
-  const std::array<double, 2> tangent = tangent_.at(sizes), normal = normal_.at(sizes);
-  for (std::size_t k = 0; k < kComponents; ++k) {
-    result.tangent[k] = rough_exp2(tangent[k > 1] + tangent_.of[k]);
-    result.normal[k] = rough_exp2(normal[k > 1] + normal_.of[k]);
-  }
+  result.tangent = tangent_.at(sizes);
+  result.normal = normal_.at(sizes);
   return result;
 }
 
 void PlaceModel::learn(const PlaceMixture& mixture, std::size_t triangles, const Sizes& sizes) {
-  double sum = 0;
-  for (const double weight : mixture.weight) sum += weight;
-  if (!(sum > 0)) return;
-  PerComponent right;
-  for (std::size_t k = 0; k < kComponents; ++k) right[k] = mixture.weight[k] / sum;
-  const std::size_t c = triangles_class(triangles);
-  const double rate = 1.0 / (std::min(seen_[c]++, 100) + 15);
-  for (std::size_t k = 0; k < kComponents; ++k) {
-    weights_[c][k] += rate * (right[k] - weights_[c][k]);
-  }
-  if (!has_mean_) mean_ = sizes;
-  has_mean_ = true;
-  tangent_.learn(right, mixture.tangent_excess, sizes, mean_);
-  normal_.learn(right, mixture.normal_excess, sizes, mean_);
-  for (std::size_t j = 0; j < sizes.size(); ++j) mean_[j] += kMeanRate * (sizes[j] - mean_[j]);
+  PerComponent right = mixture.weight;
+  if (!make_shares(right)) return;
+  weights_[triangles_class(triangles)].learn(right);
+  mean_.learn(sizes);
+  tangent_.learn(right, mixture.tangent_excess, sizes, mean_.of);
+  normal_.learn(right, mixture.normal_excess, sizes, mean_.of);
 }
 
 }  // namespace crease::codec

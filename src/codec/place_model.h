@@ -11,6 +11,7 @@
 // parent was.
 #pragma once
 
+#include "codec/mixture_model.h"
 #include "codec/place_mixture.h"
 #include "codec/predict_position.h"
 
@@ -32,9 +33,7 @@ struct ChildRing {
   Vec3d sibling{};                // or zero where its place is not known
 };
 
-// The logarithms that say how far off a place may be: of what the neighbours' misses, the edges and
-// the bend lead to expect.
-using Sizes = std::array<double, 4>;
+// Of what the neighbours' misses, the edges and the bend lead to expect.
 Sizes sizes(const Surroundings& around, const Miss& miss);
 
 // What is known of the components, for one Leaving: it starts from what was found in many models
@@ -53,23 +52,10 @@ class PlaceModel {
   static constexpr std::size_t kTriangles = 6;  // 3 to 8 of them
   static std::size_t triangles_class(std::size_t triangles);
 
-  // How far off the first two components are, or the others, in the tangent plane or along the
-  // normal: as a power of two.
-  struct Scale {
-    PerComponent of{};
-    std::array<Sizes, 2> slope{};  // for those two, for the others
-
-    std::array<double, 2> at(const Sizes& sizes) const;
-    void learn(const PerComponent& right, const PerComponent& excess, const Sizes& sizes,
-               const Sizes& mean);
-  };
-
   Leaving leaving_;
-  std::array<PerComponent, kTriangles> weights_;  // how likely each component is
-  std::array<int, kTriangles> seen_{};
-  Scale tangent_, normal_;
-  Sizes mean_{};  // of the sizes so far
-  bool has_mean_ = false;
+  std::array<ComponentWeights, kTriangles> weights_;
+  ComponentScales tangent_, normal_;
+  MeanSizes mean_;
 };
 
 }  // namespace crease::codec
