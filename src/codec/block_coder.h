@@ -15,6 +15,7 @@
 
 #include "codec/block_end.h"
 #include "codec/coded_numbers.h"
+#include "codec/direction_mixture.h"
 #include "codec/mixed_bit.h"
 #include "codec/pair_odds.h"
 #include "codec/patch_mesh.h"
@@ -69,6 +70,7 @@ class BlockCoder {
   // False: the bytes are not a block of these limits.
   bool run() {
     coder_.enter(Stream::Roots);
+    keep_coarse_normals();
     if (!code_roots() || !code_splits()) return false;
     coder_.enter(Stream::Categories);
     code_categories();
@@ -154,7 +156,15 @@ class BlockCoder {
     std::array<std::array<AdaptiveBit, kBends>, 3> is_uniform;
     std::array<std::array<std::array<AdaptiveBit, kBends>, 2>, 4> same_as;
     std::array<SignedModel, 4> residual;
+    std::array<std::array<AdaptiveBit, 2>, 2> is_kept;  // by whether the vertex stays, is new
+    DirectionModel direction;
   };
+  struct Directions {  // at a layer of directions, per vertex; zero where there is none
+    std::vector<Vec3d> geometric, stored;
+  };
+  void keep_coarse_normals();
+  void start_directions(const std::vector<CodedValue>& values, const OctahedralCoding& coding);
+  DirectionCandidates direction_candidates(std::uint32_t v, const Vec3d& had, Sizes& sizes) const;
   Vec3d twice_area(std::uint32_t t) const;
   std::size_t bend(std::uint32_t t, std::uint32_t other) const;
   void code_categories();
@@ -164,6 +174,10 @@ class BlockCoder {
                    LayerModels& models, std::uint32_t v);
   CodedValue code_value(const BlockLayer& layer, LayerModels& models, const CodedValue& value,
                         const CodedValue& predicted);
+  bool had_at_coarse_end(const BlockLayer& layer, std::uint32_t corner) const;
+  static Vec3d direction_of(const BlockLayer& layer, const CodedValue& value);
+  CodedValue code_shared_value(const BlockLayer& layer, const std::vector<CodedValue>& values,
+                               std::size_t l, LayerModels& models, std::uint32_t v);
   CodedValue expected_value(const BlockLayer& layer, std::span<const std::uint32_t> corners,
                             const CodedValue& near) const;
   void code_labels();
@@ -194,6 +208,10 @@ class BlockCoder {
   double mean_size_ = 0;                            // of an edge at the coarse end
   std::vector<Split> splits_;
   std::vector<std::uint32_t> labels_;
+  std::vector<std::uint32_t> origin_;  // per vertex: the one at the coarse end it comes from
+  std::vector<char> has_moved_;        // per vertex, from there
+  std::vector<Vec3d> coarse_normals_;  // per vertex of the coarse end, if a layer has directions
+  Directions directions_;
 
   Ring ring_;
   Shape shape_;

@@ -51,6 +51,8 @@ bool BlockCoder<Coder, Guide>::code_roots() {
 template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::code_splits() {
   generation_.assign(mesh_.positions.size(), 0);
+  has_moved_.assign(mesh_.positions.size(), 0);
+  for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v) origin_.push_back(v);
   miss_.assign(mesh_.positions.size(), {});
   double sum = 0;
   for (const Corners& t : mesh_.triangles) {
@@ -126,6 +128,8 @@ bool BlockCoder<Coder, Guide>::split(std::uint32_t v, bool fan) {
   generation_[v] = static_cast<std::uint8_t>(std::min(generation_[v] + 1, 255));
   generation_.push_back(generation_[v]);
   miss_.push_back(miss_[v]);
+  origin_.push_back(origin_[v]);
+  has_moved_.push_back(has_moved_[v]);
   splits_.push_back({v, static_cast<std::uint32_t>(mesh_.triangles.size()),
                      static_cast<std::uint32_t>(shape_.introduced.size()), s});
   apply(v, u);
@@ -334,6 +338,8 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
                                  at_u);
   mesh_.positions[u] = at_u;
   mesh_.positions[t] = at_t;
+  has_moved_[u] = has_moved_[u] || !u_stays;
+  has_moved_[t] = has_moved_[t] || !t_stays;
 }
 
 // Whether a child stays: mostly the one whose neighbours lie around the parent's place.
