@@ -217,7 +217,9 @@ void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<
     }
     if (!found) {
       values[corner] =
-          code_value(layer, models, value, tried_.empty() ? CodedValue{} : tried_.front());
+          layer.octahedral_bits > 0
+              ? code_corner_direction(layer, values, models, i, fan, value)
+              : code_value(layer, models, value, tried_.empty() ? CodedValue{} : tried_.front());
     }
     is_known_[corner] = 1;
   }
@@ -261,6 +263,61 @@ CodedValue BlockCoder<Coder, Guide>::code_shared_value(const BlockLayer& layer,
   DirectionMixture mixture = models.direction.mixture(coding, candidates, sizes);
   const CodedValue result = coded(code_direction(coder_, coding, mixture, octahedral_code(value)));
   models.direction.learn(mixture, sizes);
+  return result;
+}
+
+// Of corners_[i], which none of the others is like: mostly its triangle's normal, or that of the
+// triangles which go on from there without an edge. `fan`: corners_ are in the order of ring_.
+template <class Coder, class Guide>
+CodedValue BlockCoder<Coder, Guide>::code_corner_direction(const BlockLayer& layer,
+                                                           const std::vector<CodedValue>& values,
+                                                           LayerModels& models, std::size_t i,
+                                                           bool fan, const CodedValue& value) {
+  const std::uint32_t corner = corners_[i], t = corner / 3;
+  const Vec3d own = twice_area(t);
+  Vec3d smooth = own, bent = own;
+  const std::size_t count = std::min(corners_.size(), kLargestRing);
+  for (const bool back : {false, true}) {
+    if (!fan) break;
+    bool is_smooth = true;
+    std::uint32_t last = t;
+    for (std::size_t k = 1; k < count; ++k) {
+      if (!ring_.closed && (back ? k > i : i + k >= count)) break;
+      const std::uint32_t next = corners_[back ? (i + count - k) % count : (i + k) % count] / 3;
+      const std::size_t turned = bend(last, next);
+      is_smooth = is_smooth && turned < 2;
+      if (turned > 2) break;
+      if (is_smooth) smooth += twice_area(next);
+      bent += twice_area(next);
+      last = next;
+    }
+  }
+  DirectionCandidates candidates;
+  Vec3d beside{};
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    if (3 * t + c != corner && is_known_[3 * t + c])
+      beside += direction_of(layer, values[3 * t + c]);
+  }
+  const Vec3d had =
+      had_at_coarse_end(layer, corner) ? direction_of(layer, values[corner]) : Vec3d{};
+  const Vec3d first = tried_.empty() ? Vec3d{} : direction_of(layer, tried_.front());
+  const Vec3d one = normalized(own);
+  candidates.of = {one,
+                   normalized(smooth),
+                   had,
+                   normalized(bent),
+                   first,
+                   normalized(beside),
+                   directions_.geometric[mesh_.triangles[t][corner % 3]],
+                   one};
+  const double turned = length(normalized(smooth) - one);
+  const Sizes sizes{rough_log2(turned + 0.002), rough_log2(length(had - one) + 0.002),
+                    rough_log2(length(own) + 1),
+                    rough_log2(length(normalized(beside) - one) + 0.002)};
+  const OctahedralCoding coding(layer.octahedral_bits);
+  DirectionMixture mixture = models.corner_direction.mixture(coding, candidates, sizes);
+  const CodedValue result = coded(code_direction(coder_, coding, mixture, octahedral_code(value)));
+  models.corner_direction.learn(mixture, sizes);
   return result;
 }
 

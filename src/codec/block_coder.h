@@ -157,7 +157,7 @@ class BlockCoder {
     std::array<std::array<std::array<AdaptiveBit, kBends>, 2>, 4> same_as;
     std::array<SignedModel, 4> residual;
     std::array<std::array<AdaptiveBit, 2>, 2> is_kept;  // by whether the vertex stays, is new
-    DirectionModel direction;
+    DirectionModel direction, corner_direction;         // of whole vertices, of single corners
   };
   struct Directions {  // at a layer of directions, per vertex; zero where there is none
     std::vector<Vec3d> geometric, stored;
@@ -174,6 +174,9 @@ class BlockCoder {
                    LayerModels& models, std::uint32_t v);
   CodedValue code_value(const BlockLayer& layer, LayerModels& models, const CodedValue& value,
                         const CodedValue& predicted);
+  CodedValue code_corner_direction(const BlockLayer& layer, const std::vector<CodedValue>& values,
+                                   LayerModels& models, std::size_t i, bool fan,
+                                   const CodedValue& value);
   bool had_at_coarse_end(const BlockLayer& layer, std::uint32_t corner) const;
   static Vec3d direction_of(const BlockLayer& layer, const CodedValue& value);
   CodedValue code_shared_value(const BlockLayer& layer, const std::vector<CodedValue>& values,
