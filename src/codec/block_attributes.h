@@ -17,7 +17,7 @@ std::array<std::uint32_t, 3> BlockCoder<Coder, Guide>::neighbours_before(std::ui
   for (std::size_t c = 0; c < 3; ++c) {
     const std::uint32_t v = corners[c], w = corners[(c + 1) % 3];
     const std::size_t count = std::min(around_[v].size(), kLargestRing);
-    for (const std::uint32_t other : std::span(around_[v]).first(count)) {
+    for (const std::uint32_t other : around_[v].first(count)) {
       if (other >= t) continue;
       const Corners& o = mesh_.triangles[other];
       if (o[0] == w || o[1] == w || o[2] == w) {
@@ -142,7 +142,7 @@ void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<
   std::size_t unknown = 0;
   CodedValue known{};
   std::size_t known_values = 0;  // distinct ones, up to two
-  for (std::uint32_t t : fan ? ring_.triangles : around_[v]) {
+  for (std::uint32_t t : fan ? std::span<const std::uint32_t>(ring_.triangles) : around_[v]) {
     if (!shows(t)) continue;
     const std::uint32_t corner = 3 * t + std::uint32_t(corner_of(mesh_.triangles[t], v));
     corners_.push_back(corner);
@@ -361,7 +361,7 @@ DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t
   Vec3d even{}, max{}, off{}, beside{};
   double known = 0, spread = 0, count = 0;
   const std::size_t triangles = std::min(around_[v].size(), kLargestRing);
-  for (const std::uint32_t t : std::span(around_[v]).first(triangles)) {
+  for (const std::uint32_t t : around_[v].first(triangles)) {
     const Corners& corners = mesh_.triangles[t];
     const std::size_t c = std::size_t(corner_of(corners, v));
     const std::uint32_t a = corners[(c + 1) % 3], b = corners[(c + 2) % 3];

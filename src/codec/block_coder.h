@@ -23,6 +23,7 @@
 #include "codec/predict_position.h"
 #include "codec/ring.h"
 #include "codec/stream.h"
+#include "codec/triangle_lists.h"
 #include "crease/ids.h"
 
 #include <algorithm>
@@ -63,7 +64,7 @@ class BlockCoder {
     was_derived_ = mesh_.derived;
     around_.resize(mesh_.positions.size());
     for (std::uint32_t t = 0; t < coarse_triangles_; ++t) {
-      for (std::uint32_t v : mesh_.triangles[t]) around_[v].push_back(t);
+      for (std::uint32_t v : mesh_.triangles[t]) around_.add(v, t);
     }
   }
 
@@ -111,13 +112,13 @@ class BlockCoder {
   bool code_roots();
   std::uint32_t add_vertex(const Vec3i& position) {
     mesh_.positions.push_back(position);
-    around_.emplace_back();
+    around_.add_vertex();
     return static_cast<std::uint32_t>(mesh_.positions.size() - 1);
   }
   std::uint32_t add_triangle(const Corners& corners) {
     const std::uint32_t t = static_cast<std::uint32_t>(mesh_.triangles.size());
     mesh_.triangles.push_back(corners);
-    for (std::uint32_t v : corners) around_[v].push_back(t);
+    for (std::uint32_t v : corners) around_.add(v, t);
     return t;
   }
 
@@ -205,7 +206,7 @@ class BlockCoder {
   PatchMesh mesh_;
   std::uint32_t coarse_triangles_ = 0, coarse_vertices_ = 0;
   bool corrupt_ = false;
-  std::vector<std::vector<std::uint32_t>> around_;  // triangles, per vertex
+  TriangleLists around_;                            // per vertex
   std::vector<std::uint8_t> generation_;            // splits above, per vertex
   std::vector<Miss> miss_;                          // per vertex
   double mean_size_ = 0;                            // of an edge at the coarse end

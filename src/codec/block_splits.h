@@ -88,7 +88,7 @@ bool BlockCoder<Coder, Guide>::code_flag(std::uint32_t v, bool fan, bool splits)
   double size = 0, split_around = 0, corners = 0;
   const Vec3i& center = mesh_.positions[v];
   const std::size_t count = std::min(around_[v].size(), kLargestRing);
-  for (const std::uint32_t t : std::span(around_[v]).first(count)) {
+  for (const std::uint32_t t : around_[v].first(count)) {
     for (const std::uint32_t w : mesh_.triangles[t]) {
       if (w == v) continue;
       const Vec3i& p = mesh_.positions[w];
@@ -146,7 +146,7 @@ void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
   if (fan) {
     shape_.triangles = ring_.triangles;
   } else {
-    shape_.triangles = around_[v];
+    shape_.triangles.assign(around_[v].begin(), around_[v].end());
   }
   shape_.to_second.assign(shape_.triangles.size(), 0);
   if constexpr (Coder::kEncodes) ask_shape(v);
@@ -299,16 +299,14 @@ void BlockCoder<Coder, Guide>::code_general(std::uint32_t v) {
 
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::apply(std::uint32_t v, std::uint32_t u) {
-  std::vector<std::uint32_t>& at_first = around_[v];
-  std::vector<std::uint32_t>& at_second = around_[u];
-  at_first.clear();
+  around_.clear(v);
   for (std::size_t i = 0; i < shape_.triangles.size(); ++i) {
     const std::uint32_t t = shape_.triangles[i];
     if (shape_.to_second[i]) {
       mesh_.triangles[t][std::size_t(corner_of(mesh_.triangles[t], v))] = u;
-      at_second.push_back(t);
+      around_.add(u, t);
     } else {
-      at_first.push_back(t);
+      around_.add(v, t);
     }
   }
   for (const Introduced& introduced : shape_.introduced) {
@@ -367,7 +365,7 @@ Miss BlockCoder<Coder, Guide>::expected_miss(std::uint32_t v, const Surroundings
   Miss sum{0, 0};
   float count = 0;
   const std::size_t triangles = std::min(around_[v].size(), kLargestRing);
-  for (const std::uint32_t t : std::span(around_[v]).first(triangles)) {
+  for (const std::uint32_t t : around_[v].first(triangles)) {
     for (const std::uint32_t w : mesh_.triangles[t]) {
       if (miss_[w].tangent < 0) continue;
       sum.tangent += miss_[w].tangent;
