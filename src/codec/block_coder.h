@@ -206,10 +206,10 @@ class BlockCoder {
   PatchMesh mesh_;
   std::uint32_t coarse_triangles_ = 0, coarse_vertices_ = 0;
   bool corrupt_ = false;
-  TriangleLists around_;                            // per vertex
-  std::vector<std::uint8_t> generation_;            // splits above, per vertex
-  std::vector<Miss> miss_;                          // per vertex
-  double mean_size_ = 0;                            // of an edge at the coarse end
+  TriangleLists around_;                  // per vertex
+  std::vector<std::uint8_t> generation_;  // splits above, per vertex
+  std::vector<Miss> miss_;                // per vertex
+  double mean_size_ = 0;                  // of an edge at the coarse end
   std::vector<Split> splits_;
   std::vector<std::uint32_t> labels_;
   std::vector<std::uint32_t> origin_;  // per vertex: the one at the coarse end it comes from

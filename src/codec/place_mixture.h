@@ -25,21 +25,52 @@ using PerComponent = std::array<double, kComponents>;
 // One axis: what each component expects, and how far it may be off.
 struct AxisMixture {
   PerComponent weight{}, center{}, inverse_scale{};
+};
 
-  // Each component's distribution function at x, from -1 to 1, and the weighed sum.
-  double at(double x, PerComponent& each) const {
+// The components that count: those of at least a thousandth of the weight, mostly two or three.
+class LikelyComponents {
+ public:
+  explicit LikelyComponents(const AxisMixture& axis) {
+    double sum = 0;
+    for (const double weight : axis.weight) sum += weight;
     for (std::size_t k = 0; k < kComponents; ++k) {
-      const double z = (x - center[k]) * inverse_scale[k];
-      each[k] = z / std::sqrt(1 + z * z);
+      if (!(axis.weight[k] > sum * kLeastShare)) continue;
+      of_[count_] = k;
+      weight_[count_] = axis.weight[k];
+      center_[count_] = axis.center[k];
+      inverse_scale_[count_] = axis.inverse_scale[k];
+      all_ += axis.weight[k];
+      ++count_;
     }
-    return sum(each);
   }
-  double sum(const PerComponent& each) const {
-    PerComponent part;
-    for (std::size_t k = 0; k < kComponents; ++k) part[k] = weight[k] * each[k];
-    return ((part[0] + part[1]) + (part[2] + part[3])) +
-           ((part[4] + part[5]) + (part[6] + part[7]));
+
+  double all() const { return all_; }  // the weight of these
+
+  // Each one's distribution function at x, from -1 to 1, and the weighed sum.
+  double at(double x, PerComponent& each) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double z = (x - center_[i]) * inverse_scale_[i];
+      each[i] = z / std::sqrt(1 + z * z);
+    }
+    for (std::size_t i = 0; i < count_; ++i) sum += weight_[i] * each[i];
+    return sum;
   }
+
+  // The weights after the place was found between those two.
+  PerComponent after(const PerComponent& low, const PerComponent& high) const {
+    PerComponent weights{};
+    for (std::size_t i = 0; i < count_; ++i) weights[of_[i]] = weight_[i] * (high[i] - low[i]);
+    return weights;
+  }
+
+ private:
+  static constexpr double kLeastShare = 1.0 / 1024;
+
+  std::size_t count_ = 0;
+  double all_ = 0;
+  std::array<std::size_t, kComponents> of_;
+  PerComponent weight_, center_, inverse_scale_;
 };
 
 // `value` is coded relative to `start`, near which it is likely, about `size` away; differences go
@@ -49,17 +80,16 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, d
                        std::int32_t value) {
   const std::int64_t away = static_cast<std::int32_t>(static_cast<std::uint32_t>(value) -
                                                       static_cast<std::uint32_t>(start));
-  const int first =
-      2 + static_cast<int>(std::bit_width(static_cast<std::uint32_t>(std::clamp(size, 0.0, 1e8))));
+  const std::uint32_t whole = static_cast<std::uint32_t>(size > 0 ? std::min(size, 1e8) : 0);
+  const int first = 2 + static_cast<int>(std::bit_width(whole));
   std::int64_t low = -(std::int64_t(1) << first), high = -low;
+  const LikelyComponents likely(mixture);
   PerComponent each_low, each_high, each_middle;
   const auto at = [&](std::int64_t x, PerComponent& each) {
-    return mixture.at(static_cast<double>(x) + start - 0.5, each);
+    return likely.at(static_cast<double>(x) + start - 0.5, each);
   };
   double below = at(low, each_low), above = at(high, each_high);
-  PerComponent one;
-  one.fill(1);
-  const double all = mixture.sum(one);
+  const double all = likely.all();
   KnownBit is_inside(above - below, 2 * all);
   if (!coder.bit(is_inside, low <= away && away < high)) {
     KnownBit is_above(all - above, (all - above) + (below + all));
@@ -91,7 +121,7 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, d
       high = middle, above = there, each_high = each_middle;
     }
   }
-  for (std::size_t k = 0; k < kComponents; ++k) mixture.weight[k] *= each_high[k] - each_low[k];
+  mixture.weight = likely.after(each_low, each_high);
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(start) +
                                    static_cast<std::uint32_t>(low));
 }
@@ -111,7 +141,8 @@ inline double rise(const std::array<double, 3>& normal, double first, double sec
 }
 inline std::int32_t rounded(double x) {
   constexpr double kLimit = 1 << 30;
-  return static_cast<std::int32_t>(std::floor(std::clamp(x, -kLimit, kLimit) + 0.5));
+  if (!(x > -kLimit)) x = -kLimit;  // or not a number
+  return static_cast<std::int32_t>(std::floor(std::min(x, kLimit) + 0.5));
 }
 
 inline double excess(double z2) {
