@@ -276,12 +276,12 @@ CodedValue BlockCoder<Coder, Guide>::code_corner_direction(const BlockLayer& lay
   const std::uint32_t corner = corners_[i], t = corner / 3;
   const Vec3d own = twice_area(t);
   Vec3d smooth = own, bent = own;
-  const std::size_t count = std::min(corners_.size(), kLargestRing);
+  const std::size_t count = corners_.size();
   for (const bool back : {false, true}) {
     if (!fan) break;
     bool is_smooth = true;
     std::uint32_t last = t;
-    for (std::size_t k = 1; k < count; ++k) {
+    for (std::size_t k = 1; k < std::min(count, kFarthestBeside); ++k) {
       if (!ring_.closed && (back ? k > i : i + k >= count)) break;
       const std::uint32_t next = corners_[back ? (i + count - k) % count : (i + k) % count] / 3;
       const std::size_t turned = bend(last, next);

@@ -230,7 +230,7 @@ class BlockCoder {
   std::vector<RingVertex> ranked_;
   std::vector<LabelBox> boxes_;
 
-  static constexpr std::size_t kMostTried = 6;
+  static constexpr std::size_t kMostTried = 6, kFarthestBeside = 17;
   static constexpr std::size_t kGenerations = 6, kSizes = 12, kValences = 12;
   MagnitudeModel root_count_, root_triangle_count_;
   std::array<SignedModel, 3> root_position_;

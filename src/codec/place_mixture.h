@@ -128,6 +128,7 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, d
 
 // A place as a mixture: what each component expects on two axes and, less what the tangent plane
 // rises over them, on the third, the one nearest to the normal.
+// Afterwards the excesses say how much farther off each component was than it expected.
 struct PlaceMixture {
   std::array<PerComponent, 3> center{};
   PerComponent weight{}, tangent{}, normal{};  // of being right; how far off then
@@ -145,6 +146,7 @@ inline std::int32_t rounded(double x) {
   return static_cast<std::int32_t>(std::floor(std::min(x, kLimit) + 0.5));
 }
 
+// How a distribution's scale should grow, at z^2: the slope of its logarithm by that of the scale.
 inline double excess(double z2) {
   return 3 * z2 / (1 + z2) - 1;
 }
