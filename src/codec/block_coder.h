@@ -16,12 +16,15 @@
 
 #include "codec/block_end.h"
 #include "codec/coded_numbers.h"
+#include "codec/direction_mixture.h"
 #include "codec/mixed_bit.h"
+#include "codec/pair_odds.h"
 #include "codec/patch_mesh.h"
+#include "codec/place_model.h"
 #include "codec/predict_position.h"
-#include "codec/rank_pairs.h"
 #include "codec/ring.h"
 #include "codec/stream.h"
+#include "codec/triangle_lists.h"
 #include "crease/ids.h"
 
 #include <algorithm>
@@ -62,13 +65,14 @@ class BlockCoder {
     was_derived_ = mesh_.derived;
     around_.resize(mesh_.positions.size());
     for (std::uint32_t t = 0; t < coarse_triangles_; ++t) {
-      for (std::uint32_t v : mesh_.triangles[t]) around_[v].push_back(t);
+      for (std::uint32_t v : mesh_.triangles[t]) around_.add(v, t);
     }
   }
 
   // False: the bytes are not a block of these limits.
   bool run() {
     coder_.enter(Stream::Roots);
+    keep_coarse_normals();
     if (!code_roots() || !code_splits()) return false;
     coder_.enter(Stream::Categories);
     code_categories();
@@ -112,13 +116,13 @@ class BlockCoder {
   bool code_roots();
   std::uint32_t add_vertex(const Vec3i& position) {
     mesh_.positions.push_back(position);
-    around_.emplace_back();
+    around_.add_vertex();
     return static_cast<std::uint32_t>(mesh_.positions.size() - 1);
   }
   std::uint32_t add_triangle(const Corners& corners) {
     const std::uint32_t t = static_cast<std::uint32_t>(mesh_.triangles.size());
     mesh_.triangles.push_back(corners);
-    for (std::uint32_t v : corners) around_[v].push_back(t);
+    for (std::uint32_t v : corners) around_.add(v, t);
     return t;
   }
 
@@ -140,18 +144,16 @@ class BlockCoder {
   bool find_fan(Fan& fan);
   void make_fan(const Fan& fan);
   void code_fan(Fan fan, std::uint32_t v);
-  Fan code_ranked_fan(Fan fan, std::uint32_t v);
+  Fan code_likely_fan(Fan fan, std::uint32_t v);
   void code_general(std::uint32_t v);
   void apply(std::uint32_t v, std::uint32_t u);
   void code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s);
-  // How far from where it was expected a vertex was found, in its tangent plane and along the
-  // normal; below zero: it has no residual.
-  struct Miss {
-    float tangent = -1, normal = -1;
-  };
+  bool code_stays(std::size_t question, const Surroundings& around, std::size_t triangles_t,
+                  std::size_t triangles_u, bool stays);
   Miss expected_miss(std::uint32_t v, const Surroundings& around) const;
-  Vec3i code_position(std::uint32_t v, const Vec3i& position, const Vec3i& predicted,
-                      const Surroundings& around, std::size_t kind);
+  ChildRing child_ring(bool second, const Vec3i& s, const Vec3i& sibling);
+  Vec3i code_position(std::uint32_t v, bool second, const Vec3i& position,
+                      const Surroundings& around, Leaving leaving, const Vec3i& sibling);
 
   // What triangles and corners have at the fine end.
   static constexpr std::size_t kBends = 4;
@@ -159,7 +161,15 @@ class BlockCoder {
     std::array<std::array<AdaptiveBit, kBends>, 3> is_uniform;
     std::array<std::array<std::array<AdaptiveBit, kBends>, 2>, 4> same_as;
     std::array<SignedModel, 4> residual;
+    std::array<std::array<AdaptiveBit, 2>, 2> is_kept;  // by whether the vertex stays, is new
+    DirectionModel direction, corner_direction;         // of whole vertices, of single corners
   };
+  struct Directions {  // at a layer of directions, per vertex; zero where there is none
+    std::vector<Vec3d> geometric, stored;
+  };
+  void keep_coarse_normals();
+  void start_directions(const std::vector<CodedValue>& values, const OctahedralCoding& coding);
+  DirectionCandidates direction_candidates(std::uint32_t v, const Vec3d& had, Sizes& sizes) const;
   Vec3d twice_area(std::uint32_t t) const;
   std::size_t bend(std::uint32_t t, std::uint32_t other) const;
   void code_categories();
@@ -169,6 +179,13 @@ class BlockCoder {
                    LayerModels& models, std::uint32_t v);
   CodedValue code_value(const BlockLayer& layer, LayerModels& models, const CodedValue& value,
                         const CodedValue& predicted);
+  CodedValue code_corner_direction(const BlockLayer& layer, const std::vector<CodedValue>& values,
+                                   LayerModels& models, std::size_t i, bool fan,
+                                   const CodedValue& value);
+  bool had_at_coarse_end(const BlockLayer& layer, std::uint32_t corner) const;
+  static Vec3d direction_of(const BlockLayer& layer, const CodedValue& value);
+  CodedValue code_shared_value(const BlockLayer& layer, const std::vector<CodedValue>& values,
+                               std::size_t l, LayerModels& models, std::uint32_t v);
   CodedValue expected_value(const BlockLayer& layer, std::span<const std::uint32_t> corners,
                             const CodedValue& near) const;
   void code_labels();
@@ -193,26 +210,32 @@ class BlockCoder {
   PatchMesh mesh_;
   std::uint32_t coarse_triangles_ = 0, coarse_vertices_ = 0;
   bool corrupt_ = false;
-  std::vector<std::vector<std::uint32_t>> around_;  // triangles, per vertex
-  std::vector<std::uint8_t> generation_;            // splits above, per vertex
-  std::vector<Miss> miss_;                          // per vertex
-  double mean_size_ = 0;                            // of an edge at the coarse end
+  TriangleLists around_;                  // per vertex
+  std::vector<std::uint8_t> generation_;  // splits above, per vertex
+  std::vector<Miss> miss_;                // per vertex
+  double mean_size_ = 0;                  // of an edge at the coarse end
   std::vector<Split> splits_;
   std::vector<std::uint32_t> labels_;
+  std::vector<std::uint32_t> origin_;  // per vertex: the one at the coarse end it comes from
+  std::vector<char> has_moved_;        // per vertex, from there
+  std::vector<Vec3d> coarse_normals_;  // per vertex of the coarse end, if a layer has directions
+  Directions directions_;
 
   Ring ring_;
   Shape shape_;
+  Fan fan_;                     // the shape of a closed fan
+  bool is_closed_fan_ = false;  // that the present split is one of
+  std::vector<Vec3d> arc_;
   std::vector<std::uint32_t> ring_vertices_;  // scratch
   std::vector<char> was_derived_;             // per coarse triangle
   std::vector<char> is_known_;                // per corner, of the present layer
   std::vector<std::uint32_t> corners_;        // of the present vertex
   std::vector<CodedValue> tried_;
   std::vector<RingVertex> ranked_;
-  std::vector<RingPair> pairs_;
   std::vector<LabelBox> boxes_;
 
-  static constexpr std::size_t kMostTried = 6, kMostRanked = 16;
-  static constexpr std::size_t kGenerations = 6, kScales = 32, kSizes = 12, kValences = 12;
+  static constexpr std::size_t kMostTried = 6, kFarthestBeside = 17;
+  static constexpr std::size_t kGenerations = 6, kSizes = 12, kValences = 12;
   MagnitudeModel root_count_, root_triangle_count_, root_block_, root_vertex_;
   AdaptiveBit is_named_;
   std::vector<VertexName> root_names_;
@@ -229,25 +252,20 @@ class BlockCoder {
   std::array<MixingWeights<4>, 3> flag_weights_;
   std::array<AdaptiveBit, 3> is_fan_;
   AdaptiveBit is_single_;
-  std::array<MagnitudeModel, kMostRanked + 1> rank_;
+  PairOdds pair_odds_;
   MagnitudeModel introduced_count_;
   AdaptiveBit is_in_ring_, first_leads_;
   std::array<AdaptiveBit, 3> to_second_;
-  std::array<std::array<AdaptiveBit, 2>, 2> stays_;
-  // Residuals of positions: by which child, axis, how large its neighbours' were, and how large the
-  // axes before are beside that.
-  struct ResidualModels {
-    ResidualModels() {
-      for (std::size_t scale = 0; scale < kScales; ++scale) {
-        length[scale].fill(length_model(magnitude_of(scale), kKnown));
-      }
-    }
-    static constexpr int kKnown = 10;
-    std::array<std::array<LengthModel, 3>, kScales> length;
-    FirstBitsModel first_bits;
-    AdaptiveBit is_negative;
+  struct StaysModels {
+    std::array<AdaptiveBit, 16> by_share;
+    std::array<std::array<AdaptiveBit, 10>, 10> by_triangles;
+    std::array<std::array<AdaptiveBit, 3>, 8> by_both;
+    MixingWeights<3> weights;
   };
-  std::array<std::array<ResidualModels, 3>, 3> residual_;
+  std::array<StaysModels, 3> stays_;  // the first child; the second by whether the first does
+  std::array<PlaceModel, 3> place_models_{PlaceModel(Leaving::One),
+                                          PlaceModel(Leaving::SecondOfBoth),
+                                          PlaceModel(Leaving::FirstOfBoth)};
   std::array<AdaptiveBit, 2> same_part_;
   std::array<std::array<AdaptiveBit, 4>, 8> same_material_;
   TreeModel<6> other_material_;

@@ -58,6 +58,8 @@ bool BlockCoder<Coder, Guide>::code_roots() {
 template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::code_splits() {
   generation_.assign(mesh_.positions.size(), 0);
+  has_moved_.assign(mesh_.positions.size(), 0);
+  for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v) origin_.push_back(v);
   miss_.assign(mesh_.positions.size(), {});
   double sum = 0;
   for (const Corners& t : mesh_.triangles) {
@@ -93,7 +95,7 @@ bool BlockCoder<Coder, Guide>::code_flag(std::uint32_t v, bool fan, bool splits)
   double size = 0, split_around = 0, corners = 0;
   const Vec3i& center = mesh_.positions[v];
   const std::size_t count = std::min(around_[v].size(), kLargestRing);
-  for (const std::uint32_t t : std::span(around_[v]).first(count)) {
+  for (const std::uint32_t t : around_[v].first(count)) {
     for (const std::uint32_t w : mesh_.triangles[t]) {
       if (w == v) continue;
       const Vec3i& p = mesh_.positions[w];
@@ -133,6 +135,8 @@ bool BlockCoder<Coder, Guide>::split(std::uint32_t v, bool fan) {
   generation_[v] = static_cast<std::uint8_t>(std::min(generation_[v] + 1, 255));
   generation_.push_back(generation_[v]);
   miss_.push_back(miss_[v]);
+  origin_.push_back(origin_[v]);
+  has_moved_.push_back(has_moved_[v]);
   splits_.push_back({v, static_cast<std::uint32_t>(mesh_.triangles.size()),
                      static_cast<std::uint32_t>(shape_.introduced.size()), s});
   apply(v, u);
@@ -145,10 +149,11 @@ bool BlockCoder<Coder, Guide>::split(std::uint32_t v, bool fan) {
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
   shape_.introduced.clear();
+  is_closed_fan_ = false;
   if (fan) {
     shape_.triangles = ring_.triangles;
   } else {
-    shape_.triangles = around_[v];
+    shape_.triangles.assign(around_[v].begin(), around_[v].end());
   }
   shape_.to_second.assign(shape_.triangles.size(), 0);
   if constexpr (Coder::kEncodes) ask_shape(v);
@@ -166,6 +171,7 @@ void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
     }
     if (coder_.bit(is_fan_[ring_.closed], is_fan)) {
       code_fan(found, v);
+      is_closed_fan_ = ring_.closed;
       return;
     }
   }
@@ -223,8 +229,8 @@ template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_fan(Fan fan, std::uint32_t v) {
   const std::uint32_t vertices = static_cast<std::uint32_t>(ring_.vertices.size());
   fan.single = !ring_.closed && coder_.bit(is_single_, fan.single);
-  if (ring_.closed && vertices <= kMostRanked) {
-    fan = code_ranked_fan(fan, v);
+  if (ring_.closed && vertices <= PairOdds::kMost) {
+    fan = code_likely_fan(fan, v);
   } else if (fan.single) {
     fan.first = 0;
     fan.last = code_below(vertices, fan.last);
@@ -233,30 +239,24 @@ void BlockCoder<Coder, Guide>::code_fan(Fan fan, std::uint32_t v) {
     fan.last = fan.first + 1 + code_below(vertices - 1 - fan.first, fan.last - fan.first - 1);
   }
   make_fan(fan);
+  fan_ = fan;
 }
 
-// Which of all pairs of the ring's vertices, in the order in which they are likely.
 template <class Coder, class Guide>
-typename BlockCoder<Coder, Guide>::Fan BlockCoder<Coder, Guide>::code_ranked_fan(Fan fan,
+typename BlockCoder<Coder, Guide>::Fan BlockCoder<Coder, Guide>::code_likely_fan(Fan fan,
                                                                                  std::uint32_t v) {
   ranked_.clear();
   const Vec3i& center = mesh_.positions[v];
   for (const std::uint32_t w : ring_.vertices) {
     const Vec3i& p = mesh_.positions[w];
     ranked_.push_back({{double(p.x) - center.x, double(p.y) - center.y, double(p.z) - center.z},
-                       double(around_[w].size())});
+                       around_[w].size(),
+                       generation_[w] > 0});
   }
-  rank_pairs(ranked_, pairs_);
-  std::uint32_t rank = 0;
-  if constexpr (Coder::kEncodes) {
-    while (pairs_[rank].first != fan.first || pairs_[rank].last != fan.last) ++rank;
-  }
-  rank = code_magnitude(coder_, rank_[ranked_.size()], rank);
-  if (rank >= pairs_.size()) {
-    corrupt_ = true;
-    return {0, 1};
-  }
-  return {pairs_[rank].first, pairs_[rank].last};
+  pair_odds_.rate(ranked_);
+  const PairOdds::Pair pair = pair_odds_.code(coder_, {fan.first, fan.last});
+  pair_odds_.learn(pair);
+  return {pair.first, pair.last};
 }
 
 template <class Coder, class Guide>
@@ -306,16 +306,14 @@ void BlockCoder<Coder, Guide>::code_general(std::uint32_t v) {
 
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::apply(std::uint32_t v, std::uint32_t u) {
-  std::vector<std::uint32_t>& at_first = around_[v];
-  std::vector<std::uint32_t>& at_second = around_[u];
-  at_first.clear();
+  around_.clear(v);
   for (std::size_t i = 0; i < shape_.triangles.size(); ++i) {
     const std::uint32_t t = shape_.triangles[i];
     if (shape_.to_second[i]) {
       mesh_.triangles[t][std::size_t(corner_of(mesh_.triangles[t], v))] = u;
-      at_second.push_back(t);
+      around_.add(u, t);
     } else {
-      at_first.push_back(t);
+      around_.add(v, t);
     }
   }
   for (const Introduced& introduced : shape_.introduced) {
@@ -332,36 +330,49 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
     at_t = guide_.position(t, false);
     at_u = guide_.position(t, true);
   }
-  const bool t_stays = coder_.bit(stays_[0][0], at_t == s);
-  const bool u_stays = coder_.bit(stays_[1][t_stays], at_u == s);
   const Surroundings around = surroundings(mesh_, around_[t], around_[u], t, u, s);
-  if (t_stays || u_stays) {
-    if (u_stays) {
-      at_u = s;
-    } else {
-      at_u = code_position(u, at_u, around.beside_parent(true), around, 0);
-    }
-    if (t_stays) {
-      at_t = s;
-    } else {
-      at_t = code_position(t, at_t, around.beside_parent(false), around, 0);
-    }
-  } else {
-    at_u = code_position(u, at_u, around.second_of_both(), around, 1);
-    at_t = code_position(t, at_t, around.first_of_both(at_u), around, 2);
-  }
+  const bool t_stays = code_stays(0, around, around_[t].size(), around_[u].size(), at_t == s);
+  const bool u_stays =
+      code_stays(1 + t_stays, around, around_[t].size(), around_[u].size(), at_u == s);
+  const bool both = !t_stays && !u_stays;
+  at_u = u_stays
+             ? s
+             : code_position(u, true, at_u, around, both ? Leaving::SecondOfBoth : Leaving::One, s);
+  at_t = t_stays ? s
+                 : code_position(t, false, at_t, around, both ? Leaving::FirstOfBoth : Leaving::One,
+                                 at_u);
   mesh_.positions[u] = at_u;
   mesh_.positions[t] = at_t;
+  has_moved_[u] = has_moved_[u] || !u_stays;
+  has_moved_[t] = has_moved_[t] || !t_stays;
+}
+
+// Whether a child stays: mostly the one whose neighbours lie around the parent's place.
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::code_stays(std::size_t question, const Surroundings& around,
+                                          std::size_t triangles_t, std::size_t triangles_u,
+                                          bool stays) {
+  const double a = length(around.middle[0]), b = length(around.middle[1]);
+  const std::size_t share =
+      a + b > 0 ? std::min<std::size_t>(static_cast<std::size_t>(16 * a / (a + b)), 15) : 7;
+  const std::size_t first = std::min<std::size_t>(triangles_t, 9),
+                    second = std::min<std::size_t>(triangles_u, 9);
+  StaysModels& models = stays_[question];
+  MixedBit<3> bit({&models.by_share[share], &models.by_triangles[first][second],
+                   &models.by_both[share / 2][first < second    ? 0
+                                              : first == second ? 1
+                                                                : 2]},
+                  models.weights);
+  return coder_.bit(bit, stays);
 }
 
 // As its neighbours' on average, or a quarter of their distance.
 template <class Coder, class Guide>
-typename BlockCoder<Coder, Guide>::Miss BlockCoder<Coder, Guide>::expected_miss(
-    std::uint32_t v, const Surroundings& around) const {
+Miss BlockCoder<Coder, Guide>::expected_miss(std::uint32_t v, const Surroundings& around) const {
   Miss sum{0, 0};
   float count = 0;
   const std::size_t triangles = std::min(around_[v].size(), kLargestRing);
-  for (const std::uint32_t t : std::span(around_[v]).first(triangles)) {
+  for (const std::uint32_t t : around_[v].first(triangles)) {
     for (const std::uint32_t w : mesh_.triangles[t]) {
       if (miss_[w].tangent < 0) continue;
       sum.tangent += miss_[w].tangent;
@@ -373,40 +384,52 @@ typename BlockCoder<Coder, Guide>::Miss BlockCoder<Coder, Guide>::expected_miss(
   return {(sum.tangent + start) / (count + 1), (sum.normal + 0.25f * start) / (count + 1)};
 }
 
+// The neighbours of a child of the present split, if both have closed fans.
 template <class Coder, class Guide>
-Vec3i BlockCoder<Coder, Guide>::code_position(std::uint32_t v, const Vec3i& position,
-                                              const Vec3i& predicted, const Surroundings& around,
-                                              std::size_t kind) {
-  // The two minor axes, then the one along the normal, on which they say where the tangent plane
-  // is.
-  const Miss expected = expected_miss(v, around);
-  const std::size_t tangent = half_octave(expected.tangent), normal = half_octave(expected.normal);
-  std::array<std::int32_t, 3> residual{};
-  float size = 0;
+ChildRing BlockCoder<Coder, Guide>::child_ring(bool second, const Vec3i& s, const Vec3i& sibling) {
+  ChildRing result;
+  const auto from_parent = [&](const Vec3i& p) {
+    return Vec3d{double(p.x) - s.x, double(p.y) - s.y, double(p.z) - s.z};
+  };
+  result.sibling = from_parent(sibling);
+  if (!is_closed_fan_) return result;
+  const std::uint32_t n = static_cast<std::uint32_t>(ring_.vertices.size());
+  const auto at = [&](std::uint32_t i) {
+    return from_parent(mesh_.positions[ring_.vertices[i % n]]);
+  };
+  const std::uint32_t first = second ? fan_.first : fan_.last;
+  const std::uint32_t last = second ? fan_.last : fan_.first + n;
+  arc_.clear();
+  for (std::uint32_t i = first; i <= last; ++i) arc_.push_back(at(i));
+  result.arc = arc_;
+  result.beyond = {at(first + n - 1), at(last + 1)};
+  return result;
+}
+
+template <class Coder, class Guide>
+Vec3i BlockCoder<Coder, Guide>::code_position(std::uint32_t v, bool second, const Vec3i& position,
+                                              const Surroundings& around, Leaving leaving,
+                                              const Vec3i& sibling) {
+  PlaceModel& model = place_models_[std::size_t(leaving)];
+  const std::size_t triangles = around_[v].size();
+  const Sizes expected = sizes(around, expected_miss(v, around));
+  PlaceMixture mixture = model.mixture(around, second, triangles,
+                                       child_ring(second, around.parent, sibling), expected);
+  std::array<std::int32_t, 3> step;
   for (std::size_t i = 0; i < 3; ++i) {
-    const int axis = around.axis[i];
-    const std::int32_t sheared = i < 2 ? 0 : around.shear(residual[0], residual[1]);
-    const std::int32_t given = wrapped_difference(position[axis], predicted[axis]);
-    const std::size_t so_far = i == 0                           ? 0
-                               : size < 0.5f * expected.tangent ? 0
-                               : size < 1.5f * expected.tangent ? 1
-                                                                : 2;
-    ResidualModels& models = residual_[kind][i];
-    const std::int32_t own =
-        code_signed(coder_, models.length[i < 2 ? tangent : normal][so_far], models.first_bits,
-                    models.is_negative, wrapped_difference(given, sheared));
-    residual[i] = wrapped_sum(own, sheared);
-    if (i < 2) {
-      size = std::max(size, std::abs(static_cast<float>(own)));
-    } else {
-      miss_[v] = {size, std::abs(static_cast<float>(own))};
-    }
+    step[i] = wrapped_difference(position[around.axis[i]], around.parent[around.axis[i]]);
   }
+  step = code_place(coder_, mixture, step);
+  model.learn(mixture, triangles, expected);
   Vec3i result;
   for (std::size_t i = 0; i < 3; ++i) {
-    const int axis = around.axis[i];
-    result[axis] = wrapped_sum(predicted[axis], residual[i]);
+    result[around.axis[i]] = wrapped_sum(around.parent[around.axis[i]], step[i]);
   }
+  const auto off = [&](std::size_t i) {
+    const double rest = i < 2 ? step[i] : step[2] - rise(mixture.direction, step[0], step[1]);
+    return static_cast<float>(std::abs(rest - mixture.center[i][0]));
+  };
+  miss_[v] = {std::max(off(0), off(1)), off(2)};
   return result;
 }
 

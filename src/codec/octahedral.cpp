@@ -166,6 +166,21 @@ OctahedralResidual OctahedralCoding::residual(OctahedralCode code, OctahedralCod
           wrapped(std::int64_t(p.y) - frame.predicted.y)};
 }
 
+std::array<double, 2> OctahedralCoding::residual_of(const Vec3d& direction,
+                                                    OctahedralCode predicted) const {
+  const Frame frame = frame_of(predicted);
+  const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
+  if (!(sum > 0)) return {};
+  std::array<double, 2> p{direction.x * m_ / sum, direction.y * m_ / sum};
+  if ((direction.z < 0) != frame.flip) {
+    const std::array<double, 2> upper = p;
+    p[0] = std::copysign(m_ - std::abs(upper[1]), upper[0]);
+    p[1] = std::copysign(m_ - std::abs(upper[0]), upper[1]);
+  }
+  for (int i = 0; i < frame.turns; ++i) p = {-p[1], p[0]};
+  return {p[0] - frame.predicted.x, p[1] - frame.predicted.y};
+}
+
 OctahedralCode OctahedralCoding::restore(OctahedralResidual residual,
                                          OctahedralCode predicted) const {
   const Frame frame = frame_of(predicted);

@@ -24,6 +24,7 @@
 
 #include "crease/vec.h"
 
+#include <array>
 #include <cstdint>
 
 namespace crease {
@@ -66,7 +67,9 @@ class OctahedralCoding {
   // turned so that the expected one lies inside the diamond, away from the folds, in the quadrant
   // x > 0, y >= 0. Then it is a difference, taken around the square. Both codes canonical.
   OctahedralResidual residual(OctahedralCode code, OctahedralCode predicted) const;
-  // The inverse. Any numbers give a canonical code, so a file's need no check.
+  // Where the residual of a direction lies that need not be a code's, about: not around the square.
+  std::array<double, 2> residual_of(const Vec3d& direction, OctahedralCode predicted) const;
+  // The inverse of residual(). Any numbers give a canonical code, so a file's need no check.
   OctahedralCode restore(OctahedralResidual residual, OctahedralCode predicted) const;
 
  private:

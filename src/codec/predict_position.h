@@ -18,10 +18,11 @@ inline std::int32_t wrapped_difference(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
 }
 
-// 2 log2(x), whole, from 0 to 31.
-std::size_t half_octave(float x);
-// About the x that gave it, > 0.
-double magnitude_of(std::size_t half_octave);
+// How far from where its neighbours had it a vertex was found, in its tangent plane and along the
+// normal; below zero: it was not looked for.
+struct Miss {
+  float tangent = -1, normal = -1;
+};
 
 // A split's surroundings, seen from the parent's place.
 struct Surroundings {
@@ -30,17 +31,8 @@ struct Surroundings {
   Vec3d thirds{};                    // the middle of the vertices that both have
   Vec3d normal{};                    // of the ring, of unit length; or zero
   double mean_edge = 0;              // distance of the neighbours: |x| + |y| + |z|
+  double bend = 0;                   // how far that leads from one child's plane to the other's
   std::array<int, 3> axis{0, 1, 2};  // the last one nearest to the normal
-  std::array<double, 2> slope{};     // of the tangent plane over the first two axes
-
-  // Of a child whose sibling stays where the parent was.
-  Vec3i beside_parent(bool second) const;
-  // Of the second child when both leave, and then of the first.
-  Vec3i second_of_both() const;
-  Vec3i first_of_both(const Vec3i& second) const;
-
-  // How far a step along the first two axes leads along the third in the tangent plane.
-  std::int32_t shear(std::int32_t first, std::int32_t second) const;
 };
 
 // Of the children t and u; neither place is read.

@@ -1,5 +1,7 @@
 #include "codec/ring.h"
 
+#include <array>
+
 namespace crease::codec {
 
 namespace {
@@ -18,41 +20,53 @@ bool find_ring(std::span<const Corners> triangles, std::span<const std::uint32_t
                std::uint32_t center, Ring& ring) {
   const std::size_t n = around.size();
   if (n == 0 || n > kLargestRing) return false;
-  // The start: the triangle that no other leads to; in a closed ring the first.
-  std::size_t start = n, starts = 0;
+  std::array<std::uint32_t, kLargestRing> from, to;  // of each triangle
   for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t first = after(triangles[around[i]], center);
-    std::size_t leads_here = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      leads_here += before(triangles[around[k]], center) == first;
-      if (k != i && after(triangles[around[k]], center) == first) return false;
-    }
-    if (leads_here > 1) return false;
-    if (leads_here == 1) continue;
-    start = i;
-    if (++starts > 1) return false;
+    const Corners& t = triangles[around[i]];
+    from[i] = after(t, center);
+    to[i] = before(t, center);
   }
-  ring.closed = starts == 0;
-  if (ring.closed) start = 0;
+  const auto find = [n](const std::array<std::uint32_t, kLargestRing>& in, std::uint32_t vertex) {
+    std::size_t i = 0;
+    while (i < n && in[i] != vertex) ++i;
+    return i;
+  };
 
-  ring.triangles.clear();
-  ring.vertices.clear();
-  std::size_t at = start;
-  for (std::size_t step = 0; step < n; ++step) {
-    const Corners& t = triangles[around[at]];
-    ring.triangles.push_back(around[at]);
-    ring.vertices.push_back(after(t, center));
-    const std::uint32_t end = before(t, center);
-    std::size_t next = 0;
-    while (next < n && after(triangles[around[next]], center) != end) ++next;
-    if (step + 1 == n) {
-      if (!ring.closed) ring.vertices.push_back(end);
-      return ring.closed ? next == start : next == n;
-    }
-    if (next == n || next == start) return false;
-    at = next;
+  // Onwards from the first triangle. Who comes back to it after all n has met each once, so that no
+  // two start or end alike.
+  ring.triangles.resize(n);
+  ring.vertices.resize(n);
+  std::size_t at = 0, count = 0;
+  do {
+    ring.triangles[count] = around[at];
+    ring.vertices[count] = from[at];
+    at = find(from, to[at]);
+    ++count;
+  } while (at != 0 && at < n && count < n);
+  ring.closed = at == 0;
+  if (ring.closed) return count == n;
+  if (at < n) return false;  // round and round without the first
+
+  // An open fan: back from the first triangle to where it starts, and on from there.
+  std::size_t start = 0;
+  for (std::size_t i = 0; (at = find(to, from[start])) < n; ++i) {
+    if (i == n) return false;
+    start = at;
   }
-  return false;
+  std::uint32_t end = 0;
+  at = start;
+  for (count = 0; at < n && count < n; ++count) {
+    ring.triangles[count] = around[at];
+    ring.vertices[count] = from[at];
+    end = to[at];
+    at = find(from, end);
+  }
+  if (at < n || count < n) return false;
+  ring.vertices.push_back(end);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (find(from, from[i]) != i) return false;  // two start alike
+  }
+  return true;
 }
 
 }  // namespace crease::codec

@@ -1,0 +1,48 @@
+// The triangles at each vertex, in lists that grow and shrink side by side in one array.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease::codec {
+
+// A list that outgrows its room moves to the end, with room for half as many again; so all of them
+// take at most a few times what they hold. Spans are good until the next add().
+class TriangleLists {
+ public:
+  std::span<const std::uint32_t> operator[](std::uint32_t vertex) const {
+    const List& list = lists_[vertex];
+    return {triangles_.data() + list.first, list.count};
+  }
+  void add_vertex() { lists_.push_back({}); }
+  void resize(std::size_t vertices) { lists_.resize(vertices); }
+
+  void add(std::uint32_t vertex, std::uint32_t triangle) {
+    List& list = lists_[vertex];
+    if (list.count == list.room) move(list);
+    triangles_[list.first + list.count++] = triangle;
+  }
+  void clear(std::uint32_t vertex) { lists_[vertex].count = 0; }
+
+ private:
+  struct List {
+    std::size_t first = 0;
+    std::uint32_t count = 0, room = 0;
+  };
+
+  void move(List& list) {
+    const std::size_t first = triangles_.size();
+    list.room += list.room / 2 + 8;
+    triangles_.resize(first + list.room);
+    std::copy_n(triangles_.begin() + static_cast<std::ptrdiff_t>(list.first), list.count,
+                triangles_.begin() + static_cast<std::ptrdiff_t>(first));
+    list.first = first;
+  }
+
+  std::vector<List> lists_;
+  std::vector<std::uint32_t> triangles_;
+};
+
+}  // namespace crease::codec
