@@ -1,12 +1,13 @@
 # The layers: a folder may include itself and the folders in its row, and the public headers that
 # belong to those. The test `layers` reads every #include of the tree against these two tables.
 set(CREASE_FOLDERS
-  base parallel mesh hierarchy io generate measure simplify codec pipeline runtime render)
+  base parallel mesh hierarchy assemble io generate measure simplify codec pipeline runtime render)
 
 set(CREASE_LAYER_base      )
 set(CREASE_LAYER_parallel  )
 set(CREASE_LAYER_mesh      base)
 set(CREASE_LAYER_hierarchy base mesh)
+set(CREASE_LAYER_assemble  base mesh hierarchy)
 set(CREASE_LAYER_io        base mesh)
 set(CREASE_LAYER_generate  base mesh)
 set(CREASE_LAYER_measure   base parallel mesh)
@@ -23,18 +24,19 @@ set(CREASE_HEADERS_parallel  threads.h)
 set(CREASE_HEADERS_mesh      mesh.h shading.h)
 set(CREASE_HEADERS_hierarchy contraction.h progressive_arrays.h compact_ranges.h packed_indices.h
     parent_maps.h split_bounds.h mesh_hierarchy.h)
+set(CREASE_HEADERS_assemble  build_progressive_arrays.h build_hierarchy.h)
 set(CREASE_HEADERS_io        import.h export.h)
 set(CREASE_HEADERS_generate  generate.h)
 set(CREASE_HEADERS_measure   compare.h)
 set(CREASE_HEADERS_simplify  simplify.h)
 set(CREASE_HEADERS_codec     file.h byte_source.h block_file.h decode_model.h)
-set(CREASE_HEADERS_pipeline  attribute_precision.h build.h build_hierarchy.h)
+set(CREASE_HEADERS_pipeline  attribute_precision.h build.h)
 set(CREASE_HEADERS_runtime   camera.h draw_list.h draw_changes.h progressive_mesh.h
                            adaptive_mesh.h block_view.h)
 set(CREASE_HEADERS_render    render.h)
 
 # What goes into crease_runtime. These are compiled without exceptions and RTTI and need no library.
-set(CREASE_RUNTIME_FOLDERS base mesh hierarchy codec runtime)
+set(CREASE_RUNTIME_FOLDERS base mesh hierarchy assemble codec runtime)
 
 # Third-party headers that live in one place only: <prefix...> may be included by these folders.
 set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h lzma.h tbb oneapi nlohmann CLI zstd.h)

@@ -4,6 +4,7 @@
 #include "cli/model.h"
 #include "cli/report.h"
 #include "cli/text.h"
+#include "crease/build_progressive_arrays.h"
 #include "crease/shading.h"
 
 #include <algorithm>

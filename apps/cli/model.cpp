@@ -4,6 +4,7 @@
 #include "cli/report.h"
 #include "cli/text.h"
 #include "crease/block_view.h"
+#include "crease/build_progressive_arrays.h"
 #include "crease/threads.h"
 
 #include <utility>
@@ -30,7 +31,7 @@ void add_build_options(CLI::App& command, ReadOptions& options) {
   command
       .add_option("--precision", options.precision,
                   "grid that positions are snapped to: a length (0.001), or bits over the longest "
-                  "side (14bits); default: as fine as the model's edges, 12 to 24 bits")
+                  "side (14bits); default 24bits")
       ->type_name("LENGTH|BITSbits");
   command
       .add_option("--placement", options.placement,

@@ -3,6 +3,7 @@
 #include "cli/console.h"
 #include "cli/text.h"
 #include "cli/view.h"
+#include "crease/build_progressive_arrays.h"
 #include "crease/compare.h"
 
 #include <algorithm>

@@ -8,7 +8,6 @@
 #include "crease/file.h"
 #include "crease/mesh.h"
 #include "crease/progress.h"
-#include "crease/progressive_arrays.h"
 #include "crease/simplify.h"
 
 #include <cstddef>
@@ -43,10 +42,6 @@ struct Built {
   std::uint32_t blocks = 0;
   std::vector<std::byte> file_bytes;
 };
-
-// DB03 phases I and III: partitions `snapped` and packs the contractions.
-ProgressiveArraysPtr build_progressive_arrays(const Mesh& snapped,
-                                              const ContractionSequence& sequence);
 
 // `mesh` must hold check_mesh() and have normals, and the bits be in their ranges. Fails only when
 // interrupted.

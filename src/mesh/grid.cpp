@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace crease {
 
@@ -12,37 +11,6 @@ Vec3i Grid::nearest(const Vec3d& p) const {
           static_cast<std::int32_t>(std::llround((p.y - origin.y) / step)),
           static_cast<std::int32_t>(std::llround((p.z - origin.z) / step))};
 }
-
-namespace {
-
-constexpr int kFewestBits = 12, kMostBits = 24;
-constexpr double kStepsOfShortEdge = 256;
-
-// The length that nine of ten edges exceed, of those that have one; 0 if none has.
-double short_edge(const Mesh& mesh) {
-  std::vector<double> squared;
-  squared.reserve(3 * mesh.triangle_count());
-  for (const Triangle& t : mesh.triangles) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3d edge = mesh.positions[index_of(t[(c + 1) % 3])] - mesh.positions[index_of(t[c])];
-      const double length2 = dot(edge, edge);
-      if (length2 > 0) squared.push_back(length2);
-    }
-  }
-  if (squared.empty()) return 0;
-  const auto tenth = squared.begin() + std::ptrdiff_t(squared.size() / 10);
-  std::nth_element(squared.begin(), tenth, squared.end());
-  return std::sqrt(*tenth);
-}
-
-int bits_for(const Mesh& mesh, double longest) {
-  const double step = short_edge(mesh) / kStepsOfShortEdge;
-  int bits = kFewestBits;
-  while (bits < kMostBits && longest > step * double(1 << bits)) ++bits;
-  return bits;
-}
-
-}  // namespace
 
 Grid make_grid(const Mesh& mesh, const Precision& precision) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -58,11 +26,7 @@ Grid make_grid(const Mesh& mesh, const Precision& precision) {
   const double longest = std::max({size.x, size.y, size.z});
 
   Grid grid;
-  grid.step = precision.length;
-  if (!(precision.length > 0)) {
-    const int bits = precision.bits > 0 ? precision.bits : bits_for(mesh, longest);
-    grid.step = longest / double(1 << bits);
-  }
+  grid.step = precision.length > 0 ? precision.length : longest / double(1 << precision.bits);
   // Grid coordinates stay within 30 bits whatever length was asked for.
   grid.step = std::max(grid.step, longest / double(1 << 30));
   if (!(grid.step > 0)) grid.step = 1;

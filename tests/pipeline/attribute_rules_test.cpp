@@ -1,4 +1,4 @@
-#include "pipeline/attribute_rules.h"
+#include "assemble/attribute_rules.h"
 
 #include <doctest/doctest.h>
 

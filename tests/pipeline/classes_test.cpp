@@ -1,6 +1,6 @@
 // The classes that triangles have for life, on cases drawn by hand.
+#include "assemble/arrange.h"
 #include "crease/shading.h"
-#include "pipeline/arrange.h"
 #include "support/mesh_builder.h"
 #include "support/mesh_zoo.h"
 

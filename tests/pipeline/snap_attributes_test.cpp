@@ -1,6 +1,7 @@
 #include "pipeline/snap_attributes.h"
 
 #include "crease/build.h"
+#include "crease/build_progressive_arrays.h"
 #include "crease/progressive_mesh.h"
 #include "crease/shading.h"
 #include "pipeline/fit_lattice.h"

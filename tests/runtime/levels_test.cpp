@@ -1,4 +1,4 @@
-#include "crease/build.h"
+#include "crease/build_progressive_arrays.h"
 #include "crease/progressive_mesh.h"
 #include "support/level_equality.h"
 

@@ -1,10 +1,10 @@
 // A level of the progressive mesh beside the same level by the plain definition.
 #pragma once
 
+#include "assemble/arrange.h"
 #include "crease/mesh.h"
 #include "crease/progressive_mesh.h"
 #include "hierarchy/attribute_values.h"
-#include "pipeline/arrange.h"
 #include "support/mesh_zoo.h"
 #include "support/random_contractions.h"
 

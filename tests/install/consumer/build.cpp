@@ -1,5 +1,6 @@
 // What a tool does: takes a mesh, builds its levels, and reads the bytes back.
 #include "crease/build.h"
+#include "crease/build_progressive_arrays.h"
 #include "crease/generate.h"
 #include "crease/progressive_mesh.h"
 

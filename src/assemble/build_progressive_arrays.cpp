@@ -1,6 +1,6 @@
-#include "crease/build.h"
-#include "pipeline/arrange.h"
-#include "pipeline/restructure.h"
+#include "crease/build_progressive_arrays.h"
+#include "assemble/arrange.h"
+#include "assemble/restructure.h"
 
 #include <memory>
 #include <utility>

@@ -1,6 +1,6 @@
-#include "pipeline/introduce_triangles.h"
+#include "assemble/introduce_triangles.h"
 
-#include "pipeline/merge_times.h"
+#include "assemble/merge_times.h"
 
 #include <algorithm>
 #include <numeric>

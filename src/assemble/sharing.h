@@ -8,9 +8,9 @@
 // nobody: then all shared triangles at a slot agree, always.
 #pragma once
 
+#include "assemble/replay.h"
 #include "crease/contraction.h"
 #include "crease/mesh.h"
-#include "pipeline/replay.h"
 
 #include <cstdint>
 #include <span>

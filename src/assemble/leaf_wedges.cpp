@@ -1,4 +1,4 @@
-#include "pipeline/leaf_wedges.h"
+#include "assemble/leaf_wedges.h"
 
 #include "mesh/disjoint_sets.h"
 #include "mesh/smooth_regions.h"

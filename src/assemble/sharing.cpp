@@ -1,4 +1,4 @@
-#include "pipeline/sharing.h"
+#include "assemble/sharing.h"
 
 #include "base/assert.h"
 #include "hierarchy/attribute_values.h"

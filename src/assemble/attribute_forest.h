@@ -1,13 +1,13 @@
 // One layer's attribute hierarchy, contraction by contraction (G03 3.4).
 #pragma once
 
+#include "assemble/introduce_triangles.h"
+#include "assemble/leaf_wedges.h"
+#include "assemble/vertex_forest.h"
 #include "crease/contraction.h"
 #include "crease/mesh.h"
 #include "crease/mesh_hierarchy.h"
 #include "crease/result.h"
-#include "pipeline/introduce_triangles.h"
-#include "pipeline/leaf_wedges.h"
-#include "pipeline/vertex_forest.h"
 
 #include <cstddef>
 

@@ -1,13 +1,13 @@
 // The passes that make a hierarchy, in order.
 #include "crease/build_hierarchy.h"
 
-#include "pipeline/attribute_forest.h"
-#include "pipeline/bound_splits.h"
-#include "pipeline/inherit_values.h"
-#include "pipeline/introduce_triangles.h"
-#include "pipeline/join_roots.h"
-#include "pipeline/leaf_wedges.h"
-#include "pipeline/vertex_forest.h"
+#include "assemble/attribute_forest.h"
+#include "assemble/bound_splits.h"
+#include "assemble/inherit_values.h"
+#include "assemble/introduce_triangles.h"
+#include "assemble/join_roots.h"
+#include "assemble/leaf_wedges.h"
+#include "assemble/vertex_forest.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "pipeline/number_attributes.h"
+#include "assemble/number_attributes.h"
 
 #include <algorithm>
 #include <span>

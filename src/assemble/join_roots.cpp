@@ -1,4 +1,4 @@
-#include "pipeline/join_roots.h"
+#include "assemble/join_roots.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "pipeline/attribute_forest.h"
+#include "assemble/attribute_forest.h"
 
+#include "assemble/attribute_rules.h"
+#include "assemble/number_attributes.h"
 #include "mesh/disjoint_sets.h"
-#include "pipeline/attribute_rules.h"
-#include "pipeline/number_attributes.h"
 
 #include <algorithm>
 #include <string>

@@ -2,10 +2,10 @@
 // as packed contractions over rearranged arrays.
 #pragma once
 
+#include "assemble/restructure.h"
 #include "crease/contraction.h"
 #include "crease/mesh.h"
 #include "crease/progressive_arrays.h"
-#include "pipeline/restructure.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,11 +1,11 @@
 // When triangles and their corners come to an end, in terms of contractions (DESIGN 6.2 and 6.4).
 #pragma once
 
+#include "assemble/leaf_wedges.h"
+#include "assemble/vertex_forest.h"
 #include "crease/contraction.h"
 #include "crease/mesh.h"
 #include "crease/mesh_hierarchy.h"
-#include "pipeline/leaf_wedges.h"
-#include "pipeline/vertex_forest.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "pipeline/vertex_forest.h"
+#include "assemble/vertex_forest.h"
 
 #include "hierarchy/grid_sum.h"
 

@@ -1,7 +1,7 @@
-#include "pipeline/restructure.h"
+#include "assemble/restructure.h"
 
+#include "assemble/replay.h"
 #include "base/assert.h"
-#include "pipeline/replay.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "pipeline/inherit_values.h"
+#include "assemble/inherit_values.h"
 
 #include <utility>
 

@@ -1,9 +1,9 @@
 // Spheres and normal cones of all splits, from the leaves up.
 #pragma once
 
+#include "assemble/vertex_forest.h"
 #include "crease/mesh.h"
 #include "crease/mesh_hierarchy.h"
-#include "pipeline/vertex_forest.h"
 
 #include <vector>
 

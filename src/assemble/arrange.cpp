@@ -1,10 +1,10 @@
-#include "pipeline/arrange.h"
+#include "assemble/arrange.h"
 
+#include "assemble/replay.h"
+#include "assemble/value_table.h"
 #include "base/assert.h"
 #include "hierarchy/attribute_values.h"
 #include "hierarchy/packed_contraction.h"
-#include "pipeline/replay.h"
-#include "pipeline/value_table.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "pipeline/replay.h"
+#include "assemble/replay.h"
 
 #include <algorithm>
 #include <numeric>

@@ -3,11 +3,11 @@
 // by it later.
 #pragma once
 
+#include "assemble/sharing.h"
 #include "crease/contraction.h"
 #include "crease/mesh.h"
 #include "crease/progressive_arrays.h"
 #include "crease/shading.h"
-#include "pipeline/sharing.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,10 +1,10 @@
 // Wedges and attributes of the input's vertices: where the attribute hierarchies begin.
 #pragma once
 
+#include "assemble/vertex_forest.h"
 #include "crease/mesh.h"
 #include "crease/mesh_hierarchy.h"
 #include "mesh/corners_around.h"
-#include "pipeline/vertex_forest.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "pipeline/bound_splits.h"
+#include "assemble/bound_splits.h"
 
 #include "hierarchy/geometric_normal.h"
 #include "hierarchy/normal_cone.h"

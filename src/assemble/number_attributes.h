@@ -2,10 +2,10 @@
 // arrays.
 #pragma once
 
+#include "assemble/attribute_forest.h"
+#include "assemble/attribute_rules.h"
 #include "crease/ids.h"
 #include "crease/mesh_hierarchy.h"
-#include "pipeline/attribute_forest.h"
-#include "pipeline/attribute_rules.h"
 
 #include <cstdint>
 #include <vector>
