@@ -173,10 +173,12 @@ void ModelOfBlocks::contract_band(std::span<const UnfoldedBlock> blocks,
   std::vector<std::vector<CornerChanges>> changes(blocks.size());
   std::vector<Pending> all;
   for (std::uint32_t b = 0; b < blocks.size(); ++b) {
-    const std::vector<OrderedContraction> order = order_contractions(blocks[b], coding_);
-    changes[b] = rejoiner.rejoin(blocks[b], order);
-    changes[b].resize(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) all.push_back({b, order[i], &changes[b][i]});
+    ContractionOrder order = order_contractions(blocks[b], coding_, facts_.layers, values_);
+    changes[b] = rejoiner.rejoin(blocks[b], order.contractions, std::move(order.wedges));
+    changes[b].resize(order.contractions.size());
+    for (std::size_t i = 0; i < order.contractions.size(); ++i) {
+      all.push_back({b, order.contractions[i], &changes[b][i]});
+    }
   }
   std::stable_sort(all.begin(), all.end(), [](const Pending& a, const Pending& b) {
     return a.contraction.cost < b.contraction.cost;

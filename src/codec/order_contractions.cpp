@@ -6,15 +6,17 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 namespace crease::codec {
 
 namespace {
 
-// What a triangle that turns by one radian costs beside one that moves by a mean edge length.
+// What a face that turns by one radian costs beside one that moves by a mean edge length.
 constexpr double kTurnWeight = 0.9;
 // What the area of a part that disappears counts: quadrics count it at each of its three corners.
 constexpr double kPartWeight = 3;
+constexpr double kMostCost = 1e300;  // of nonsense, that a hostile block may have
 
 Vec3d real(const Vec3i& p) {
   return {double(p.x), double(p.y), double(p.z)};
@@ -43,13 +45,15 @@ struct PlaneQuadric {
 
 class CostEstimator {
  public:
-  CostEstimator(const UnfoldedBlock& block, const BlockCoding& coding)
+  CostEstimator(const UnfoldedBlock& block, const BlockCoding& coding,
+                std::span<const LayerSchema> layers, std::span<const LayerValues> values)
       : mesh_(block.end),
         coding_(coding),
         positions_(block.end.positions),
-        quadrics_(block.end.positions.size()) {
-    if (positions_.empty()) return;
-    origin_ = real(positions_[0]);  // near, so that little is lost in differences
+        quadrics_(block.end.positions.size()),
+        // Near, so that little is lost in differences.
+        origin_(positions_.empty() ? Vec3d{} : real(positions_[0])),
+        wedges_(block, layers, values, origin_) {
     double edges = 0;
     for (const Corners& t : mesh_.triangles) {
       const std::array<Vec3d, 3> p{place(t[0]), place(t[1]), place(t[2])};
@@ -61,6 +65,7 @@ class CostEstimator {
       for (const std::uint32_t v : t) quadrics_[v].add(unit, -dot(unit, p[0]), 0.5 * twice_area);
     }
     add_lines();
+    find_faces();
     const double count = 3 * double(std::max<std::size_t>(1, mesh_.triangles.size()));
     turn_weight_ = kTurnWeight * edges / count;
     turn_weight_ *= turn_weight_;
@@ -77,17 +82,22 @@ class CostEstimator {
     const std::span<const std::uint32_t> around = patch.around(first);
     const std::size_t from_first = around.size() - patch.moved_count();
     for (std::size_t i = 0; i < around.size(); ++i) {
+      if (!is_face_[around[i]]) continue;
       cost += turning_cost(patch.corners(around[i]), first, before[i >= from_first], s);
     }
     for (const std::uint32_t v : vanished) {
+      if (!is_face_[v]) continue;
       cost += vanishing_cost(patch, patch.corners(v), around, first, s);
     }
     if (around.empty()) {
       for (const std::uint32_t v : vanished) cost += kPartWeight * part_cost(patch.corners(v));
     }
+    cost += wedges_.contract(patch, vanished, first, second, s);
     positions_[first] = parent;
-    return cost;
+    return cost <= kMostCost ? cost : kMostCost;  // also if it is no number
   }
+
+  std::vector<WedgeValues> take_wedges() { return std::move(wedges_).take(); }
 
  private:
   Vec3d place(std::uint32_t v) const { return real(positions_[v]) - origin_; }
@@ -139,6 +149,20 @@ class CostEstimator {
       if (other_size > 0) best = std::max(best, dot(n, other) / (size * other_size));
     }
     return turn_weight_ * size * std::max(0.0, 1 - best);
+  }
+
+  // Triangles that show one normal, or have none of their own. Where a triangle's normal varies,
+  // its wedges say what turning costs.
+  void find_faces() {
+    is_face_.assign(mesh_.triangles.size(), 1);
+    for (std::size_t l = 0; l < coding_.layers.size(); ++l) {
+      if (!coding_.layers[l].is_normal) continue;
+      for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+        const CodedValue* values = &mesh_.values[l][3 * t];
+        if (mesh_.derived[t] || (values[0] == values[1] && values[1] == values[2])) continue;
+        is_face_[t] = 0;
+      }
+    }
   }
 
   struct Edge {
@@ -205,15 +229,18 @@ class CostEstimator {
   std::vector<Vec3i> positions_;
   std::vector<PlaneQuadric> quadrics_;  // per vertex, about origin_
   Vec3d origin_;
+  WedgeQuadrics wedges_;
+  std::vector<char> is_face_;  // per triangle; see find_faces()
   double turn_weight_ = 0;
 };
 
 }  // namespace
 
-std::vector<OrderedContraction> order_contractions(const UnfoldedBlock& block,
-                                                   const BlockCoding& coding) {
+ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCoding& coding,
+                                    std::span<const LayerSchema> layers,
+                                    std::span<const LayerValues> values) {
   ContractingPatch patch(block.end);
-  CostEstimator estimator(block, coding);
+  CostEstimator estimator(block, coding, layers, values);
   std::vector<double> cost_of_vertex(block.vertices.size(), 0);
   std::vector<OrderedContraction> order;
   order.reserve(block.splits.size());
@@ -228,7 +255,7 @@ std::vector<OrderedContraction> order_contractions(const UnfoldedBlock& block,
   std::stable_sort(
       order.begin(), order.end(),
       [](const OrderedContraction& a, const OrderedContraction& b) { return a.cost < b.cost; });
-  return order;
+  return {std::move(order), estimator.take_wedges()};
 }
 
 }  // namespace crease::codec

@@ -2,9 +2,12 @@
 // from what each contraction does to the shape, which is near to the order of the simplifier.
 #pragma once
 
+#include "codec/layer_values.h"
 #include "codec/unfold_blocks.h"
+#include "codec/wedge_quadrics.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace crease::codec {
@@ -14,11 +17,18 @@ struct OrderedContraction {
   double cost = 0;          // grid units^4; never below those before it
 };
 
+struct ContractionOrder {
+  std::vector<OrderedContraction> contractions;
+  std::vector<WedgeValues> wedges;  // per layer
+};
+
 // Cheapest first, children before their parents, the same in any subset of blocks. The cost is that
 // of quadrics from the block's fine end: squared distances of where the parent stands from the
-// planes of what it stands for, by area, and from borders and creases, by squared length; and how
-// far triangles turn. Time O(splits * triangles around a vertex).
-std::vector<OrderedContraction> order_contractions(const UnfoldedBlock& block,
-                                                   const BlockCoding& coding);
+// planes of what it stands for, by area, and from borders and creases, by squared length; how far
+// attributes are from those of what their wedges stand for; and how far faces turn. `values`: one a
+// layer. Time O(splits * triangles around a vertex).
+ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCoding& coding,
+                                    std::span<const LayerSchema> layers,
+                                    std::span<const LayerValues> values);
 
 }  // namespace crease::codec

@@ -9,6 +9,10 @@ namespace crease::codec {
 
 namespace {
 
+// A value this near to one that is there already is that one.
+constexpr double kSameValue = 1e-3;
+constexpr double kSameCopy = 2e-2;  // for a wedge that only moved along
+
 std::uint32_t corner_of(const Corners& corners, std::uint32_t v) {
   return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
 }
@@ -34,7 +38,8 @@ AttributeRejoiner::AttributeRejoiner(std::span<const LayerSchema> layers,
 }
 
 std::vector<CornerChanges> AttributeRejoiner::rejoin(const UnfoldedBlock& block,
-                                                     std::span<const OrderedContraction> order) {
+                                                     std::span<const OrderedContraction> order,
+                                                     std::vector<WedgeValues> wedges) {
   std::vector<CornerChanges> all(order.size());
   if (layers_.empty()) return all;
   ContractingPatch patch(block.end);
@@ -51,10 +56,12 @@ std::vector<CornerChanges> AttributeRejoiner::rejoin(const UnfoldedBlock& block,
     const auto vanished = patch.contract(first, second);
     derive(block, patch, first, all[i].derived);
     for (std::size_t l = 0; l < layers_.size(); ++l) {
-      find_values(block, patch, first, l, is_last);
+      find_values(block, patch, first, l, is_last, wedges[l]);
       join(block, patch, vanished, first, second, l);
       if (is_last) {
         change_to_coarse(block, first, l, all[i].changes);
+      } else if (are_known(wedges[l])) {
+        change_to_best(wedges[l], l, all[i].changes);
       } else {
         blend(l, second_share, all[i].changes);
       }
@@ -90,18 +97,26 @@ AttributeRejoiner::AtVertex* AttributeRejoiner::find(std::uint32_t id) {
 
 // Which values stand at v, and where each is to be looked up at the coarse end.
 void AttributeRejoiner::find_values(const UnfoldedBlock& block, const ContractingPatch& patch,
-                                    std::uint32_t v, std::size_t layer, bool is_last) {
+                                    std::uint32_t v, std::size_t layer, bool is_last,
+                                    WedgeValues& wedges) {
   at_vertex_.clear();
   const std::span<const std::uint32_t> around = patch.around(v);
   const std::size_t from_first = around.size() - patch.moved_count();
   for (std::size_t i = 0; i < around.size(); ++i) {
     const std::uint32_t t = around[i];
-    if (is_hidden(layer, block.triangles[t])) continue;
     const std::uint32_t c = corner_of(patch.corners(t), v);
+    std::uint32_t wedge = kNone;
+    if (!wedges.of_corner.empty()) {
+      std::uint32_t& of_corner = wedges.of_corner[3 * std::size_t(t) + c];
+      if (of_corner != kNone) of_corner = wedges.into[of_corner];
+      wedge = of_corner;
+    }
+    if (is_hidden(layer, block.triangles[t])) continue;
     const std::uint32_t id = of_corner_[layer][3 * std::size_t(block.triangles[t]) + c];
     AtVertex* value = find(id);
     if (value == nullptr) {
-      at_vertex_.push_back({.id = id, .joined = static_cast<std::uint32_t>(at_vertex_.size())});
+      at_vertex_.push_back(
+          {.id = id, .wedge = wedge, .joined = static_cast<std::uint32_t>(at_vertex_.size())});
       value = &at_vertex_.back();
     }
     ++value->corners[i >= from_first];
@@ -220,6 +235,49 @@ void AttributeRejoiner::blend(std::size_t layer, double second_share,
     }
     for (const AtVertex& value : at_vertex_) {
       if (value.joined != i || value.id == to) continue;
+      changes.push_back(
+          {static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{to}});
+    }
+  }
+}
+
+bool AttributeRejoiner::are_known(const WedgeValues& wedges) const {
+  return std::ranges::all_of(at_vertex_, [&](const AtVertex& value) {
+    return value.wedge != kNone && wedges.is_known[value.wedge];
+  });
+}
+
+void AttributeRejoiner::change_to_best(const WedgeValues& wedges, std::size_t layer,
+                                       std::vector<AttributeChange>& changes) {
+  ValuePool& pool = pools_[layer];
+  const std::size_t dimension = layers_[layer].dimension;
+  for (std::size_t i = 0; i < at_vertex_.size(); ++i) {
+    const std::uint32_t wedge = at_vertex_[i].wedge;
+    const std::span<const float> best = std::span(wedges.value[wedge]).first(dimension);
+    std::size_t members = 0;
+    bool is_done = false;
+    std::uint32_t nearest = kNone;
+    double nearest_away2 = 0;
+    for (std::size_t k = 0; k < at_vertex_.size(); ++k) {
+      if (at_vertex_[k].wedge != wedge) continue;
+      is_done = is_done || k < i;
+      ++members;
+      const std::span<const float> value = pool.value(at_vertex_[k].id);
+      double away2 = 0;
+      for (std::size_t j = 0; j < dimension; ++j) {
+        const double away = double(value[j]) - double(best[j]);
+        away2 += away * away;
+      }
+      if (nearest != kNone && !(away2 < nearest_away2)) continue;
+      nearest = at_vertex_[k].id;
+      nearest_away2 = away2;
+    }
+    if (is_done) continue;
+    const double same = members == 1 ? kSameCopy : kSameValue;
+    std::uint32_t to = nearest;
+    if (!(nearest_away2 <= same * same)) to = pool.add(pool.code_of(best));
+    for (const AtVertex& value : at_vertex_) {
+      if (value.wedge != wedge || value.id == to) continue;
       changes.push_back(
           {static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{to}});
     }

@@ -2,9 +2,10 @@
 //
 // A block has values at both ends. Attributes at the two children that a collapsed triangle links
 // become one (G03 3.3); while the vertex will be contracted further in the same block, that is what
-// they are at where the parent stands between the children; with its last contraction every corner
-// gets what it has at the coarse end. Triangles that show their geometric normal at the coarse end
-// do so from the first contraction that touches them.
+// is best for the triangles that they stand for (codec/wedge_quadrics.h), or where that is not
+// known, what they are at where the parent stands between the children; with its last contraction
+// every corner gets what it has at the coarse end. Triangles that show their geometric normal at
+// the coarse end do so from the first contraction that touches them.
 #pragma once
 
 #include "codec/contracting_patch.h"
@@ -34,14 +35,16 @@ class AttributeRejoiner {
   AttributeRejoiner(std::span<const LayerSchema> layers, std::vector<ValuePool>& pools,
                     std::vector<std::vector<std::uint32_t>> of_corner);
 
-  // One for each contraction of `order`.
+  // One for each contraction of `order`. `wedges`: per layer, from order_contractions().
   std::vector<CornerChanges> rejoin(const UnfoldedBlock& block,
-                                    std::span<const OrderedContraction> order);
+                                    std::span<const OrderedContraction> order,
+                                    std::vector<WedgeValues> wedges);
 
  private:
   struct AtVertex {  // a value that corners at the present vertex have
     std::uint32_t id = 0;
     std::array<std::uint32_t, 2> corners{};  // that came from the first child, from the second
+    std::uint32_t wedge = kNone;             // of WedgeValues
     std::uint32_t joined = 0;                // the first one of those that it is joined with
     std::uint32_t wanted = kNone;            // corner of the block whose coarse value it gets
     bool is_flat = false;                    // and all corners of a triangle have that value there
@@ -50,7 +53,7 @@ class AttributeRejoiner {
   void derive(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
               std::vector<TriangleId>& derived);
   void find_values(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
-                   std::size_t layer, bool is_last);
+                   std::size_t layer, bool is_last, WedgeValues& wedges);
   void join(const UnfoldedBlock& block, const ContractingPatch& patch,
             std::span<const std::uint32_t> vanished, std::uint32_t first, std::uint32_t second,
             std::size_t layer);
@@ -58,6 +61,10 @@ class AttributeRejoiner {
                         std::vector<AttributeChange>& changes);
   // `second_share`: where the parent stands on the way from the first child to the second.
   void blend(std::size_t layer, double second_share, std::vector<AttributeChange>& changes);
+  bool are_known(const WedgeValues& wedges) const;  // all at the vertex
+  // They must be known.
+  void change_to_best(const WedgeValues& wedges, std::size_t layer,
+                      std::vector<AttributeChange>& changes);
   void apply(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
              std::span<const AttributeChange> changes);
   bool is_hidden(std::size_t layer, std::uint32_t triangle) const {

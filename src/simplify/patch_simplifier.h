@@ -9,7 +9,7 @@
 // about 3 MB. Vertices that other patches share are locked: they neither move nor vanish.
 #pragma once
 
-#include "simplify/quadric.h"
+#include "hierarchy/quadric.h"
 #include "simplify/work_mesh.h"
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "simplify/quadric.h"
+#include "hierarchy/quadric.h"
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,265 @@
+#include "codec/wedge_quadrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace crease::codec {
+
+namespace {
+
+using simplification::AttributeQuadric;
+using simplification::Quadric;
+using simplification::Row;
+
+// As the simplifier has them.
+constexpr double kNormalWeight = 0.9;
+constexpr double kThin = 1e-4;
+
+bool is_float(double x) {
+  return std::abs(x) <= double(std::numeric_limits<float>::max());
+}
+
+std::uint32_t corner_of(const Corners& corners, std::uint32_t v) {
+  return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
+}
+
+}  // namespace
+
+WedgeQuadrics::WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSchema> layers,
+                             std::span<const LayerValues> values, const Vec3d& origin)
+    : layers_(layers.size()) {
+  corners_.reserve(block.end.triangles.size());
+  for (const Corners& t : block.end.triangles) {
+    std::array<Vec3d, 3>& p = corners_.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3i& at = block.end.positions[t[c]];
+      p[c] = Vec3d{double(at.x), double(at.y), double(at.z)} - origin;
+    }
+    area_ += 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
+  }
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    const LayerSchema& schema = layers[l];
+    if (schema.interpolation == Interpolation::Categorical || schema.role == AttributeRole::Other) {
+      continue;
+    }
+    Layer& layer = layers_[l];
+    layer.dimension = schema.dimension;
+    layer.is_direction = schema.interpolation == Interpolation::Direction;
+    load_wedges(block, values[l], l, schema.role == AttributeRole::Normal, layer);
+    load_quadrics(block, layer);
+    set_scale(block, schema, layer);
+  }
+}
+
+void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& values,
+                                std::size_t l, bool is_normal, Layer& layer) {
+  const std::vector<CodedValue>& codes = block.end.values[l];
+  std::vector<std::uint32_t> first_of_vertex(block.end.positions.size(), kNone);
+  std::vector<std::uint32_t> next;          // per wedge: another one at the vertex
+  std::vector<std::uint32_t> first_corner;  // per wedge
+  WedgeValues& all = layer.values;
+  all.of_corner.assign(codes.size(), kNone);
+  for (std::uint32_t t = 0; t < block.end.triangles.size(); ++t) {
+    if (is_normal && block.end.derived[t]) continue;
+    const CodedValue* code = &codes[3 * std::size_t(t)];
+    const bool is_constant = code[0] == code[1] && code[1] == code[2];
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      std::uint32_t& first = first_of_vertex[block.end.triangles[t][c]];
+      std::uint32_t w = first;
+      while (w != kNone && codes[first_corner[w]] != code[c]) w = next[w];
+      if (w == kNone) {
+        w = static_cast<std::uint32_t>(next.size());
+        next.push_back(std::exchange(first, w));
+        first_corner.push_back(3 * t + c);
+        layer.wedges.push_back({.quadric = w});
+        values.read(code[c],
+                    std::span(all.value.emplace_back()).first(std::size_t(layer.dimension)));
+      }
+      layer.wedges[w].is_pinned = layer.wedges[w].is_pinned || is_constant;
+      all.of_corner[3 * std::size_t(t) + c] = w;
+    }
+  }
+  layer.wedge_of_corner = all.of_corner;
+  layer.quadrics.resize(layer.wedges.size());
+  all.into.assign(layer.wedges.size(), kNone);
+  all.is_known.assign(layer.wedges.size(), 1);
+}
+
+void WedgeQuadrics::load_quadrics(const UnfoldedBlock& block, Layer& layer) {
+  for (std::size_t t = 0; t < block.end.triangles.size(); ++t) {
+    const std::uint32_t* w = &layer.values.of_corner[3 * t];
+    if (w[0] == kNone) continue;
+    const std::array<Vec3d, 3>& p = corners_[t];
+    const Vec3d e1 = p[1] - p[0], e2 = p[2] - p[0], twice = cross(e1, e2);
+    const double twice_area = length(twice);
+    if (!(twice_area > 0)) continue;
+    const double area = 0.5 * twice_area;
+    // The second and the third corner's barycentric coordinates, as linear functions.
+    const double longest = std::max({dot(e1, e1), dot(e2, e2), dot(e2 - e1, e2 - e1)});
+    Row second{0, 0, 0, 1.0 / 3}, third = second;
+    if (twice_area >= kThin * longest) {
+      const double inverse = 1 / (twice_area * twice_area);
+      const Vec3d toward1 = cross(e2, twice) * inverse, toward2 = cross(twice, e1) * inverse;
+      second = Row{toward1.x, toward1.y, toward1.z, -dot(toward1, p[0])};
+      third = Row{toward2.x, toward2.y, toward2.z, -dot(toward2, p[0])};
+    }
+    AttributeQuadric of_triangle;
+    of_triangle.own.weight = area;
+    for (std::size_t j = 0; j < std::size_t(layer.dimension); ++j) {
+      const double value = double(layer.values.value[w[0]][j]);
+      const Row f = second * (double(layer.values.value[w[1]][j]) - value) +
+                    third * (double(layer.values.value[w[2]][j]) - value) + Row{0, 0, 0, value};
+      of_triangle.own.add_square(f, area);
+      of_triangle.linear[j] = f * area;
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      layer.quadrics[layer.wedges[w[c]].quadric].add(of_triangle, layer.dimension);
+    }
+  }
+}
+
+// What the simplifier takes for the whole model, for this block.
+void WedgeQuadrics::set_scale(const UnfoldedBlock& block, const LayerSchema& schema,
+                              Layer& layer) const {
+  double texture_area = 0;
+  if (schema.role == AttributeRole::TexCoord && layer.dimension >= 2) {
+    for (std::size_t t = 0; t < block.end.triangles.size(); ++t) {
+      const std::uint32_t* w = &layer.values.of_corner[3 * t];
+      const std::array<float, 4>&a = layer.values.value[w[0]], &b = layer.values.value[w[1]],
+                              &c = layer.values.value[w[2]];
+      texture_area += 0.5 * std::abs(double(b[0] - a[0]) * double(c[1] - a[1]) -
+                                     double(c[0] - a[0]) * double(b[1] - a[1]));
+    }
+  }
+  const double edge2 = 2.3 * area_ / double(std::max<std::size_t>(1, corners_.size()));
+  if (schema.role == AttributeRole::Normal) {
+    layer.scale = kNormalWeight * kNormalWeight * edge2;
+  } else if (texture_area > 0) {
+    layer.scale = 0.09 * area_ / texture_area;
+  } else {
+    layer.scale = 0.25 * kNormalWeight * kNormalWeight * edge2;
+  }
+}
+
+double WedgeQuadrics::contract(const ContractingPatch& patch,
+                               std::span<const std::uint32_t> vanished, std::uint32_t first,
+                               std::uint32_t second, const Vec3d& at) {
+  double cost = 0;
+  for (Layer& layer : layers_) {
+    if (!layer.wedges.empty()) cost += contract(patch, vanished, first, second, at, layer);
+  }
+  return cost;
+}
+
+// Two values that faces show do not become one.
+bool WedgeQuadrics::keep_apart(const Layer& layer, std::uint32_t a, std::uint32_t b) const {
+  return layer.wedges[a].is_pinned && layer.wedges[b].is_pinned &&
+         layer.values.value[a] != layer.values.value[b];
+}
+
+double WedgeQuadrics::contract(const ContractingPatch& patch,
+                               std::span<const std::uint32_t> vanished, std::uint32_t first,
+                               std::uint32_t second, const Vec3d& at, Layer& layer) {
+  members_.clear();
+  root_.clear();
+  const auto place_of = [&](std::uint32_t wedge) {
+    const auto found = std::ranges::find(members_, wedge);
+    if (found == members_.end()) {
+      members_.push_back(wedge);
+      root_.push_back(static_cast<std::uint32_t>(root_.size()));
+      return members_.size() - 1;
+    }
+    return static_cast<std::size_t>(found - members_.begin());
+  };
+  const auto corner_at = [&](std::uint32_t t, std::uint32_t v) {
+    return 3 * std::size_t(t) + corner_of(patch.corners(t), v);
+  };
+  for (const std::uint32_t t : patch.around(first)) {
+    const std::uint32_t wedge = layer.wedge_of_corner[corner_at(t, first)];
+    if (wedge != kNone) place_of(wedge);
+  }
+  for (const std::uint32_t t : vanished) {
+    const std::uint32_t wa = layer.wedge_of_corner[corner_at(t, first)];
+    const std::uint32_t wb = layer.wedge_of_corner[corner_at(t, second)];
+    if (wa == kNone || wb == kNone) continue;
+    const std::uint32_t a = root_[place_of(wa)], b = root_[place_of(wb)];
+    if (a == b) continue;
+    bool is_kept_apart = false;
+    for (std::size_t i = 0; i < members_.size() && !is_kept_apart; ++i) {
+      for (std::size_t k = 0; k < members_.size() && root_[i] == a; ++k) {
+        is_kept_apart =
+            is_kept_apart || (root_[k] == b && keep_apart(layer, members_[i], members_[k]));
+      }
+    }
+    if (is_kept_apart) continue;
+    for (std::uint32_t& root : root_) {
+      if (root == std::max(a, b)) root = std::min(a, b);
+    }
+  }
+  double cost = 0;
+  for (std::uint32_t i = 0; i < members_.size(); ++i) {
+    if (root_[i] != i) continue;
+    group_.clear();
+    for (std::size_t k = i; k < members_.size(); ++k) {
+      if (root_[k] == i) group_.push_back(members_[k]);
+    }
+    cost += join(group_, at, layer);
+  }
+  for (const std::uint32_t t : patch.around(first)) {
+    std::uint32_t& wedge = layer.wedge_of_corner[corner_at(t, first)];
+    if (wedge != kNone) wedge = layer.values.into[wedge];
+  }
+  return cost;
+}
+
+double WedgeQuadrics::join(std::span<const std::uint32_t> members, const Vec3d& at, Layer& layer) {
+  WedgeValues& all = layer.values;
+  const auto made = static_cast<std::uint32_t>(layer.wedges.size());
+  Wedge wedge{.quadric = layer.wedges[members[0]].quadric};
+  AttributeQuadric& sum = layer.quadrics[wedge.quadric];
+  std::array<float, 4> value = all.value[members[0]];
+  bool is_known = false;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Wedge& member = layer.wedges[members[i]];
+    if (i > 0) sum.add(layer.quadrics[member.quadric], layer.dimension);
+    if (member.is_pinned) {
+      wedge.is_pinned = is_known = true;
+      value = all.value[members[i]];
+    }
+    all.into[members[i]] = made;
+  }
+  double cost = 0;
+  if (wedge.is_pinned) {
+    cost = sum.at(at, layer.dimension, value.data());
+  } else if (sum.own.weight > 0) {
+    Quadric reduced;
+    sum.add_reduced(reduced, layer.dimension, 1);
+    cost = reduced.at(at);
+    double best[4] = {}, norm2 = 0;
+    is_known = true;
+    for (int j = 0; j < layer.dimension; ++j) {
+      best[j] = sum.weighted_value(j, at) / sum.own.weight;
+      norm2 += best[j] * best[j];
+      is_known = is_known && is_float(best[j]);
+    }
+    // Opposite directions have no middle.
+    is_known = is_known && (!layer.is_direction || norm2 > 1e-4);
+    const double size = layer.is_direction ? std::sqrt(norm2) : 1;
+    for (std::size_t j = 0; j < 4 && is_known; ++j) value[j] = static_cast<float>(best[j] / size);
+  }
+  layer.wedges.push_back(wedge);
+  all.into.push_back(kNone);
+  all.value.push_back(value);
+  all.is_known.push_back(is_known);
+  return layer.scale * cost;
+}
+
+std::vector<WedgeValues> WedgeQuadrics::take() && {
+  std::vector<WedgeValues> all;
+  for (Layer& layer : layers_) all.push_back(std::move(layer.values));
+  return all;
+}
+
+}  // namespace crease::codec

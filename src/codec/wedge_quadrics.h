@@ -1,0 +1,80 @@
+// What the attributes of a block's vertices are between its two ends. The simplifier gives a merged
+// wedge the value that is best for the triangles it stands for (Hoppe 1999), as a function of where
+// the vertex stands; from the block's fine end the same quadrics follow, but for what the bands
+// before knew.
+//
+//   WedgeQuadrics quadrics(block, layers, values, origin);
+//   patch.contract(first, second);                     // children before parents
+//   cost += quadrics.contract(patch, vanished, first, second, parent - origin);
+//   const std::vector<WedgeValues> all = std::move(quadrics).take();
+#pragma once
+
+#include "codec/contracting_patch.h"
+#include "codec/layer_values.h"
+#include "codec/unfold_blocks.h"
+#include "crease/block_file.h"
+#include "hierarchy/quadric.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease::codec {
+
+// Of one layer. A wedge is a value at a vertex: each contraction makes new ones out of all that
+// stand at its two vertices.
+struct WedgeValues {
+  std::vector<std::uint32_t> of_corner;     // 3 a triangle, at the fine end; kNone: shows none.
+                                            // Empty: nothing of this layer is known here
+  std::vector<std::uint32_t> into;          // per wedge; kNone: no contraction touches its vertex
+  std::vector<std::array<float, 4>> value;  // per wedge
+  std::vector<char> is_known;               // per wedge: whether it has a value
+};
+
+class WedgeQuadrics {
+ public:
+  // Points are about `origin`. `values`: one a layer.
+  WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSchema> layers,
+                std::span<const LayerValues> values, const Vec3d& origin);
+
+  // After patch.contract(first, second), which returned `vanished`: what the attributes cost with
+  // the vertex at `at`, grid units^4. May be infinite or no number, where the block is nonsense.
+  double contract(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
+                  std::uint32_t first, std::uint32_t second, const Vec3d& at);
+
+  // Per layer.
+  std::vector<WedgeValues> take() &&;
+
+ private:
+  struct Wedge {
+    std::uint32_t quadric = 0;  // in Layer::quadrics
+    bool is_pinned = false;     // a triangle has it at all three corners: it does not change
+  };
+  struct Layer {
+    int dimension = 1;
+    bool is_direction = false;
+    double scale = 0;  // squared grid units that one unit of error is worth
+    WedgeValues values;
+    std::vector<std::uint32_t> wedge_of_corner;  // as it is
+    std::vector<Wedge> wedges;
+    std::vector<simplification::AttributeQuadric> quadrics;
+  };
+
+  void load_wedges(const UnfoldedBlock& block, const LayerValues& values, std::size_t l,
+                   bool is_normal, Layer& layer);
+  void load_quadrics(const UnfoldedBlock& block, Layer& layer);
+  void set_scale(const UnfoldedBlock& block, const LayerSchema& schema, Layer& layer) const;
+  double contract(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
+                  std::uint32_t first, std::uint32_t second, const Vec3d& at, Layer& layer);
+  double join(std::span<const std::uint32_t> members, const Vec3d& at, Layer& layer);
+  bool keep_apart(const Layer& layer, std::uint32_t a, std::uint32_t b) const;
+
+  std::vector<Layer> layers_;
+  std::vector<std::array<Vec3d, 3>> corners_;  // per triangle, about the origin
+  double area_ = 0;                            // of all triangles
+  // Scratch of one contraction: the wedges at its vertices, and by which of them each is joined.
+  std::vector<std::uint32_t> members_, root_, group_;
+};
+
+}  // namespace crease::codec
