@@ -179,7 +179,8 @@ void AttributeRejoiner::change_to_coarse(const UnfoldedBlock& block, std::uint32
     if (goes_to[i] == kNone) {
       const std::uint32_t to = pool.intern(wanted, is_flat ? ValuePool::kFlat : block.vertices[v]);
       // What is not joined stays apart, even if its value is the same.
-      const bool is_taken = find(to) != nullptr || std::ranges::count(goes_to, to) > 0;
+      const bool is_taken =
+          find(to) != nullptr || std::count(goes_to.begin(), goes_to.end(), to) > 0;
       goes_to[i] = is_taken ? pool.add(wanted) : to;
     }
     changes.push_back(
@@ -242,7 +243,7 @@ void AttributeRejoiner::blend(std::size_t layer, double second_share,
 }
 
 bool AttributeRejoiner::are_known(const WedgeValues& wedges) const {
-  return std::ranges::all_of(at_vertex_, [&](const AtVertex& value) {
+  return std::all_of(at_vertex_.begin(), at_vertex_.end(), [&](const AtVertex& value) {
     return value.wedge != kNone && wedges.is_known[value.wedge];
   });
 }

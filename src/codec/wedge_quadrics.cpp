@@ -165,7 +165,7 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
   members_.clear();
   root_.clear();
   const auto place_of = [&](std::uint32_t wedge) {
-    const auto found = std::ranges::find(members_, wedge);
+    const auto found = std::find(members_.begin(), members_.end(), wedge);
     if (found == members_.end()) {
       members_.push_back(wedge);
       root_.push_back(static_cast<std::uint32_t>(root_.size()));
