@@ -16,6 +16,9 @@ namespace {
 constexpr double kTurnWeight = 0.9;
 // What the area of a part that disappears counts: quadrics count it at each of its three corners.
 constexpr double kPartWeight = 3;
+// Between two faces an edge is a line only where the surface really bends (30 degrees): where all
+// is flat, every edge is hard, and few are features.
+constexpr double kFlatLineCosine = 0.866;
 constexpr double kMostCost = 1e300;  // of nonsense, that a hostile block may have
 
 Vec3d real(const Vec3i& p) {
@@ -64,8 +67,8 @@ class CostEstimator {
       const Vec3d unit = n * (1 / twice_area);
       for (const std::uint32_t v : t) quadrics_[v].add(unit, -dot(unit, p[0]), 0.5 * twice_area);
     }
-    add_lines();
     find_faces();
+    add_lines();
     const double count = 3 * double(std::max<std::size_t>(1, mesh_.triangles.size()));
     turn_weight_ = kTurnWeight * edges / count;
     turn_weight_ *= turn_weight_;
@@ -205,9 +208,23 @@ class CostEstimator {
     }
   }
 
+  bool bends(std::uint32_t t, std::uint32_t u) const {
+    const Vec3d a = scaled_normal(t), b = scaled_normal(u);
+    return dot(a, b) < kFlatLineCosine * length(a) * length(b);
+  }
+
+  Vec3d scaled_normal(std::uint32_t t) const {
+    const Corners& c = mesh_.triangles[t];
+    return cross(place(c[1]) - place(c[0]), place(c[2]) - place(c[0]));
+  }
+
   bool is_smooth(const Edge& x, const Edge& y) const {
     if (mesh_.category[x.triangle] != mesh_.category[y.triangle]) return false;
     for (std::size_t l = 0; l < coding_.layers.size(); ++l) {
+      if (coding_.layers[l].is_normal && is_face_[x.triangle] && is_face_[y.triangle]) {
+        if (bends(x.triangle, y.triangle)) return false;
+        continue;
+      }
       if (coding_.layers[l].is_normal && (mesh_.derived[x.triangle] || mesh_.derived[y.triangle])) {
         continue;
       }
