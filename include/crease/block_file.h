@@ -132,7 +132,7 @@ struct BlockFileLimits {
 
 class BlockFile {
  public:
-  // Version 2 only; a file of version 1 fails with NotSupported and is for decode_crease().
+  // Version 2 only; version 1, from before the first release, fails with NotSupported.
   static Result<BlockFile> open(ByteSourcePtr source, const BlockFileLimits& limits = {});
 
   const BlockFileHead& head() const { return head_; }
