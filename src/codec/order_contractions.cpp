@@ -14,6 +14,10 @@ namespace {
 
 // What a face that turns by one radian costs beside one that moves by a mean edge length.
 constexpr double kTurnWeight = 0.9;
+// The turn counts in proportion to its chord up to this one, and to the chord's square beyond, as
+// in the simplifier: squares alone make small errors all but free.
+constexpr double kLinearChord = 0.8;
+constexpr double kRoundingChord = 0.01;  // turns below this count less: grids round
 // What the area of a part that disappears counts: quadrics count it at each of its three corners.
 constexpr double kPartWeight = 3;
 // Between two faces an edge is a line only where the surface really bends (30 degrees): where all
@@ -129,7 +133,10 @@ class CostEstimator {
     const double size = length(before), size_after = length(after);
     if (size == 0 || size_after == 0) return 0;
     const double cosine = std::clamp(dot(before, after) / (size * size_after), -1.0, 1.0);
-    return turn_weight_ * size_after * (1 - cosine);
+    const double chord2 = 2 * (1 - cosine);
+    const double weighed =
+        chord2 * std::max(1.0, kLinearChord / (std::sqrt(chord2) + kRoundingChord));
+    return 0.5 * turn_weight_ * size_after * weighed;
   }
 
   // The direction of what vanishes, unless something around it has the same.
