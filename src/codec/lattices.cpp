@@ -34,7 +34,8 @@ NumberLattice decode_lattice(ByteReader& in) {
   lattice.high = static_cast<std::int32_t>(in.u32());
   const std::uint32_t entries = in.u32();
   if (entries > in.remaining() / 4) {
-    lattice.high = lattice.low - 1;  // no lattice
+    lattice = {};
+    lattice.divisor = 0;  // no lattice
     return lattice;
   }
   for (std::uint32_t i = 0; i < entries; ++i) lattice.palette.push_back(in.f32());
