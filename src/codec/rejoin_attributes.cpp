@@ -35,6 +35,9 @@ AttributeRejoiner::AttributeRejoiner(std::span<const LayerSchema> layers,
                                      std::vector<std::vector<std::uint32_t>> of_corner)
     : layers_(layers), pools_(pools), of_corner_(std::move(of_corner)) {
   is_derived_.assign(of_corner_.empty() ? 0 : of_corner_[0].size() / 3, 0);
+  has_normals_ = std::any_of(layers.begin(), layers.end(), [](const LayerSchema& layer) {
+    return layer.role == AttributeRole::Normal;
+  });
 }
 
 std::vector<CornerChanges> AttributeRejoiner::rejoin(const UnfoldedBlock& block,
@@ -69,7 +72,8 @@ std::vector<CornerChanges> AttributeRejoiner::rejoin(const UnfoldedBlock& block,
     apply(block, patch, first, all[i].changes);
   }
   // What no contraction touches, which a file of our own does not have.
-  for (std::uint32_t t = 0; t < block.coarse_triangle_count() && !order.empty(); ++t) {
+  if (!has_normals_ || order.empty()) return all;
+  for (std::uint32_t t = 0; t < block.coarse_triangle_count(); ++t) {
     if (!block.coarse_derived[t] || is_derived_[block.triangles[t]]) continue;
     is_derived_[block.triangles[t]] = 1;
     all.back().derived.push_back(TriangleId{block.triangles[t]});
@@ -79,6 +83,7 @@ std::vector<CornerChanges> AttributeRejoiner::rejoin(const UnfoldedBlock& block,
 
 void AttributeRejoiner::derive(const UnfoldedBlock& block, const ContractingPatch& patch,
                                std::uint32_t v, std::vector<TriangleId>& derived) {
+  if (!has_normals_) return;
   for (const std::uint32_t t : patch.around(v)) {
     if (t >= block.coarse_triangle_count() || !block.coarse_derived[t]) continue;
     char& is_derived = is_derived_[block.triangles[t]];

@@ -76,7 +76,8 @@ class AttributeRejoiner {
   std::vector<ValuePool>& pools_;
   std::vector<std::vector<std::uint32_t>> of_corner_;  // per layer, 3 a triangle
   std::vector<char> is_derived_;                       // per triangle
-  std::vector<AtVertex> at_vertex_;                    // scratch
+  bool has_normals_ = false;
+  std::vector<AtVertex> at_vertex_;  // scratch
   std::vector<std::uint32_t> scratch_;
 };
 
