@@ -141,15 +141,7 @@ Json streams_json(const StreamBits& bits) {
 
 StreamBits sum_of(const std::vector<StreamBits>& all) {
   StreamBits sum;
-  for (const StreamBits& bits : all) {
-    sum.roots += bits.roots;
-    sum.flags += bits.flags;
-    sum.shapes += bits.shapes;
-    sum.positions += bits.positions;
-    sum.categories += bits.categories;
-    sum.values += bits.values;
-    sum.labels += bits.labels;
-  }
+  for (const StreamBits& bits : all) sum += bits;
   return sum;
 }
 

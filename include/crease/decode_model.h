@@ -35,6 +35,17 @@ struct StreamBits {
   double categories = 0;  // materials, parts, derived triangles
   double values = 0;      // of attributes
   double labels = 0;      // patches of the next finer band
+
+  StreamBits& operator+=(const StreamBits& other) {
+    roots += other.roots;
+    flags += other.flags;
+    shapes += other.shapes;
+    positions += other.positions;
+    categories += other.categories;
+    values += other.values;
+    labels += other.labels;
+    return *this;
+  }
 };
 
 struct DecodeOptions {

@@ -280,3 +280,4 @@ class BlockCoder {
 
 #include "codec/block_attributes.h"
 #include "codec/block_splits.h"
+#include "codec/block_values.h"

@@ -39,17 +39,6 @@ StreamBits named(const codec::StreamBits& bits) {
           of(codec::Stream::Labels)};
 }
 
-void add_up(StreamBits& sum, const codec::StreamBits& bits) {
-  const StreamBits b = named(bits);
-  sum.roots += b.roots;
-  sum.flags += b.flags;
-  sum.shapes += b.shapes;
-  sum.positions += b.positions;
-  sum.categories += b.categories;
-  sum.values += b.values;
-  sum.labels += b.labels;
-}
-
 class ModelDecoder {
  public:
   ModelDecoder(const BlockFile& file, const DecodeOptions& options)
@@ -177,7 +166,7 @@ class ModelDecoder {
     for (std::size_t i = 0; i < decoded.size(); ++i) {
       const BlockEntry& entry = chosen_[begin + i].entry;
       if (!decoded[i].ok()) return decoded[i].failure();
-      if (options_.count_bits) add_up(model_.bits[band], bits[i]);
+      if (options_.count_bits) model_.bits[band] += named(bits[i]);
       model_.blocks.push_back(entry.id);
       model_.payload_bytes += entry.bytes;
       ends.push_back(decoded[i]->end);
