@@ -22,6 +22,7 @@ inline constexpr std::uint32_t kLayerBytes = 12;  // beside the name's bytes
 inline constexpr std::uint32_t kBandBytes = 36;
 inline constexpr std::uint32_t kPageReferenceBytes = 12;
 inline constexpr std::uint8_t kMaxGridBits = 31;
+inline constexpr double kMostStepsToOrigin = 1125899906842624;  // 2^50
 
 // Names.
 inline constexpr std::uint32_t kMinMaterialBytes = 24;

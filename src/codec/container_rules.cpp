@@ -63,6 +63,11 @@ std::string broken_rule(const ModelFacts& facts) {
     return "grid: its step is not a positive number";
   }
   if (facts.grid_bits > format::kMaxGridBits) return "grid: more than 31 bits";
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(facts.grid.origin[i]) > facts.grid.step * format::kMostStepsToOrigin) {
+      return "grid: it lies too far away for doubles to tell its points apart";
+    }
+  }
   std::size_t normals = 0;
   for (std::size_t l = 0; l < facts.layers.size(); ++l) {
     const std::string where = "layer " + std::to_string(l) + ": ";

@@ -5,6 +5,7 @@
 #include "codec/unfold_blocks.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <utility>
@@ -195,6 +196,7 @@ class ModelDecoder {
         block->splits.size() != entry.facts.splits) {
       return bad(entry, "it holds other counts than it says");
     }
+    if (!is_on_grid(*block)) return bad(entry, "a vertex lies outside of the grid");
     for (std::size_t v = names; v < block->end.names.size(); ++v) {
       const codec::VertexName& name = block->end.names[v];
       if (name.block != index_of(entry.id) && !unfolder_.has(name)) {
@@ -202,6 +204,19 @@ class ModelDecoder {
       }
     }
     return block;
+  }
+
+  // As the head says: no coordinate is 2^grid_bits or more, either way.
+  bool is_on_grid(const DecodedBlock& block) const {
+    const std::int64_t limit = std::int64_t(1) << facts_.grid_bits;
+    const auto is_inside = [limit](const Vec3i& p) {
+      return std::max({std::abs(std::int64_t(p.x)), std::abs(std::int64_t(p.y)),
+                       std::abs(std::int64_t(p.z))}) < limit;
+    };
+    return std::all_of(block.end.mesh.positions.begin(), block.end.mesh.positions.end(),
+                       is_inside) &&
+           std::all_of(block.splits.begin(), block.splits.end(),
+                       [&](const codec::Split& split) { return is_inside(split.parent_position); });
   }
 
   Result<DecodedModel> finish() {

@@ -29,6 +29,11 @@ Grid make_grid(const Mesh& mesh, const Precision& precision) {
   grid.step = precision.length > 0 ? precision.length : longest / double(1 << precision.bits);
   // Grid coordinates stay within 30 bits whatever length was asked for.
   grid.step = std::max(grid.step, longest / double(1 << 30));
+  // And doubles tell its points apart however far away they are.
+  for (int i = 0; i < 3; ++i) {
+    const double away = std::max(std::abs(low[i]), std::abs(high[i]));
+    grid.step = std::max(grid.step, std::ldexp(away, -49));
+  }
   if (!(grid.step > 0)) grid.step = 1;
   for (int i = 0; i < 3; ++i) {
     grid.origin[i] = std::round((low[i] + 0.5 * size[i]) / grid.step) * grid.step;
