@@ -3,7 +3,6 @@
 #include "hierarchy/geometric_normal.h"
 
 #include <algorithm>
-#include <unordered_set>
 #include <utility>
 
 namespace crease::codec {
@@ -81,30 +80,13 @@ void ModelOfBlocks::fill_mesh(Mesh& mesh) {
   }
   of_corner_.resize(pools_.size());
   mesh.layers.resize(pools_.size());
-  for (std::size_t l = 0; l < pools_.size(); ++l) fill_layer(places, l, mesh, mesh.layers[l]);
+  const CornersAround around(mesh);
+  for (std::size_t l = 0; l < pools_.size(); ++l)
+    fill_layer(places, l, mesh, around, mesh.layers[l]);
 }
 
-namespace {
-
-// A value at a vertex, for a set of those that are flat.
-struct ValueAtVertex {
-  CodedValue code;
-  std::uint32_t vertex;
-  bool operator==(const ValueAtVertex&) const = default;
-};
-struct HashValueAtVertex {
-  std::size_t operator()(const ValueAtVertex& v) const {
-    std::uint64_t h = v.vertex;
-    for (const std::int32_t c : v.code)
-      h = (h ^ static_cast<std::uint32_t>(c)) * 0x9e3779b97f4a7c15u;
-    return static_cast<std::size_t>(h ^ h >> 32);
-  }
-};
-
-}  // namespace
-
 void ModelOfBlocks::fill_layer(std::span<const Place> places, std::size_t l, const Mesh& mesh,
-                               AttributeLayer& layer) {
+                               const CornersAround& around, AttributeLayer& layer) {
   const LayerSchema& schema = facts_.layers[l];
   layer.name = schema.name;
   layer.role = schema.role;
@@ -119,27 +101,33 @@ void ModelOfBlocks::fill_layer(std::span<const Place> places, std::size_t l, con
     return schema.role == AttributeRole::Normal &&
            blocks_[places[t].block].end.derived[places[t].triangle] != 0;
   };
-  std::unordered_set<ValueAtVertex, HashValueAtVertex> flat;
+  const auto value_of = [&](std::uint32_t corner) { return values_of(corner / 3)[corner % 3]; };
+  const auto vertex_of = [&](std::uint32_t corner) {
+    return static_cast<std::uint32_t>(index_of(mesh.triangles[corner / 3][corner % 3]));
+  };
+  std::vector<char> is_flat(3 * std::size_t(triangle_count_), 0);  // per corner
   for (std::size_t t = 0; t < triangle_count_; ++t) {
     const CodedValue* values = values_of(t);
     if (is_derived(t) || values[0] != values[1] || values[1] != values[2]) continue;
-    for (const VertexId v : mesh.triangles[t]) {
-      flat.insert({values[0], static_cast<std::uint32_t>(index_of(v))});
+    std::fill_n(is_flat.begin() + 3 * std::ptrdiff_t(t), 3, 1);
+  }
+  for (std::uint32_t v = 0; v < slot_count_; ++v) {
+    const std::span<const std::uint32_t> corners = around.of(v);
+    for (const std::uint32_t corner : corners) {
+      if (is_flat[corner] != 1) continue;
+      for (const std::uint32_t other : corners) {
+        // 2: as flat as that one, and no need to look around it again.
+        if (!is_derived(other / 3) && value_of(other) == value_of(corner)) is_flat[other] = 2;
+      }
     }
   }
   std::vector<std::uint32_t>& of_corner = of_corner_[l];
-  of_corner.reserve(3 * std::size_t(triangle_count_));
-  for (std::size_t t = 0; t < triangle_count_; ++t) {
-    const CodedValue* values = values_of(t);
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (is_derived(t)) {
-        of_corner.push_back(geometric_value(mesh.triangles[t], pool));
-        continue;
-      }
-      const auto v = static_cast<std::uint32_t>(index_of(mesh.triangles[t][c]));
-      of_corner.push_back(
-          pool.intern(values[c], flat.contains({values[c], v}) ? ValuePool::kFlat : v));
-    }
+  of_corner.reserve(is_flat.size());
+  for (std::uint32_t corner = 0; corner < is_flat.size(); ++corner) {
+    of_corner.push_back(is_derived(corner / 3)
+                            ? geometric_value(mesh.triangles[corner / 3], pool)
+                            : pool.intern(value_of(corner),
+                                          is_flat[corner] ? ValuePool::kFlat : vertex_of(corner)));
   }
   layer.values = pool.numbers();
   for (const std::uint32_t id : of_corner) layer.of_corner.push_back(AttributeId{id});

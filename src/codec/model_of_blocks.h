@@ -6,6 +6,7 @@
 #include "codec/unfold_blocks.h"
 #include "codec/value_pool.h"
 #include "crease/decode_model.h"
+#include "mesh/corners_around.h"
 
 #include <span>
 #include <vector>
@@ -27,7 +28,7 @@ class ModelOfBlocks {
   };
   void fill_mesh(Mesh& mesh);
   void fill_layer(std::span<const Place> places, std::size_t l, const Mesh& mesh,
-                  AttributeLayer& layer);
+                  const CornersAround& around, AttributeLayer& layer);
   void fill_sequence(ContractionSequence& sequence);
   void contract_band(std::span<const UnfoldedBlock> blocks, AttributeRejoiner& rejoiner,
                      ContractionSequence& sequence);
