@@ -8,6 +8,7 @@
 // predict_position.h.
 #pragma once
 
+#include "codec/coded_numbers.h"
 #include "codec/known_bit.h"
 
 #include <algorithm>
@@ -40,11 +41,15 @@ class LikelyComponents {
       center_[count_] = axis.center[k];
       inverse_scale_[count_] = axis.inverse_scale[k];
       all_ += axis.weight[k];
+      steepest_ = std::max(steepest_, axis.inverse_scale[k]);
       ++count_;
     }
   }
 
   double all() const { return all_; }  // the weight of these
+  // Within so much of each other all places are about as likely: what telling them apart by odds
+  // would save is not worth its time.
+  double even_width() const { return kEvenWidth / steepest_; }
 
   // Each one's distribution function at x, from -1 to 1, and the weighed sum.
   double at(double x, PerComponent& each) const {
@@ -66,9 +71,10 @@ class LikelyComponents {
 
  private:
   static constexpr double kLeastShare = 1.0 / 1024;
+  static constexpr double kEvenWidth = 0.25;  // of the smallest scale
 
   std::size_t count_ = 0;
-  double all_ = 0;
+  double all_ = 0, steepest_ = 0;
   std::array<std::size_t, kComponents> of_;
   PerComponent weight_, center_, inverse_scale_;
 };
@@ -111,7 +117,8 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, d
       if (coder.bit(is_here, low <= away && away < high)) break;
     }
   }
-  while (high - low > 1) {
+  const double even_width = std::max(likely.even_width(), 1.0);
+  while (static_cast<double>(high - low) > even_width) {
     const std::int64_t middle = (low + high) / 2;
     const double there = at(middle, each_middle);
     KnownBit is_upper(above - there, above - below);
@@ -122,6 +129,8 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, d
     }
   }
   mixture.weight = likely.after(each_low, each_high);
+  low += code_index(coder, static_cast<std::uint32_t>(high - low),
+                    static_cast<std::uint32_t>(away - low));
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(start) +
                                    static_cast<std::uint32_t>(low));
 }
