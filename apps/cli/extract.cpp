@@ -40,8 +40,8 @@ Json asked_json(const ExtractArguments& options) {
 }
 
 // Why the level is not what was asked for.
-std::string shortfall_of(const Chosen& chosen, const ProgressiveMesh& mesh) {
-  const std::string count = grouped(mesh.triangle_count());
+std::string shortfall_of(const Chosen& chosen, std::size_t triangles) {
+  const std::string count = grouped(triangles);
   if (chosen.stopped_by == StoppedBy::Topology) {
     return "target not met: the coarsest level has " + count + " triangles";
   }
@@ -81,7 +81,7 @@ Json read_json(const ModelFile& file, const Model& model) {
 
 Result<Comparison> measure(const ModelFile& file, const Mesh& level, const LevelOptions& options,
                            const Common& common) {
-  const Result<Model> all = file.load();
+  const Result<Model> all = file.load({.is_mesh_only = true});
   if (!all.ok()) return all.failure();
   CompareOptions compare;
   compare.samples = options.samples;
@@ -91,28 +91,55 @@ Result<Comparison> measure(const ModelFile& file, const Mesh& level, const Level
   return measured;
 }
 
-// Reads the blocks of the level. To measure what it is off by takes all of them.
+struct ExtractedLevel {
+  Model model;  // what was read; its mesh has moved into the level where that is all of it
+  Mesh mesh;
+  Chosen chosen;
+  LevelError error;
+};
+
+// Reads the blocks of the level.
+Result<ExtractedLevel> extract_level(const ExtractArguments& options, const ModelFile& file,
+                                     const Common& common) {
+  LevelOptions asked = options.level;
+  asked.triangles = triangles_wanted(options, file.triangle_count());
+  asked.ratio = std::nullopt;
+  const bool is_full =
+      !asked.error && asked.triangles.value_or(file.triangle_count()) >= file.triangle_count();
+  Result<Model> model = file.load({.triangles = asked.triangles, .is_mesh_only = is_full});
+  if (!model.ok()) return model.failure();
+  ExtractedLevel level;
+  if (is_full) {
+    level.mesh = std::move(model->decoded.mesh);
+    level.chosen.stopped_by = StoppedBy::Triangles;
+  } else {
+    ProgressiveMesh mesh = model->levels();
+    const Mesh full = asked.error ? mesh.extract() : Mesh{};
+    Result<Chosen> chosen = choose_level(mesh, full, asked, common);
+    if (!chosen.ok()) return chosen.failure();
+    level.chosen = *chosen;
+    level.mesh = mesh.extract();
+    level.error = mesh.error();
+  }
+  level.error = largest(level.error, model->decoded.error);
+  level.model = *std::move(model);
+  return level;
+}
+
+// To measure what the level is off by takes all blocks.
 Result<Report> extract_one(const ExtractArguments& options, const ModelFile& file,
                            const Common& common) {
-  const bool measures = options.level.samples > 0;
-  LevelOptions level_options = options.level;
-  level_options.triangles = triangles_wanted(options, file.triangle_count());
-  level_options.ratio = std::nullopt;
-  const Result<Model> model = file.load({.triangles = level_options.triangles});
-  if (!model.ok()) return model.failure();
-  ProgressiveMesh mesh = model->levels();
-  const Mesh full = level_options.error ? mesh.extract() : Mesh{};
-  Result<Chosen> chosen = choose_level(mesh, full, level_options, common);
-  if (!chosen.ok()) return chosen.failure();
-
-  const Mesh level = mesh.extract();
+  Result<ExtractedLevel> extracted = extract_level(options, file, common);
+  if (!extracted.ok()) return extracted.failure();
+  const Mesh& level = extracted->mesh;
+  Chosen& chosen = extracted->chosen;
   if (interrupted()) return interrupted_failure();
-  if (measures && !chosen->measured) {
-    Result<Comparison> measured = measure(file, level, options.level, common);
+  if (options.level.samples > 0 && !chosen.measured) {
+    const Result<Comparison> measured = measure(file, level, options.level, common);
     if (!measured.ok()) return measured.failure();
-    chosen->measured = *measured;
+    chosen.measured = *measured;
   }
-  const bool refused = options.strict && !chosen->target_met;
+  const bool refused = options.strict && !chosen.target_met;
   if (!refused) {
     const Status written = export_mesh(level, options.output);
     if (!written.ok()) return written.failure();
@@ -124,21 +151,22 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
       {"output", refused ? Json(nullptr) : Json(options.output.string())},
       {"triangles", level.triangle_count()},
       {"vertices", level.vertex_count()},
-      {"stopped_by", name_of(chosen->stopped_by)},
-      {"target_met", chosen->target_met},
-      {"error", to_json(largest(mesh.error(), model->decoded.error))},
-      {"error_measured", chosen->measured ? measured_json(*chosen->measured) : Json(nullptr)}};
-  report.json.update(read_json(file, *model));
+      {"stopped_by", name_of(chosen.stopped_by)},
+      {"target_met", chosen.target_met},
+      {"error", to_json(extracted->error)},
+      {"error_measured", chosen.measured ? measured_json(*chosen.measured) : Json(nullptr)}};
+  report.json.update(read_json(file, extracted->model));
   report.text = options.output.string() + ": " + grouped(level.triangle_count()) + " of " +
                 grouped(file.triangle_count()) + " triangles, stopped by " +
-                name_of(chosen->stopped_by) + in_words(chosen->measured);
-  if (!chosen->target_met) {
+                name_of(chosen.stopped_by) + in_words(chosen.measured);
+  if (!chosen.target_met) {
     if (refused) {
       report.text.clear();
       report.short_of = Error::TargetNotMet;
-      report.shortfall = shortfall_of(*chosen, mesh) + "; nothing was written (--strict)";
+      report.shortfall =
+          shortfall_of(chosen, level.triangle_count()) + "; nothing was written (--strict)";
     } else {
-      log(common, shortfall_of(*chosen, mesh));
+      log(common, shortfall_of(chosen, level.triangle_count()));
     }
   }
   return report;

@@ -168,7 +168,11 @@ std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles) {
 Result<Model> ModelFile::load(const Detail& detail) const {
   DecodeOptions options = decode_options(*common_);
   const ModelFacts& facts = blocks_.facts();
-  if (detail.triangles) options.finest_band = finest_band_for(facts, *detail.triangles);
+  if (detail.triangles) {
+    options.finest_band = finest_band_for(facts, *detail.triangles);
+    options.contracted_bands = 1;
+  }
+  if (detail.is_mesh_only) options.contracted_bands = 0;
   ViewParameters view;
   if (detail.view) {
     view.camera = *detail.view;
@@ -211,7 +215,7 @@ Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& opt
   if (is_crease_file(path)) {
     const Result<ModelFile> file = open_model(path, options, common);
     if (!file.ok()) return file.failure();
-    Result<Model> model = file->load();
+    Result<Model> model = file->load({.is_mesh_only = true});
     if (!model.ok()) return model.failure();
     return std::move(model->decoded.mesh);
   }

@@ -50,6 +50,9 @@ struct StreamBits {
 
 struct DecodeOptions {
   std::uint16_t finest_band = 0;  // finer ones are left out
+  // How many of the finest bands that are decoded get their contractions. A level of such a model
+  // is looked for in these; 0: the mesh alone, and no sequence.
+  std::uint16_t contracted_bands = 0xffff;
   // Blocks that it wants are decoded, and all that those need. Empty: wants all.
   std::function<bool(const BlockEntry&)> wants{};
   // Calls body(i) for every i < count, in any order and on any threads. Empty: one after the other.

@@ -40,10 +40,17 @@ StreamBits named(const codec::StreamBits& bits) {
           of(codec::Stream::Labels)};
 }
 
+void one_after_the_other(std::size_t count, const std::function<void(std::size_t)>& body) {
+  for (std::size_t i = 0; i < count; ++i) body(i);
+}
+
 class ModelDecoder {
  public:
   ModelDecoder(const BlockFile& file, const DecodeOptions& options)
-      : file_(file), options_(options), facts_(file.facts()) {}
+      : file_(file),
+        options_(options),
+        facts_(file.facts()),
+        for_each_(options.for_each ? options.for_each : one_after_the_other) {}
 
   Result<DecodedModel> run() {
     if (Status status = read_schema(); !status.ok()) return status.failure();
@@ -156,11 +163,7 @@ class ModelDecoder {
       unfolded[i].sources = std::move(start.sources);
       decoded[i] = decode_one(entry, std::move(start), options_.count_bits ? &bits[i] : nullptr);
     };
-    if (options_.for_each) {
-      options_.for_each(decoded.size(), decode);
-    } else {
-      for (std::size_t i = 0; i < decoded.size(); ++i) decode(i);
-    }
+    for_each_(decoded.size(), decode);
 
     const std::uint32_t first = static_cast<std::uint32_t>(unfolder_.blocks().size());
     std::vector<FineEnd> ends;
@@ -222,7 +225,8 @@ class ModelDecoder {
   Result<DecodedModel> finish() {
     ends_.clear();
     model_.sequence.grid = facts_.grid;
-    codec::ModelOfBlocks(facts_, codings_, coding_, unfolder_).fill(model_);
+    codec::ModelOfBlocks(facts_, codings_, coding_, unfolder_)
+        .fill(model_, options_.contracted_bands, for_each_);
     if (Status status = check_mesh(model_.mesh); !status.ok()) {
       return fail(Error::BadFormat, "decoded mesh: " + status.failure().message);
     }
@@ -232,6 +236,7 @@ class ModelDecoder {
   const BlockFile& file_;
   const DecodeOptions& options_;
   const ModelFacts& facts_;
+  const codec::ForEach for_each_;
   std::vector<LayerCoding> codings_;
   codec::BlockCoding coding_;
   std::vector<Chosen> chosen_;

@@ -37,10 +37,11 @@ ModelOfBlocks::ModelOfBlocks(const ModelFacts& facts, std::span<const LayerCodin
   }
 }
 
-void ModelOfBlocks::fill(DecodedModel& model) {
+void ModelOfBlocks::fill(DecodedModel& model, std::size_t contracted_bands,
+                         const ForEach& for_each) {
   fill_mesh(model.mesh);
   for (const LevelError& error : error_of_slot_) model.error = largest(model.error, error);
-  fill_sequence(model.sequence);
+  fill_sequence(model.sequence, contracted_bands, for_each);
   for (std::size_t l = 0; l < pools_.size(); ++l) {
     const std::vector<float>& all = pools_[l].numbers();
     const std::vector<float>& own = model.mesh.layers[l].values;
@@ -140,12 +141,15 @@ std::uint32_t ModelOfBlocks::geometric_value(const Triangle& triangle, ValuePool
   return pool.intern_direction(n == Vec3f{} ? Vec3f{0, 0, 1} : n);  // without area: any
 }
 
-void ModelOfBlocks::fill_sequence(ContractionSequence& sequence) {
-  AttributeRejoiner rejoiner(facts_.layers, pools_, of_corner_);
+void ModelOfBlocks::fill_sequence(ContractionSequence& sequence, std::size_t contracted_bands,
+                                  const ForEach& for_each) {
   sequence.placement = Placement::Endpoint;
+  if (contracted_bands == 0) return;
+  AttributeRejoiner rejoiner(facts_.layers, pools_, std::move(of_corner_));
   for (std::size_t end = blocks_.size(), begin = end; end > 0; end = begin) {
     while (begin > 0 && blocks_[begin - 1].band == blocks_[end - 1].band) --begin;
-    contract_band(blocks_.subspan(begin, end - begin), rejoiner, sequence);
+    contract_band(blocks_.subspan(begin, end - begin), rejoiner, for_each, sequence);
+    if (--contracted_bands == 0) return;
   }
 }
 
@@ -157,11 +161,16 @@ struct ModelOfBlocks::Pending {
 
 // The blocks of a band touch no vertex of each other's, so their contractions mix by cost.
 void ModelOfBlocks::contract_band(std::span<const UnfoldedBlock> blocks,
-                                  AttributeRejoiner& rejoiner, ContractionSequence& sequence) {
+                                  AttributeRejoiner& rejoiner, const ForEach& for_each,
+                                  ContractionSequence& sequence) {
+  std::vector<ContractionOrder> orders(blocks.size());
+  for_each(blocks.size(), [&](std::size_t b) {
+    orders[b] = order_contractions(blocks[b], coding_, facts_.layers, values_);
+  });
   std::vector<std::vector<CornerChanges>> changes(blocks.size());
   std::vector<Pending> all;
   for (std::uint32_t b = 0; b < blocks.size(); ++b) {
-    ContractionOrder order = order_contractions(blocks[b], coding_, facts_.layers, values_);
+    ContractionOrder& order = orders[b];
     changes[b] = rejoiner.rejoin(blocks[b], order.contractions, std::move(order.wedges));
     changes[b].resize(order.contractions.size());
     for (std::size_t i = 0; i < order.contractions.size(); ++i) {

@@ -8,18 +8,23 @@
 #include "crease/decode_model.h"
 #include "mesh/corners_around.h"
 
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
 namespace crease::codec {
+
+using ForEach = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
 
 class ModelOfBlocks {
  public:
   ModelOfBlocks(const ModelFacts& facts, std::span<const LayerCoding> codings,
                 const BlockCoding& coding, const BlockUnfolder& unfolder);
 
-  // The mesh but for its names, and the sequence but for its grid.
-  void fill(DecodedModel& model);
+  // The mesh but for its names, and the sequence but for its grid: the contractions of as many of
+  // the finest bands. Order and cost of each block's are worked out by `for_each`.
+  void fill(DecodedModel& model, std::size_t contracted_bands, const ForEach& for_each);
 
  private:
   struct Pending;  // a contraction of the present band
@@ -29,9 +34,10 @@ class ModelOfBlocks {
   void fill_mesh(Mesh& mesh);
   void fill_layer(std::span<const Place> places, std::size_t l, const Mesh& mesh,
                   const CornersAround& around, AttributeLayer& layer);
-  void fill_sequence(ContractionSequence& sequence);
+  void fill_sequence(ContractionSequence& sequence, std::size_t contracted_bands,
+                     const ForEach& for_each);
   void contract_band(std::span<const UnfoldedBlock> blocks, AttributeRejoiner& rejoiner,
-                     ContractionSequence& sequence);
+                     const ForEach& for_each, ContractionSequence& sequence);
   void append(const UnfoldedBlock& block, const OrderedContraction& contraction,
               CornerChanges& changes, float share, ContractionSequence& sequence);
   std::uint32_t geometric_value(const Triangle& triangle, ValuePool& pool) const;
