@@ -1,11 +1,9 @@
 #include "crease/decode_model.h"
 
-#include "codec/lattices.h"
 #include "codec/model_of_blocks.h"
+#include "codec/model_schema.h"
 #include "codec/unfold_blocks.h"
 
-#include <algorithm>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +12,7 @@ namespace crease {
 
 namespace {
 
+using codec::bad_block;
 using codec::BlockUnfolder;
 using codec::CoarseEnd;
 using codec::DecodedBlock;
@@ -24,14 +23,6 @@ struct Chosen {
   BlockEntry entry;
   std::vector<BlockId> dependencies;
 };
-
-std::string name_of(const BlockEntry& entry) {
-  return "block " + std::to_string(index_of(entry.id));
-}
-
-Failure bad(const BlockEntry& entry, const char* what) {
-  return fail(Error::BadFormat, name_of(entry) + ": " + what);
-}
 
 StreamBits named(const codec::StreamBits& bits) {
   const auto of = [&bits](codec::Stream stream) { return bits[std::size_t(stream)]; };
@@ -53,7 +44,9 @@ class ModelDecoder {
         for_each_(options.for_each ? options.for_each : one_after_the_other) {}
 
   Result<DecodedModel> run() {
-    if (Status status = read_schema(); !status.ok()) return status.failure();
+    Result<codec::ModelSchema> schema = codec::read_schema(file_);
+    if (!schema.ok()) return schema.failure();
+    schema_ = *std::move(schema);
     if (Status status = choose_blocks(); !status.ok()) return status.failure();
     if (options_.count_bits) model_.bits.resize(facts_.bands.size() + 1);
     // chosen_ goes from the base to the finest band, as the file does.
@@ -66,23 +59,6 @@ class ModelDecoder {
   }
 
  private:
-  Status read_schema() {
-    Result<std::vector<std::byte>> tables = file_.read_tables();
-    if (!tables.ok()) return tables.failure();
-    Result<std::vector<LayerCoding>> codings = decode_codings(facts_.layers, *tables);
-    if (!codings.ok()) return codings.failure();
-    codings_ = *std::move(codings);
-    Result<std::vector<Material>> materials = file_.read_materials();
-    if (!materials.ok()) return materials.failure();
-    model_.mesh.materials = *std::move(materials);
-    Result<std::vector<std::string>> parts = file_.read_parts();
-    if (!parts.ok()) return parts.failure();
-    model_.mesh.parts = *std::move(parts);
-    coding_ = block_coding(facts_.layers, codings_, model_.mesh.materials.size(),
-                           model_.mesh.parts.size());
-    return Done{};
-  }
-
   // What is wanted and what that needs. What the entries promise is checked here, so that nothing
   // is decoded in vain.
   Status choose_blocks() {
@@ -102,11 +78,12 @@ class ModelDecoder {
       const BlockFacts& facts = all[i].entry.facts;
       if (codec::decoded_bytes({facts.vertices, facts.triangles_fine}, facts_.layers.size()) >
           facts.decoded_bytes) {
-        return bad(all[i].entry, "it takes more memory than it says");
+        return bad_block(all[i].entry.id, "it takes more memory than it says");
       }
       bytes += facts.decoded_bytes;
       if (bytes > options_.max_bytes) {
-        return fail(Error::OverLimit, name_of(all[i].entry) + ": decoded blocks take more than " +
+        return fail(Error::OverLimit, "block " + std::to_string(i) +
+                                          ": decoded blocks take more than " +
                                           std::to_string(options_.max_bytes) + " bytes");
       }
       chosen_.push_back(std::move(all[i]));
@@ -124,9 +101,11 @@ class ModelDecoder {
       if (!page.ok()) return page.failure();
       for (const BlockEntry& entry : page->blocks) {
         const BlockFacts& facts = entry.facts;
-        if (facts.band > band_before) return bad(entry, "it is not behind the coarser ones");
+        if (facts.band > band_before)
+          return bad_block(entry.id, "it is not behind the coarser ones");
         band_before = facts.band;
-        if (facts.patch != blocks_of_band[facts.band]++) return bad(entry, "not the next patch");
+        if (facts.patch != blocks_of_band[facts.band]++)
+          return bad_block(entry.id, "not the next patch");
         if (facts.band < options_.finest_band) return check_counts(blocks_of_band);
         const std::span<const BlockId> needed = page->dependencies_of(entry.id);
         all.push_back({entry, {needed.begin(), needed.end()}});
@@ -184,49 +163,24 @@ class ModelDecoder {
 
   Result<DecodedBlock> decode_one(const BlockEntry& entry, CoarseEnd start,
                                   codec::StreamBits* bits) const {
-    if (start.mesh.triangles.size() != entry.facts.triangles_coarse) {
-      return bad(entry, "it starts from other triangles than it says");
-    }
     const Result<std::vector<std::byte>> payload = file_.read_block(entry);
     if (!payload.ok()) return payload.failure();
     const std::size_t names = start.names.size();
-    Result<DecodedBlock> block = codec::decode_block(
-        *payload, static_cast<std::uint32_t>(index_of(entry.id)), coding_,
-        {entry.facts.vertices, entry.facts.triangles_fine}, std::move(start), bits);
+    Result<DecodedBlock> block =
+        codec::decode_block_of(schema_, entry, *payload, std::move(start), bits);
     if (!block.ok()) return block.failure();
-    if (block->end.mesh.positions.size() != entry.facts.vertices ||
-        block->end.mesh.triangles.size() != entry.facts.triangles_fine ||
-        block->splits.size() != entry.facts.splits) {
-      return bad(entry, "it holds other counts than it says");
-    }
-    if (!is_on_grid(*block)) return bad(entry, "a vertex lies outside of the grid");
     for (std::size_t v = names; v < block->end.names.size(); ++v) {
       const codec::VertexName& name = block->end.names[v];
       if (name.block != index_of(entry.id) && !unfolder_.has(name)) {
-        return bad(entry, "it names a vertex that no coarser block has");
+        return bad_block(entry.id, "it names a vertex that no coarser block has");
       }
     }
     return block;
   }
 
-  // As the head says: no coordinate is 2^grid_bits or more, either way.
-  bool is_on_grid(const DecodedBlock& block) const {
-    const std::int64_t limit = std::int64_t(1) << facts_.grid_bits;
-    const auto is_inside = [limit](const Vec3i& p) {
-      return std::max({std::abs(std::int64_t(p.x)), std::abs(std::int64_t(p.y)),
-                       std::abs(std::int64_t(p.z))}) < limit;
-    };
-    return std::all_of(block.end.mesh.positions.begin(), block.end.mesh.positions.end(),
-                       is_inside) &&
-           std::all_of(block.splits.begin(), block.splits.end(),
-                       [&](const codec::Split& split) { return is_inside(split.parent_position); });
-  }
-
   Result<DecodedModel> finish() {
     ends_.clear();
-    model_.sequence.grid = facts_.grid;
-    codec::ModelOfBlocks(facts_, codings_, coding_, unfolder_)
-        .fill(model_, options_.contracted_bands, for_each_);
+    codec::ModelOfBlocks(schema_, unfolder_).fill(model_, options_.contracted_bands, for_each_);
     if (Status status = check_mesh(model_.mesh); !status.ok()) {
       return fail(Error::BadFormat, "decoded mesh: " + status.failure().message);
     }
@@ -237,8 +191,7 @@ class ModelDecoder {
   const DecodeOptions& options_;
   const ModelFacts& facts_;
   const codec::ForEach for_each_;
-  std::vector<LayerCoding> codings_;
-  codec::BlockCoding coding_;
+  codec::ModelSchema schema_;
   std::vector<Chosen> chosen_;
   std::vector<FineEnd> ends_;    // of the band before
   std::uint32_t first_end_ = 0;  // its first block, in the unfolder
