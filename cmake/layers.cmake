@@ -32,7 +32,7 @@ set(CREASE_HEADERS_simplify  simplify.h)
 set(CREASE_HEADERS_codec     file.h byte_source.h block_file.h decode_model.h)
 set(CREASE_HEADERS_pipeline  attribute_precision.h build.h)
 set(CREASE_HEADERS_runtime   camera.h draw_list.h draw_changes.h progressive_mesh.h
-                           adaptive_mesh.h block_view.h)
+                           adaptive_mesh.h block_view.h block_mesh.h)
 set(CREASE_HEADERS_render    render.h)
 
 # What goes into crease_runtime. These are compiled without exceptions and RTTI and need no library.

@@ -66,12 +66,6 @@ std::optional<std::size_t> triangles_wanted(const ExtractArguments& options, std
       1, static_cast<std::size_t>(std::llround(*level.ratio * static_cast<double>(full))));
 }
 
-// Of what was decoded, and of the finest mesh that it goes down to.
-LevelError largest(const LevelError& a, const LevelError& b) {
-  return {std::max(a.surface, b.surface), std::max(a.line, b.line), std::max(a.degrees, b.degrees),
-          std::max(a.texture, b.texture)};
-}
-
 Json read_json(const ModelFile& file, const Model& model) {
   return {{"full_triangles", file.triangle_count()},
           {"bytes_read", model.bytes_read},
@@ -121,7 +115,7 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
     level.mesh = mesh.extract();
     level.error = mesh.error();
   }
-  level.error = largest(level.error, model->decoded.error);
+  level.error = larger(level.error, model->decoded.error);
   level.model = *std::move(model);
   return level;
 }
@@ -199,7 +193,7 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
                  {"full_triangles", file.triangle_count()},
                  {"stopped_by", "view"},
                  {"target_met", true},
-                 {"error", to_json(largest(model->mesh.error(), model->error))},
+                 {"error", to_json(larger(model->mesh.error(), model->error))},
                  {"error_measured", measured ? measured_json(*measured) : Json(nullptr)},
                  {"bytes_read", model->bytes_read},
                  {"blocks_read", model->blocks_read},

@@ -33,6 +33,13 @@ struct LevelError {
   float texture = 0;  // texture coordinates' displacement, texture units
 };
 
+// The larger of each.
+constexpr LevelError larger(const LevelError& a, const LevelError& b) {
+  const auto more = [](float x, float y) { return x > y ? x : y; };
+  return {more(a.surface, b.surface), more(a.line, b.line), more(a.degrees, b.degrees),
+          more(a.texture, b.texture)};
+}
+
 // Where v_s may stand.
 enum class Placement : std::uint8_t {
   Endpoint,  // at p or at q; the PM stores one bit (DB03 swapVectors), attributes are inherited

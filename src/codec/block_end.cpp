@@ -14,26 +14,21 @@ struct HashName {
   }
 };
 
-}  // namespace
+// Makes the mesh of start.sources.
+class CoarseEndMaker {
+ public:
+  explicit CoarseEndMaker(std::span<const FineEnd* const> ends) : ends_(ends) {}
 
-std::vector<CoarseEnd> sort_by_label(std::span<const FineEnd> ends, std::uint32_t patch_count) {
-  std::vector<CoarseEnd> starts(patch_count);
-  for (std::uint32_t e = 0; e < ends.size(); ++e) {
-    for (std::uint32_t t = 0; t < ends[e].labels.size(); ++t) {
-      if (ends[e].labels[t] < patch_count) starts[ends[e].labels[t]].sources.push_back({e, t});
-    }
-  }
-  std::unordered_map<VertexName, std::uint32_t, HashName> local;
-  for (CoarseEnd& start : starts) {
-    local.clear();
+  void fill(CoarseEnd& start) {
+    local_.clear();
     PatchMesh& mesh = start.mesh;
-    if (!ends.empty()) mesh.values.resize(ends[0].mesh.values.size());
+    if (!ends_.empty()) mesh.values.resize(ends_[0]->mesh.values.size());
     for (const TriangleSource& source : start.sources) {
-      const FineEnd& end = ends[source.end];
+      const FineEnd& end = *ends_[source.end];
       Corners corners = end.mesh.triangles[source.triangle];
       for (std::uint32_t& v : corners) {
         const auto [at, is_new] =
-            local.try_emplace(end.names[v], static_cast<std::uint32_t>(mesh.positions.size()));
+            local_.try_emplace(end.names[v], static_cast<std::uint32_t>(mesh.positions.size()));
         if (is_new) {
           mesh.positions.push_back(end.mesh.positions[v]);
           start.names.push_back(end.names[v]);
@@ -49,7 +44,37 @@ std::vector<CoarseEnd> sort_by_label(std::span<const FineEnd> ends, std::uint32_
       }
     }
   }
+
+ private:
+  std::span<const FineEnd* const> ends_;
+  std::unordered_map<VertexName, std::uint32_t, HashName> local_;
+};
+
+}  // namespace
+
+std::vector<CoarseEnd> sort_by_label(std::span<const FineEnd> ends, std::uint32_t patch_count) {
+  std::vector<CoarseEnd> starts(patch_count);
+  std::vector<const FineEnd*> pointers;
+  for (std::uint32_t e = 0; e < ends.size(); ++e) {
+    pointers.push_back(&ends[e]);
+    for (std::uint32_t t = 0; t < ends[e].labels.size(); ++t) {
+      if (ends[e].labels[t] < patch_count) starts[ends[e].labels[t]].sources.push_back({e, t});
+    }
+  }
+  CoarseEndMaker maker(pointers);
+  for (CoarseEnd& start : starts) maker.fill(start);
   return starts;
+}
+
+CoarseEnd coarse_end_of(std::span<const FineEnd* const> ends, std::uint32_t label) {
+  CoarseEnd start;
+  for (std::uint32_t e = 0; e < ends.size(); ++e) {
+    for (std::uint32_t t = 0; t < ends[e]->labels.size(); ++t) {
+      if (ends[e]->labels[t] == label) start.sources.push_back({e, t});
+    }
+  }
+  CoarseEndMaker(ends).fill(start);
+  return start;
 }
 
 }  // namespace crease::codec

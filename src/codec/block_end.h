@@ -39,4 +39,8 @@ struct FineEnd {
 // `patch_count` are left out. Time linear.
 std::vector<CoarseEnd> sort_by_label(std::span<const FineEnd> ends, std::uint32_t patch_count);
 
+// What patch `label` alone starts from. `ends`: those of the band before that have triangles of it,
+// in the file's order; `sources` count among them.
+CoarseEnd coarse_end_of(std::span<const FineEnd* const> ends, std::uint32_t label);
+
 }  // namespace crease::codec

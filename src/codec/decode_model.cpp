@@ -4,6 +4,7 @@
 #include "codec/model_schema.h"
 #include "codec/unfold_blocks.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -72,6 +73,7 @@ class ModelDecoder {
       is_needed[i] = 1;
       for (const BlockId id : all[i].dependencies) is_needed[index_of(id)] = 1;
     }
+    add_error(all, is_needed);
     std::uint64_t bytes = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!is_needed[i]) continue;
@@ -89,6 +91,23 @@ class ModelDecoder {
       chosen_.push_back(std::move(all[i]));
     }
     return Done{};
+  }
+
+  // What the blocks that would go on from those decoded say of their coarse ends.
+  void add_error(const std::vector<Chosen>& all, const std::vector<char>& is_needed) {
+    if (options_.finest_band > 0 && !facts_.bands.empty()) {
+      const std::size_t finer = std::min<std::size_t>(options_.finest_band, facts_.bands.size());
+      model_.error = facts_.bands[finer - 1].error;
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::vector<BlockId>& needed = all[i].dependencies;
+      const bool goes_on =
+          needed.empty() || std::any_of(needed.begin(), needed.end(),
+                                        [&](BlockId id) { return is_needed[index_of(id)] != 0; });
+      if (!is_needed[i] && goes_on) {
+        model_.error = larger(model_.error, all[i].entry.facts.coarse);
+      }
+    }
   }
 
   // The entries of all blocks down to the finest band, which are the first ones.

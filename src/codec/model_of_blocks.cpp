@@ -7,11 +7,6 @@ namespace crease::codec {
 
 namespace {
 
-LevelError largest(const LevelError& a, const LevelError& b) {
-  return {std::max(a.surface, b.surface), std::max(a.line, b.line), std::max(a.degrees, b.degrees),
-          std::max(a.texture, b.texture)};
-}
-
 // Between those at the two ends of a block.
 LevelError between(const LevelError& fine, const LevelError& coarse, float share) {
   const auto mix = [share](float a, float b) { return a + (b - a) * share; };
@@ -31,7 +26,6 @@ ModelOfBlocks::ModelOfBlocks(const ModelSchema& schema, const BlockUnfolder& unf
 void ModelOfBlocks::fill(DecodedModel& model, std::size_t contracted_bands,
                          const ForEach& for_each) {
   fill_mesh(model.mesh);
-  for (const LevelError& error : error_of_slot_) model.error = largest(model.error, error);
   model.sequence.grid = schema_.facts.grid;
   fill_sequence(model.mesh, contracted_bands, for_each, model.sequence);
   for (std::size_t l = 0; l < layers_.pools().size(); ++l) {
@@ -122,8 +116,8 @@ void ModelOfBlocks::append(const UnfoldedBlock& block, const OrderedContraction&
   c.removed = VertexId{block.vertices[block.second_child(contraction.split)]};
   c.position = split.parent_position;
   LevelError& error = error_of_slot_[index_of(c.kept)];
-  error = largest(largest(error, error_of_slot_[index_of(c.removed)]),
-                  between(block.fine, block.coarse, share));
+  error = larger(larger(error, error_of_slot_[index_of(c.removed)]),
+                 between(block.fine, block.coarse, share));
   c.error = error;
   Vec3i& kept = positions_[index_of(c.kept)];
   if (c.position != kept && c.position != positions_[index_of(c.removed)]) {

@@ -1,0 +1,154 @@
+// A mesh that is fine where the camera looks and coarse elsewhere, block by block, larger than
+// memory (DESIGN 8). The cut runs along the borders of blocks, which no block changes, so it has no
+// crack; a frame only chooses which groups of triangles are drawn.
+//
+//   Result<BlockMesh> mesh = BlockMesh::open(*file);
+//   while (auto page = mesh->next_page()) mesh->add_page(*file->read_page(*page));
+//   every frame:
+//     mesh->update({.view = {.camera = camera}, .max_bytes = 256 << 20});
+//     for (const BlockEntry& entry : mesh->missing()) ...            // fetch, most valuable first
+//     for (const ShownRange& range : mesh->shown()) draw(*range.block, range.sn, ...);
+//   whenever a payload has come:
+//     if (auto job = mesh->decode_job(id)) block = job->run(payload);  // on any thread
+//     mesh->insert(*block);
+//
+// BlockMesh does no input and has no threads: crease/block_streamer.h feeds one. What is shown is
+// at every moment a cut of blocks that are resident, however few they are; without any it is empty.
+#pragma once
+
+#include "crease/adaptive_mesh.h"
+#include "crease/block_file.h"
+#include "crease/draw_changes.h"
+#include "crease/draw_list.h"
+#include "crease/mesh.h"
+#include "crease/result.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace crease {
+
+// The triangles of a block that one block of the next finer band goes on with. Each range is one of
+// triangles in that part of the block's draw list; those of consecutive groups follow each other.
+struct BlockGroup {
+  std::uint32_t patch = 0;  // of the next finer band; 0 where there is none
+  Range sn, fn, nsn;
+};
+
+// A block that was decoded: its triangles at the fine end, and what finer blocks start from. Does
+// not change.
+class ResidentBlock {
+ public:
+  struct Data;
+  explicit ResidentBlock(std::unique_ptr<const Data> data);
+  ~ResidentBlock();
+
+  BlockId id() const;
+  // All triangles of the fine end, group by group. All blocks have the same origin, and a vertex
+  // that several have has the same floats in all of them. Views into the block.
+  DrawList draw_list() const;
+  std::span<const BlockGroup> groups() const;  // ascending by patch
+  std::size_t bytes() const;                   // of memory that it takes
+  const Data& data() const { return *data_; }  // for the library
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+using ResidentBlockPtr = std::shared_ptr<const ResidentBlock>;
+
+// Holds what decoding a block takes, so that it runs on any thread, whatever becomes of the mesh's
+// other blocks meanwhile.
+class BlockDecodeJob {
+ public:
+  struct Data;
+  explicit BlockDecodeJob(std::unique_ptr<const Data> data);
+  ~BlockDecodeJob();
+  BlockDecodeJob(BlockDecodeJob&&) noexcept;
+
+  const BlockEntry& entry() const;
+  // Fails, naming the block, if the payload is not what the directory says. Memory while it runs:
+  // entry().facts.decoded_bytes at most, beside the result.
+  Result<ResidentBlockPtr> run(std::span<const std::byte> payload) const;
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+
+struct BlockViewParameters {
+  // Of these: camera, degrees, max_triangles, hysteresis, coarse_outside, silhouette_weight. The
+  // errors are bounds of whole blocks.
+  ViewParameters view;
+  // Of resident blocks. The most visible errors first; what does not fit stays coarse.
+  std::size_t max_bytes = std::size_t(256) << 20;
+};
+
+// A run of groups of one block. Ranges are in triangles of the parts of its draw list.
+struct ShownRange {
+  const ResidentBlock* block = nullptr;
+  Range sn, fn, nsn;
+
+  std::size_t triangle_count() const { return std::size_t(sn.count) + fn.count + nsn.count; }
+};
+
+struct BlockUpdate {
+  std::size_t refined = 0, coarsened = 0;  // blocks that the cut went through
+  std::size_t evaluated = 0;               // blocks of which it was asked whether they are wrong
+  std::vector<BlockId> dropped;            // no longer resident: a renderer frees its copies
+};
+
+class BlockMesh {
+ public:
+  // Reads the schema: tables, materials, parts. The directory comes by add_page().
+  static Result<BlockMesh> open(const BlockFile& file);
+  ~BlockMesh();
+  BlockMesh(BlockMesh&&) noexcept;
+
+  // The directory page to read next, none once all are there. Coarse blocks are on the first.
+  std::optional<std::uint32_t> next_page() const;
+  // The next one. Fails if it does not continue those before.
+  Status add_page(const DirectoryPage& page);
+
+  // Moves the cut to what the view wants, as far as blocks are resident, and says what is missing
+  // for the rest. Drops what was not wanted for longest while more than max_bytes are resident;
+  // what the view wants is never dropped. Time: O(blocks near the cut), nothing while neither view
+  // nor blocks change.
+  BlockUpdate update(const BlockViewParameters& parameters);
+  // Of the last update(): wanted and not resident, most valuable first, what a block needs before
+  // it.
+  std::span<const BlockEntry> missing() const;
+  // What another view would want beside: for prefetching along a motion. The same order.
+  std::vector<BlockEntry> missing_for(const BlockViewParameters& parameters) const;
+
+  // None where a block that it needs is not resident, or the block is resident itself.
+  std::optional<BlockDecodeJob> decode_job(BlockId id) const;
+  // From a job of this mesh. The cut goes through it with the next update().
+  void insert(ResidentBlockPtr block);
+
+  std::span<const ShownRange> shown() const;  // coarse blocks first
+  std::size_t triangle_count() const;         // of what is shown
+  // The largest of what is shown.
+  LevelError error() const;
+
+  std::size_t resident_count() const;
+  std::size_t resident_bytes() const;
+  bool is_resident(BlockId id) const;
+  bool is_refined(BlockId id) const;  // the cut goes through it
+  // At most so many bytes, if it becomes resident.
+  std::size_t bytes_of(const BlockFacts& facts) const;
+  const ModelFacts& facts() const;
+
+  // What is shown as a mesh of its own, all attribute layers, materials and parts. Time O(shown).
+  Mesh extract() const;
+
+ private:
+  struct Impl;
+  explicit BlockMesh(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace crease

@@ -1,0 +1,51 @@
+// Which blocks a view wants.
+#pragma once
+
+#include "crease/block_mesh.h"
+#include "runtime/block_graph.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace crease {
+
+class BlockChooser {
+ public:
+  explicit BlockChooser(const BlockGraph& graph, const Grid& grid) : graph_(graph), grid_(grid) {}
+
+  struct Limits {
+    std::size_t max_bytes = 0;
+    std::function<std::size_t(std::uint32_t block)> bytes_of;
+    std::span<const char> is_refined;  // per block: the cut is through it
+  };
+  // Those whose coarse ends are seen to be wrong and what they need: the most visible errors first,
+  // what a block needs before it, until the view's triangles or the limits' bytes are used up. The
+  // base always. Time O(blocks that are wrong and next to them).
+  std::span<const std::uint32_t> choose(const ViewParameters& view, const Limits& limits);
+
+  std::size_t evaluated() const { return evaluated_; }  // by the last choose()
+  bool is_chosen(std::uint32_t block) const { return chosen_at_[block] == round_; }
+
+ private:
+  struct Candidate {
+    float error = 0;  // 1: just what is allowed
+    std::uint32_t block = 0;
+  };
+
+  void find_wrong(const ViewParameters& view, const Limits& limits);
+  void collect_needed(std::uint32_t block);
+
+  const BlockGraph& graph_;
+  Grid grid_;
+  std::uint64_t round_ = 0;
+  std::size_t evaluated_ = 0;
+  std::vector<std::uint64_t> chosen_at_, seen_at_;  // per block: the round
+  std::vector<std::uint32_t> open_dependencies_;    // per block, of the round it was seen at
+  std::vector<Candidate> wrong_;
+  std::vector<std::uint32_t> queue_, needed_, chosen_;
+};
+
+}  // namespace crease

@@ -1,0 +1,108 @@
+#include "runtime/block_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace crease {
+
+BlockGraph::BlockGraph(const ModelFacts& facts, std::uint32_t block_count)
+    : grid_(facts.grid), first_of_band_(facts.bands.size()) {
+  // The finest band's blocks are the last ones.
+  std::uint32_t end = block_count;
+  for (std::size_t b = 0; b < facts.bands.size(); ++b) {
+    patches_.push_back(facts.bands[b].patches);
+    first_of_band_[b] = end -= std::min(end, facts.bands[b].patches);
+  }
+}
+
+std::uint32_t BlockGraph::next_finer(std::uint16_t band, std::uint32_t patch) const {
+  if (band == 0 || patch >= patches_[band - 1u]) return kNone;
+  return first_of_band_[band - 1u] + patch;
+}
+
+Status BlockGraph::add_page(const DirectoryPage& page) {
+  const auto bad = [](BlockId id, const char* what) {
+    return fail(Error::BadFormat, "block " + std::to_string(index_of(id)) + ": " + what);
+  };
+  if (index_of(page.first) != nodes_.size()) {
+    return bad(page.first, "its page is not the next one");
+  }
+  for (const BlockEntry& entry : page.blocks) {
+    const std::uint32_t block = size();
+    const BlockFacts& facts = entry.facts;
+    const bool is_base = facts.band == patches_.size();
+    if (is_base ? block != 0 : next_finer(facts.band + 1, facts.patch) != block) {
+      return bad(entry.id, "its band and patch are not those of its place");
+    }
+    Node node;
+    node.entry = entry;
+    node.own = node.all = bounds_of(facts);
+    for (const BlockId id : page.dependencies_of(entry.id)) {
+      const auto needed = static_cast<std::uint32_t>(index_of(id));
+      if (needed >= block || nodes_[needed].entry.facts.band <= facts.band) {
+        return bad(entry.id, "it needs a block that is not coarser");
+      }
+      node.dependencies.push_back(needed);
+      nodes_[needed].dependents.push_back(block);
+    }
+    if (node.dependencies.empty()) starts_.push_back(block);
+    nodes_.push_back(std::move(node));
+  }
+  ++pages_;
+  grow_bounds();
+  return Done{};
+}
+
+BlockBounds BlockGraph::bounds_of(const BlockFacts& facts) const {
+  BlockBounds result;
+  result.bounds.surface = RoundedUp::from(facts.coarse.surface);
+  result.bounds.line = RoundedUp::from(facts.coarse.line);
+  result.bounds.degrees = RoundedUp::from(facts.coarse.degrees);
+  result.bounds.texture = RoundedUp::from(facts.coarse.texture);
+  result.bounds.radius = RoundedUp::from(static_cast<float>(grid_.step * facts.radius));
+  result.center = {static_cast<float>(grid_.step * facts.center.x),
+                   static_cast<float>(grid_.step * facts.center.y),
+                   static_cast<float>(grid_.step * facts.center.z)};
+  return result;
+}
+
+namespace {
+
+RoundedUp larger(RoundedUp a, RoundedUp b) {
+  return a.bits > b.bits ? a : b;
+}
+
+Vec3d to_double(const Vec3f& p) {
+  return {p.x, p.y, p.z};
+}
+
+// The smallest sphere around both, a little larger.
+void hold(BlockBounds& outer, const BlockBounds& inner) {
+  SplitBounds& bounds = outer.bounds;
+  bounds.surface = larger(bounds.surface, inner.bounds.surface);
+  bounds.line = larger(bounds.line, inner.bounds.line);
+  bounds.degrees = larger(bounds.degrees, inner.bounds.degrees);
+  bounds.texture = larger(bounds.texture, inner.bounds.texture);
+  const Vec3d center = to_double(outer.center), way = to_double(inner.center) - center;
+  const double away = length(way), own = bounds.radius.value(), other = inner.bounds.radius.value();
+  if (away + other <= own) return;
+  const double radius = std::max((own + away + other) / 2, other);
+  const Vec3d middle = away > 0 ? center + way * ((radius - own) / away) : center;
+  outer.center = {static_cast<float>(middle.x), static_cast<float>(middle.y),
+                  static_cast<float>(middle.z)};
+  const double rounded = 1e-6 * (std::abs(middle.x) + std::abs(middle.y) + std::abs(middle.z));
+  bounds.radius = RoundedUp::from(static_cast<float>(radius + rounded));
+}
+
+}  // namespace
+
+void BlockGraph::grow_bounds() {
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    for (const std::uint32_t needed : nodes_[i].dependencies) {
+      hold(nodes_[needed].all, nodes_[i].all);
+    }
+  }
+}
+
+}  // namespace crease

@@ -1,0 +1,171 @@
+// The three-part arrays of a block (DB03, section 3), each part group by group.
+#include "codec/layer_values.h"
+#include "crease/shading.h"
+#include "hierarchy/geometric_normal.h"
+#include "runtime/draw_values.h"
+#include "runtime/resident_block.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <optional>
+
+namespace crease {
+
+namespace {
+
+class BlockLayout {
+ public:
+  explicit BlockLayout(ResidentBlock::Data& block)
+      : block_(block), schema_(*block.schema), mesh_(block.end.mesh) {
+    for (std::size_t l = 0; l < schema_.facts.layers.size(); ++l) {
+      const LayerSchema& layer = schema_.facts.layers[l];
+      const bool is_normal = layer.role == AttributeRole::Normal && layer.dimension == 3;
+      if (is_normal && !normals_) normals_.emplace(Layer{l, values_of(l)});
+      if (layer.role == AttributeRole::Color && !colors_) colors_.emplace(Layer{l, values_of(l)});
+    }
+  }
+
+  void run() {
+    sort_vertices();
+    std::vector<std::uint32_t> order(mesh_.triangles.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto label = [&](std::uint32_t t) { return block_.end.labels[t]; };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return label(a) < label(b); });
+    reserve();
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+      BlockGroup group{label(order[begin]), next(block_.sn), next(block_.fn), next(block_.nsn)};
+      for (; end < order.size() && label(order[end]) == group.patch; ++end) add(order[end], group);
+      block_.groups.push_back(group);
+    }
+    block_.groups.shrink_to_fit();
+  }
+
+ private:
+  struct Layer {
+    std::size_t index;
+    LayerValues values;
+  };
+
+  LayerValues values_of(std::size_t l) const {
+    return LayerValues(schema_.codings[l], schema_.facts.layers[l].dimension);
+  }
+
+  bool is_flat(std::uint32_t t) const { return !normals_ || mesh_.derived[t]; }
+  const codec::CodedValue* codes(const Layer& layer, std::uint32_t t) const {
+    return &mesh_.values[layer.index][3 * std::size_t(t)];
+  }
+  Vec3f normal(const codec::CodedValue& code) const {
+    std::array<float, 3> n{};
+    normals_->values.read(code, n);
+    return {n[0], n[1], n[2]};
+  }
+
+  static Range next(const BlockPart& part) {
+    return {static_cast<std::uint32_t>(part.indices.size() / 3), 0};
+  }
+
+  // SN vertices first: those at which all corners of the block have one normal.
+  void sort_vertices() {
+    const std::size_t count = mesh_.positions.size();
+    is_shared_.assign(count, normals_ ? 1 : 0);
+    std::vector<const codec::CodedValue*> first(count, nullptr);
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t v = mesh_.triangles[t][c];
+        if (is_flat(t)) {
+          is_shared_[v] = 0;
+          continue;
+        }
+        const codec::CodedValue* code = codes(*normals_, t) + c;
+        if (first[v] == nullptr) first[v] = code;
+        if (*first[v] != *code) is_shared_[v] = 0;
+      }
+    }
+    block_.position_of_vertex.resize(count);
+    block_.positions.reserve(count);
+    block_.vertex_normals.reserve(
+        static_cast<std::size_t>(std::count(is_shared_.begin(), is_shared_.end(), 1)));
+    for (const bool shared : {true, false}) {
+      for (std::uint32_t v = 0; v < count; ++v) {
+        if ((is_shared_[v] != 0) != shared) continue;
+        block_.position_of_vertex[v] = static_cast<std::uint32_t>(block_.positions.size());
+        block_.positions.push_back(draw_position(schema_.facts.grid, mesh_.positions[v]));
+        if (shared) block_.vertex_normals.push_back(first[v] ? normal(*first[v]) : Vec3f{});
+      }
+    }
+  }
+
+  TriangleKind kind(std::uint32_t t) const {
+    if (is_flat(t)) return TriangleKind::FN;
+    const codec::Corners& v = mesh_.triangles[t];
+    if (is_shared_[v[0]] && is_shared_[v[1]] && is_shared_[v[2]]) return TriangleKind::SN;
+    const codec::CodedValue* code = codes(*normals_, t);
+    return code[0] == code[1] && code[1] == code[2] ? TriangleKind::FN : TriangleKind::NSN;
+  }
+
+  void reserve() {
+    std::array<std::size_t, 3> count{};
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) ++count[std::size_t(kind(t))];
+    const std::array<std::size_t, 3> normals{0, 1, 3};
+    for (const TriangleKind k : {TriangleKind::SN, TriangleKind::FN, TriangleKind::NSN}) {
+      const std::size_t n = count[std::size_t(k)];
+      BlockPart& to = part(k);
+      to.indices.reserve(3 * n);
+      to.normals.reserve(normals[std::size_t(k)] * n);
+      if (!schema_.materials.empty()) to.materials.reserve(n);
+      if (colors_) to.colors.reserve(3 * n);
+    }
+  }
+
+  BlockPart& part(TriangleKind k) {
+    return k == TriangleKind::SN ? block_.sn : k == TriangleKind::FN ? block_.fn : block_.nsn;
+  }
+
+  void add(std::uint32_t t, BlockGroup& group) {
+    const TriangleKind k = kind(t);
+    BlockPart& to = part(k);
+    ++(k == TriangleKind::SN ? group.sn : k == TriangleKind::FN ? group.fn : group.nsn).count;
+    for (const std::uint32_t v : mesh_.triangles[t]) {
+      to.indices.push_back(block_.position_of_vertex[v]);
+    }
+    if (k == TriangleKind::FN) to.normals.push_back(flat_normal(t));
+    if (k == TriangleKind::NSN) {
+      for (std::size_t c = 0; c < 3; ++c) to.normals.push_back(normal(codes(*normals_, t)[c]));
+    }
+    if (!schema_.materials.empty()) {
+      to.materials.push_back(mesh_.category[t] % schema_.coding.material_count);
+    }
+    if (!colors_) return;
+    std::array<float, 4> value{};
+    const std::span<float> numbers =
+        std::span(value).first(schema_.facts.layers[colors_->index].dimension);
+    for (std::size_t c = 0; c < 3; ++c) {
+      colors_->values.read(codes(*colors_, t)[c], numbers);
+      to.colors.push_back(draw_color(numbers));
+    }
+  }
+
+  Vec3f flat_normal(std::uint32_t t) const {
+    if (!is_flat(t)) return normal(codes(*normals_, t)[0]);
+    const codec::Corners& v = mesh_.triangles[t];
+    const Vec3f n =
+        geometric_normal(mesh_.positions[v[0]], mesh_.positions[v[1]], mesh_.positions[v[2]]);
+    return n == Vec3f{} ? Vec3f{0, 0, 1} : n;  // without area: any
+  }
+
+  ResidentBlock::Data& block_;
+  const codec::ModelSchema& schema_;
+  const codec::PatchMesh& mesh_;
+  std::optional<Layer> normals_, colors_;
+  std::vector<char> is_shared_;  // per vertex: SN
+};
+
+}  // namespace
+
+void lay_out_for_drawing(ResidentBlock::Data& block) {
+  BlockLayout(block).run();
+}
+
+}  // namespace crease

@@ -1,0 +1,46 @@
+// Blocks in memory: decoded from the fine ends of the coarser ones, and laid out for drawing.
+#pragma once
+
+#include "codec/model_schema.h"
+#include "crease/block_mesh.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace crease {
+
+// One of the three parts of all triangles of a block, group by group.
+struct BlockPart {
+  std::vector<std::uint32_t> indices;
+  std::vector<Vec3f> normals;
+  std::vector<std::uint32_t> materials;
+  std::vector<std::array<float, 4>> colors;
+
+  std::size_t bytes() const;
+};
+
+struct ResidentBlock::Data {
+  BlockEntry entry;
+  std::shared_ptr<const codec::ModelSchema> schema;
+  codec::FineEnd end;
+  std::vector<BlockGroup> groups;
+  std::vector<std::uint32_t> position_of_vertex;  // of the draw list, per vertex of `end`
+  std::vector<Vec3f> positions, vertex_normals;   // as in DrawList: SN vertices first
+  BlockPart sn, fn, nsn;
+  std::size_t bytes = 0;
+};
+
+struct BlockDecodeJob::Data {
+  BlockEntry entry;
+  std::shared_ptr<const codec::ModelSchema> schema;
+  std::vector<ResidentBlockPtr> needed;  // ascending
+};
+
+// What a block takes at most.
+std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema& schema);
+
+// Fills what is for drawing from `end`.
+void lay_out_for_drawing(ResidentBlock::Data& block);
+
+}  // namespace crease

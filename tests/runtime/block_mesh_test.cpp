@@ -1,0 +1,318 @@
+// The mesh by block against the definition: what is shown is the model of the refined blocks,
+// whatever came in which order, was dropped, and came again.
+#include "crease/block_mesh.h"
+#include "codec/encoded_model.h"
+#include "crease/block_view.h"
+#include "runtime/draw_values.h"
+#include "support/described_mesh.h"
+#include "support/drawn_triangles.h"
+#include "support/mesh_zoo.h"
+#include "support/sanitized.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <set>
+
+namespace crease {
+namespace {
+
+BlockMesh opened_mesh(const BlockFile& file) {
+  Result<BlockMesh> mesh = BlockMesh::open(file);
+  REQUIRE_MESSAGE(mesh.ok(), (mesh.ok() ? "" : mesh.failure().message));
+  while (const std::optional<std::uint32_t> page = mesh->next_page()) {
+    const Result<DirectoryPage> read = file.read_page(*page);
+    REQUIRE(read.ok());
+    REQUIRE(mesh->add_page(*read).ok());
+  }
+  return *std::move(mesh);
+}
+
+std::vector<BlockEntry> all_entries(const BlockFile& file) {
+  std::vector<BlockEntry> all;
+  for (std::uint32_t p = 0; p < file.page_count(); ++p) {
+    const Result<DirectoryPage> page = file.read_page(p);
+    REQUIRE(page.ok());
+    all.insert(all.end(), page->blocks.begin(), page->blocks.end());
+  }
+  return all;
+}
+
+ResidentBlockPtr loaded(const BlockFile& file, const BlockMesh& mesh, const BlockEntry& entry) {
+  const std::optional<BlockDecodeJob> job = mesh.decode_job(entry.id);
+  REQUIRE(job.has_value());
+  const Result<std::vector<std::byte>> payload = file.read_block(entry);
+  REQUIRE(payload.ok());
+  Result<ResidentBlockPtr> block = job->run(*payload);
+  REQUIRE_MESSAGE(block.ok(), (block.ok() ? "" : block.failure().message));
+  CHECK((*block)->bytes() <= mesh.bytes_of(entry.facts));
+  return *std::move(block);
+}
+
+// Whatever is off at all is wrong, wherever the camera is.
+BlockViewParameters view_of_all() {
+  BlockViewParameters parameters;
+  parameters.view.camera.position = {0, 0, 3};
+  parameters.view.camera.pixels = 1e-30;
+  parameters.view.coarse_outside = false;
+  parameters.max_bytes = std::numeric_limits<std::size_t>::max();
+  return parameters;
+}
+
+BlockViewParameters view_from(const Mesh& mesh, std::mt19937_64& random) {
+  BlockViewParameters parameters = view_of_all();
+  const auto vertex = [&] { return mesh.positions[random() % mesh.vertex_count()]; };
+  parameters.view.camera.position = vertex() * 1.5;
+  parameters.view.camera.target = vertex();
+  parameters.view.camera.pixels = double(1 + random() % 64);
+  parameters.view.coarse_outside = random() % 4 != 0;
+  parameters.view.degrees = random() % 2 ? 0 : 5;
+  parameters.view.hysteresis = 1;
+  return parameters;
+}
+
+using BlockSet = std::set<BlockId>;
+
+std::size_t used_vertex_count(const Mesh& mesh) {
+  std::set<VertexId> used;
+  for (const Triangle& t : mesh.triangles) used.insert(t.begin(), t.end());
+  return used.size();
+}
+
+void check_shown(const BlockFile& file, const BlockMesh& mesh, const BlockSet& refined) {
+  const Result<DecodedModel> expected = decode_model(
+      file, {.contracted_bands = 0,
+             .wants = [&](const BlockEntry& entry) { return refined.contains(entry.id); }});
+  REQUIRE(expected.ok());
+  const Mesh shown = mesh.extract();
+  REQUIRE(check_mesh(shown).ok());
+  CHECK((described(shown) == described(expected->mesh)));
+  CHECK(shown.vertex_count() == used_vertex_count(expected->mesh));
+  CHECK(mesh.triangle_count() == shown.triangle_count());
+  CHECK(mesh.error().surface == expected->error.surface);
+  TriangleBag drawn;
+  for (const ShownRange& range : mesh.shown()) {
+    add_drawn(range.block->draw_list(), {range.sn, range.fn, range.nsn}, drawn);
+  }
+  const Grid& grid = file.facts().grid;
+  const auto place = [&grid](const Vec3d& p) { return draw_position(grid, grid.nearest(p)); };
+  CHECK((drawn == drawn_of_mesh(shown, place)));
+}
+
+// Those that are resident with all that they need.
+BlockSet closed(const BlockFile& file, const BlockSet& blocks) {
+  BlockSet result;
+  for (std::uint32_t p = 0; p < file.page_count(); ++p) {
+    const Result<DirectoryPage> page = file.read_page(p);
+    REQUIRE(page.ok());
+    for (const BlockEntry& entry : page->blocks) {
+      const std::span<const BlockId> needed = page->dependencies_of(entry.id);
+      if (blocks.contains(entry.id) && std::all_of(needed.begin(), needed.end(), [&](BlockId id) {
+            return result.contains(id);
+          })) {
+        result.insert(entry.id);
+      }
+    }
+  }
+  return result;
+}
+
+// By the definition: what is seen to be wrong, and what that needs.
+BlockSet expected_for(const BlockFile& file, const ViewParameters& view) {
+  BlockSet wanted;
+  for (std::uint32_t p = file.page_count(); p-- > 0;) {
+    const Result<DirectoryPage> page = file.read_page(p);
+    REQUIRE(page.ok());
+    for (std::size_t i = page->blocks.size(); i-- > 0;) {
+      const BlockEntry& entry = page->blocks[i];
+      const bool is_base = entry.facts.band == file.facts().bands.size();
+      if (!is_base && !needs_block(entry.facts, file.facts().grid, view)) {
+        if (!wanted.contains(entry.id)) continue;
+      }
+      wanted.insert(entry.id);
+      for (const BlockId id : page->dependencies_of(entry.id)) wanted.insert(id);
+    }
+  }
+  return wanted;
+}
+
+void check_arrivals(const EncodedCase& c, std::uint64_t seed) {
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = opened_mesh(file);
+  CHECK(mesh.shown().empty());
+  std::mt19937_64 random(seed);
+  BlockSet resident;
+  for (;;) {
+    const BlockUpdate report = mesh.update(view_of_all());
+    CHECK(report.dropped.empty());
+    if (random() % 3 == 0 || mesh.missing().empty()) {
+      if (resident.contains(BlockId{0})) check_shown(file, mesh, resident);
+    }
+    std::vector<BlockEntry> able;
+    for (const BlockEntry& entry : mesh.missing()) {
+      if (mesh.decode_job(entry.id)) able.push_back(entry);
+    }
+    if (able.empty()) break;
+    const BlockEntry& next = able[random() % able.size()];
+    mesh.insert(loaded(file, mesh, next));
+    resident.insert(next.id);
+  }
+  // All but what is not wrong at its coarse end.
+  CHECK(mesh.missing().empty());
+  CHECK((resident == expected_for(file, view_of_all().view)));
+  CHECK(mesh.resident_count() == resident.size());
+  CHECK(mesh.error().surface == 0);
+}
+
+void load_all_missing(const BlockFile& file, BlockMesh& mesh,
+                      const BlockViewParameters& parameters) {
+  mesh.update(parameters);
+  while (!mesh.missing().empty()) {
+    const std::vector<BlockEntry> missing(mesh.missing().begin(), mesh.missing().end());
+    for (const BlockEntry& entry : missing) mesh.insert(loaded(file, mesh, entry));
+    mesh.update(parameters);
+  }
+}
+
+void check_views(const EncodedCase& c, std::uint64_t seed) {
+  if (c.mesh.vertex_count() == 0) return;
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = opened_mesh(file);
+  std::mt19937_64 random(seed);
+  for (int trial = 0; trial < (kSanitized ? 3 : 10); ++trial) {
+    const BlockViewParameters parameters = view_from(c.mesh, random);
+    load_all_missing(file, mesh, parameters);
+    check_shown(file, mesh, expected_for(file, parameters.view));
+    CHECK(mesh.update(parameters).evaluated == 0);
+  }
+}
+
+// What is resident never takes more than the budget, and whatever was dropped, the cut is one.
+void check_budget(const EncodedCase& c, std::uint64_t seed) {
+  if (c.mesh.vertex_count() == 0) return;
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = opened_mesh(file);
+  std::mt19937_64 random(seed);
+  std::size_t all = 0;
+  const std::vector<BlockEntry> entries = all_entries(file);
+  for (const BlockEntry& entry : entries) all += mesh.bytes_of(entry.facts);
+  BlockSet resident;
+  for (int trial = 0; trial < (kSanitized ? 4 : 20); ++trial) {
+    BlockViewParameters parameters = view_from(c.mesh, random);
+    parameters.max_bytes = mesh.bytes_of(entries[0].facts) + all * (random() % 60) / 100;
+    const auto update = [&] {
+      for (const BlockId id : mesh.update(parameters).dropped) {
+        CHECK(resident.erase(id) == 1);
+        CHECK(!mesh.is_resident(id));
+      }
+    };
+    update();
+    for (std::size_t steps = random() % 8 + 1; steps > 0 && !mesh.missing().empty(); --steps) {
+      const BlockEntry next = mesh.missing().front();
+      mesh.insert(loaded(file, mesh, next));
+      resident.insert(next.id);
+      update();
+      CHECK(mesh.resident_bytes() <= parameters.max_bytes);
+    }
+    if (!resident.contains(BlockId{0})) continue;
+    BlockSet wanted = expected_for(file, parameters.view);
+    for (const ShownRange& range : mesh.shown()) CHECK(wanted.contains(range.block->id()));
+    BlockSet refined;
+    for (const BlockId id : closed(file, resident)) {
+      if (mesh.is_refined(id)) refined.insert(id);
+    }
+    check_shown(file, mesh, refined);
+  }
+}
+
+TEST_CASE("whatever blocks have come, what is shown is their model") {
+  std::uint64_t seed = 0;
+  for (const ZooMesh& zoo : mesh_zoo()) {
+    INFO(zoo.name);
+    check_arrivals(simplified_case(zoo.mesh, 100, 14, kCoarsePrecision), ++seed);
+  }
+}
+
+TEST_CASE("a view gets the blocks that are seen to be wrong, and what they need") {
+  std::uint64_t seed = 0;
+  for (const ZooMesh& zoo : mesh_zoo()) {
+    INFO(zoo.name);
+    check_views(simplified_case(zoo.mesh, 100, 14, kCoarsePrecision), ++seed);
+  }
+}
+
+TEST_CASE("a budget is kept, and blocks that were dropped come again") {
+  std::uint64_t seed = 0;
+  for (const ZooMesh& zoo : mesh_zoo()) {
+    INFO(zoo.name);
+    check_budget(simplified_case(zoo.mesh, 100, 14, kCoarsePrecision), ++seed);
+  }
+}
+
+TEST_CASE("the most visible errors come first, and triangles are a budget too") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = opened_mesh(file);
+  BlockViewParameters parameters = view_of_all();
+  parameters.view.max_triangles = c.mesh.triangle_count() / 3;
+  load_all_missing(file, mesh, parameters);
+  CHECK(mesh.triangle_count() <= parameters.view.max_triangles);
+  CHECK(mesh.triangle_count() > parameters.view.max_triangles / 2);
+  const float limited = mesh.error().surface;
+  parameters.view.max_triangles = c.mesh.triangle_count();
+  load_all_missing(file, mesh, parameters);
+  CHECK(mesh.triangle_count() == c.mesh.triangle_count());
+  CHECK(mesh.error().surface == 0);
+  CHECK(limited > 0);
+}
+
+TEST_CASE("a block stays refined until its error is smaller by the hysteresis") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = opened_mesh(file);
+  BlockViewParameters parameters = view_of_all();
+  parameters.view.camera.pixels = 8;
+  parameters.view.hysteresis = 2;
+  load_all_missing(file, mesh, parameters);
+  const std::size_t fine = mesh.triangle_count();
+  parameters.view.camera.pixels = 15;
+  mesh.update(parameters);
+  CHECK(mesh.triangle_count() == fine);
+  BlockMesh other = opened_mesh(file);
+  load_all_missing(file, other, parameters);
+  CHECK(other.triangle_count() < fine);
+  parameters.view.camera.pixels = 80;
+  CHECK(mesh.update(parameters).coarsened > 0);
+  CHECK(mesh.triangle_count() < fine);
+}
+
+TEST_CASE("pages and payloads that are not the next ones are refused") {
+  const EncodedCase c = simplified_case(smooth_sphere(12, 16), 100, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  Result<BlockMesh> mesh = BlockMesh::open(file);
+  REQUIRE(mesh.ok());
+  Result<DirectoryPage> page = file.read_page(0);
+  REQUIRE(page.ok());
+  DirectoryPage later = *page;
+  later.first = BlockId{kBlocksPerPage};
+  CHECK(!mesh->add_page(later).ok());
+  REQUIRE(mesh->add_page(*page).ok());
+  CHECK(!mesh->next_page());
+  const BlockId last = page->blocks.back().id;
+  REQUIRE(!page->dependencies_of(last).empty());
+  CHECK(!mesh->decode_job(last));  // without what it needs
+  const std::optional<BlockDecodeJob> job = mesh->decode_job(BlockId{0});
+  REQUIRE(job.has_value());
+  Result<std::vector<std::byte>> payload = file.read_block(page->blocks[0]);
+  REQUIRE(payload.ok());
+  (*payload)[0] ^= std::byte{1};
+  const Result<ResidentBlockPtr> block = job->run(*payload);
+  REQUIRE(!block.ok());
+  CHECK(block.failure().error == Error::BadChecksum);
+  CHECK(block.failure().message.find("block 0") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace crease
