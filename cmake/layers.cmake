@@ -1,7 +1,8 @@
 # The layers: a folder may include itself and the folders in its row, and the public headers that
 # belong to those. The test `layers` reads every #include of the tree against these two tables.
 set(CREASE_FOLDERS
-  base parallel mesh hierarchy assemble io generate measure simplify codec pipeline runtime render)
+  base parallel mesh hierarchy assemble io generate measure simplify codec pipeline
+  stream http serve runtime render)
 
 set(CREASE_LAYER_base      )
 set(CREASE_LAYER_parallel  )
@@ -15,7 +16,10 @@ set(CREASE_LAYER_simplify  base parallel mesh hierarchy)
 set(CREASE_LAYER_codec     base mesh hierarchy)
 set(CREASE_LAYER_codec_encode base mesh hierarchy codec)  # the build's half of src/codec
 set(CREASE_LAYER_pipeline  base parallel mesh hierarchy io simplify codec codec_encode)
-set(CREASE_LAYER_runtime   base mesh hierarchy codec)
+set(CREASE_LAYER_stream    base codec)
+set(CREASE_LAYER_http      base codec stream)
+set(CREASE_LAYER_serve     base)
+set(CREASE_LAYER_runtime   base mesh hierarchy codec stream)
 set(CREASE_LAYER_render    base mesh runtime)
 
 # Which folder a public header belongs to.
@@ -30,16 +34,20 @@ set(CREASE_HEADERS_generate  generate.h)
 set(CREASE_HEADERS_measure   compare.h)
 set(CREASE_HEADERS_simplify  simplify.h)
 set(CREASE_HEADERS_codec     file.h byte_source.h block_file.h decode_model.h)
+set(CREASE_HEADERS_stream    async_source.h)
+set(CREASE_HEADERS_http      http_source.h)
+set(CREASE_HEADERS_serve     file_server.h)
 set(CREASE_HEADERS_pipeline  attribute_precision.h build.h)
 set(CREASE_HEADERS_runtime   camera.h draw_list.h draw_changes.h progressive_mesh.h
                            adaptive_mesh.h block_view.h block_mesh.h)
 set(CREASE_HEADERS_render    render.h)
 
 # What goes into crease_runtime. These are compiled without exceptions and RTTI and need no library.
-set(CREASE_RUNTIME_FOLDERS base mesh hierarchy assemble codec runtime)
+set(CREASE_RUNTIME_FOLDERS base mesh hierarchy assemble codec stream runtime)
 
 # Third-party headers that live in one place only: <prefix...> may be included by these folders.
-set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h lzma.h tbb oneapi nlohmann CLI zstd.h)
+set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h lzma.h tbb oneapi nlohmann CLI zstd.h
+  curl microhttpd.h)
 set(CREASE_THIRD_PARTY_embree3  measure)
 set(CREASE_THIRD_PARTY_epoxy    render)
 set(CREASE_THIRD_PARTY_EGL      render)
@@ -49,5 +57,7 @@ set(CREASE_THIRD_PARTY_lzma.h   io)
 set(CREASE_THIRD_PARTY_zstd.h   io)
 set(CREASE_THIRD_PARTY_tbb      parallel)
 set(CREASE_THIRD_PARTY_oneapi   parallel)
-set(CREASE_THIRD_PARTY_nlohmann io render cli)
+set(CREASE_THIRD_PARTY_nlohmann io render serve cli)
 set(CREASE_THIRD_PARTY_CLI      cli)
+set(CREASE_THIRD_PARTY_curl     http)
+set(CREASE_THIRD_PARTY_microhttpd.h serve)

@@ -15,6 +15,7 @@ constexpr Row kRows[] = {
     {Error::NotFound, ExitCode::BadInput, "NotFound"},
     {Error::ReadFailed, ExitCode::BadInput, "ReadFailed"},
     {Error::WriteFailed, ExitCode::CannotWrite, "WriteFailed"},
+    {Error::Replaced, ExitCode::BadInput, "Replaced"},
     {Error::NotCrease, ExitCode::BadInput, "NotCrease"},
     {Error::VersionTooNew, ExitCode::NotSupported, "VersionTooNew"},
     {Error::Truncated, ExitCode::BadInput, "Truncated"},

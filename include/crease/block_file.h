@@ -107,10 +107,6 @@ struct DirectoryPage {
   }
 };
 
-struct FileRange {
-  std::uint64_t offset = 0, bytes = 0;
-};
-
 struct BlockFileHead {
   std::uint64_t file_bytes = 0;  // of the whole, however much of it is there
   std::uint32_t head_bytes = 0;

@@ -18,6 +18,10 @@
 
 namespace crease {
 
+struct FileRange {
+  std::uint64_t offset = 0, bytes = 0;
+};
+
 // Random access to bytes. Threads: read() from any, if read_at() of the derived class is.
 class ByteSource {
  public:
@@ -33,8 +37,12 @@ class ByteSource {
   // All of `into`, from `offset` on, or a Failure: Truncated where that is more than there is.
   Status read(std::uint64_t offset, std::span<std::byte> into) const;
 
-  // Over all successful reads so far.
-  std::uint64_t bytes_read() const { return bytes_read_; }
+  // Tells what will be read soon, so that a source far away can fetch it with few requests while
+  // the caller does something else. A hint: fails never, returns at once, here does nothing.
+  virtual void prefetch(std::span<const FileRange> ranges) const;
+
+  // Over all successful reads so far. A source behind a network counts what it transferred.
+  virtual std::uint64_t bytes_read() const { return bytes_read_; }
   std::uint64_t read_count() const { return read_count_; }
 
  private:

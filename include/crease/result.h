@@ -20,6 +20,7 @@ enum class Error : std::uint16_t {
   NotFound = 10,
   ReadFailed = 11,
   WriteFailed = 12,
+  Replaced = 13,  // while it was read; open it again
   NotCrease = 20,
   VersionTooNew = 21,
   Truncated = 22,

@@ -27,6 +27,8 @@ Status ByteSource::read(std::uint64_t offset, std::span<std::byte> into) const {
   return status;
 }
 
+void ByteSource::prefetch(std::span<const FileRange>) const {}
+
 namespace {
 
 class MemorySource final : public ByteSource {

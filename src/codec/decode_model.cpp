@@ -50,10 +50,13 @@ class ModelDecoder {
     schema_ = *std::move(schema);
     if (Status status = choose_blocks(); !status.ok()) return status.failure();
     if (options_.count_bits) model_.bits.resize(facts_.bands.size() + 1);
-    // chosen_ goes from the base to the finest band, as the file does.
-    for (std::size_t begin = 0, end = 0; begin < chosen_.size(); begin = end) {
-      const std::uint16_t band = chosen_[begin].entry.facts.band;
-      while (end < chosen_.size() && chosen_[end].entry.facts.band == band) ++end;
+    // chosen_ goes from the base to the finest band, as the file does. While a band is decoded, the
+    // next one is on its way.
+    std::size_t end = end_of_band(0);
+    prefetch(0, end);
+    for (std::size_t begin = 0; begin < chosen_.size(); begin = end) {
+      end = end_of_band(begin);
+      prefetch(end, end_of_band(end));
       if (Status status = decode_band(begin, end); !status.ok()) return status.failure();
     }
     return finish();
@@ -110,8 +113,27 @@ class ModelDecoder {
     }
   }
 
+  // Of the band that chosen_[begin] is of.
+  std::size_t end_of_band(std::size_t begin) const {
+    std::size_t end = begin;
+    while (end < chosen_.size() &&
+           chosen_[end].entry.facts.band == chosen_[begin].entry.facts.band) {
+      ++end;
+    }
+    return end;
+  }
+
+  void prefetch(std::size_t begin, std::size_t end) const {
+    std::vector<FileRange> ranges;
+    for (std::size_t i = begin; i < end; ++i) {
+      ranges.push_back({chosen_[i].entry.offset, chosen_[i].entry.bytes});
+    }
+    file_.source().prefetch(ranges);
+  }
+
   // The entries of all blocks down to the finest band, which are the first ones.
   Status read_directory(std::vector<Chosen>& all) const {
+    if (options_.finest_band == 0) file_.source().prefetch(file_.head().pages);
     const std::size_t bands = facts_.bands.size();
     std::vector<std::uint32_t> blocks_of_band(bands + 1, 0);
     std::size_t band_before = bands;
