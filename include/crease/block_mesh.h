@@ -126,6 +126,8 @@ class BlockMesh {
 
   // None where a block that it needs is not resident, or the block is resident itself.
   std::optional<BlockDecodeJob> decode_job(BlockId id) const;
+  // What the block needs and is not resident; `id` must be of a page that was added.
+  std::vector<BlockId> lacking(BlockId id) const;
   // From a job of this mesh. The cut goes through it with the next update().
   void insert(ResidentBlockPtr block);
 

@@ -217,12 +217,24 @@ std::optional<BlockDecodeJob> BlockMesh::decode_job(BlockId id) const {
   return BlockDecodeJob(std::move(data));
 }
 
+std::vector<BlockId> BlockMesh::lacking(BlockId id) const {
+  std::vector<BlockId> lacking;
+  for (const std::uint32_t needed :
+       impl_->graph.dependencies(static_cast<std::uint32_t>(index_of(id)))) {
+    if (!impl_->resident[needed]) lacking.push_back(impl_->graph.entry(needed).id);
+  }
+  return lacking;
+}
+
 void BlockMesh::insert(ResidentBlockPtr block) {
   CREASE_ASSERT(block != nullptr && block->data().schema == impl_->schema);
   ResidentBlockPtr& place = impl_->resident[index_of(block->id())];
   if (place) return;
   impl_->resident_bytes += block->bytes();
   ++impl_->resident_count;
+  // As if it had just been wanted: what was prefetched is not the first to go.
+  std::uint64_t& wanted_at = impl_->wanted_at[index_of(block->id())];
+  wanted_at = std::max(wanted_at, impl_->updates);
   place = std::move(block);
   impl_->has_changed = true;
 }

@@ -1,20 +1,13 @@
 // The mesh by block against the definition: what is shown is the model of the refined blocks,
 // whatever came in which order, was dropped, and came again.
-#include "crease/block_mesh.h"
-#include "codec/encoded_model.h"
-#include "crease/block_view.h"
-#include "runtime/draw_values.h"
+#include "runtime/block_mesh_oracle.h"
 #include "support/described_mesh.h"
-#include "support/drawn_triangles.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <limits>
 #include <random>
-#include <set>
 
 namespace crease {
 namespace {
@@ -51,93 +44,6 @@ ResidentBlockPtr loaded(const BlockFile& file, const BlockMesh& mesh, const Bloc
   return *std::move(block);
 }
 
-// Whatever is off at all is wrong, wherever the camera is.
-BlockViewParameters view_of_all() {
-  BlockViewParameters parameters;
-  parameters.view.camera.position = {0, 0, 3};
-  parameters.view.camera.pixels = 1e-30;
-  parameters.view.coarse_outside = false;
-  parameters.max_bytes = std::numeric_limits<std::size_t>::max();
-  return parameters;
-}
-
-BlockViewParameters view_from(const Mesh& mesh, std::mt19937_64& random) {
-  BlockViewParameters parameters = view_of_all();
-  const auto vertex = [&] { return mesh.positions[random() % mesh.vertex_count()]; };
-  parameters.view.camera.position = vertex() * 1.5;
-  parameters.view.camera.target = vertex();
-  parameters.view.camera.pixels = double(1 + random() % 64);
-  parameters.view.coarse_outside = random() % 4 != 0;
-  parameters.view.degrees = random() % 2 ? 0 : 5;
-  parameters.view.hysteresis = 1;
-  return parameters;
-}
-
-using BlockSet = std::set<BlockId>;
-
-std::size_t used_vertex_count(const Mesh& mesh) {
-  std::set<VertexId> used;
-  for (const Triangle& t : mesh.triangles) used.insert(t.begin(), t.end());
-  return used.size();
-}
-
-void check_shown(const BlockFile& file, const BlockMesh& mesh, const BlockSet& refined) {
-  const Result<DecodedModel> expected = decode_model(
-      file, {.contracted_bands = 0,
-             .wants = [&](const BlockEntry& entry) { return refined.contains(entry.id); }});
-  REQUIRE(expected.ok());
-  const Mesh shown = mesh.extract();
-  REQUIRE(check_mesh(shown).ok());
-  CHECK((described(shown) == described(expected->mesh)));
-  CHECK(shown.vertex_count() == used_vertex_count(expected->mesh));
-  CHECK(mesh.triangle_count() == shown.triangle_count());
-  CHECK(mesh.error().surface == expected->error.surface);
-  TriangleBag drawn;
-  for (const ShownRange& range : mesh.shown()) {
-    add_drawn(range.block->draw_list(), {range.sn, range.fn, range.nsn}, drawn);
-  }
-  const Grid& grid = file.facts().grid;
-  const auto place = [&grid](const Vec3d& p) { return draw_position(grid, grid.nearest(p)); };
-  CHECK((drawn == drawn_of_mesh(shown, place)));
-}
-
-// Those that are resident with all that they need.
-BlockSet closed(const BlockFile& file, const BlockSet& blocks) {
-  BlockSet result;
-  for (std::uint32_t p = 0; p < file.page_count(); ++p) {
-    const Result<DirectoryPage> page = file.read_page(p);
-    REQUIRE(page.ok());
-    for (const BlockEntry& entry : page->blocks) {
-      const std::span<const BlockId> needed = page->dependencies_of(entry.id);
-      if (blocks.contains(entry.id) && std::all_of(needed.begin(), needed.end(), [&](BlockId id) {
-            return result.contains(id);
-          })) {
-        result.insert(entry.id);
-      }
-    }
-  }
-  return result;
-}
-
-// By the definition: what is seen to be wrong, and what that needs.
-BlockSet expected_for(const BlockFile& file, const ViewParameters& view) {
-  BlockSet wanted;
-  for (std::uint32_t p = file.page_count(); p-- > 0;) {
-    const Result<DirectoryPage> page = file.read_page(p);
-    REQUIRE(page.ok());
-    for (std::size_t i = page->blocks.size(); i-- > 0;) {
-      const BlockEntry& entry = page->blocks[i];
-      const bool is_base = entry.facts.band == file.facts().bands.size();
-      if (!is_base && !needs_block(entry.facts, file.facts().grid, view)) {
-        if (!wanted.contains(entry.id)) continue;
-      }
-      wanted.insert(entry.id);
-      for (const BlockId id : page->dependencies_of(entry.id)) wanted.insert(id);
-    }
-  }
-  return wanted;
-}
-
 void check_arrivals(const EncodedCase& c, std::uint64_t seed) {
   const BlockFile file = opened(c.bytes);
   BlockMesh mesh = opened_mesh(file);
@@ -161,7 +67,7 @@ void check_arrivals(const EncodedCase& c, std::uint64_t seed) {
   }
   // All but what is not wrong at its coarse end.
   CHECK(mesh.missing().empty());
-  CHECK((resident == expected_for(file, view_of_all().view)));
+  CHECK((resident == wanted_blocks(file, view_of_all().view)));
   CHECK(mesh.resident_count() == resident.size());
   CHECK(mesh.error().surface == 0);
 }
@@ -182,9 +88,9 @@ void check_views(const EncodedCase& c, std::uint64_t seed) {
   BlockMesh mesh = opened_mesh(file);
   std::mt19937_64 random(seed);
   for (int trial = 0; trial < (kSanitized ? 3 : 10); ++trial) {
-    const BlockViewParameters parameters = view_from(c.mesh, random);
+    const BlockViewParameters parameters = random_view(c.mesh, random);
     load_all_missing(file, mesh, parameters);
-    check_shown(file, mesh, expected_for(file, parameters.view));
+    check_shown(file, mesh, wanted_blocks(file, parameters.view));
     CHECK(mesh.update(parameters).evaluated == 0);
   }
 }
@@ -200,7 +106,7 @@ void check_budget(const EncodedCase& c, std::uint64_t seed) {
   for (const BlockEntry& entry : entries) all += mesh.bytes_of(entry.facts);
   BlockSet resident;
   for (int trial = 0; trial < (kSanitized ? 4 : 20); ++trial) {
-    BlockViewParameters parameters = view_from(c.mesh, random);
+    BlockViewParameters parameters = random_view(c.mesh, random);
     parameters.max_bytes = mesh.bytes_of(entries[0].facts) + all * (random() % 60) / 100;
     const auto update = [&] {
       for (const BlockId id : mesh.update(parameters).dropped) {
@@ -217,12 +123,9 @@ void check_budget(const EncodedCase& c, std::uint64_t seed) {
       CHECK(mesh.resident_bytes() <= parameters.max_bytes);
     }
     if (!resident.contains(BlockId{0})) continue;
-    BlockSet wanted = expected_for(file, parameters.view);
+    const BlockSet wanted = wanted_blocks(file, parameters.view);
     for (const ShownRange& range : mesh.shown()) CHECK(wanted.contains(range.block->id()));
-    BlockSet refined;
-    for (const BlockId id : closed(file, resident)) {
-      if (mesh.is_refined(id)) refined.insert(id);
-    }
+    const BlockSet refined = refined_blocks(file, mesh);
     check_shown(file, mesh, refined);
   }
 }

@@ -1,0 +1,82 @@
+// Feeds a BlockMesh from a source that takes its time: asks for what the view misses, decodes it on
+// threads of its own, and never makes a frame wait.
+//
+//   Result<BlockFile> file = BlockFile::open(*open_http_source(url));
+//   Result<BlockStreamer> streamer = BlockStreamer::open(*file, open_async_http(url));
+//   every frame:
+//     streamer->update({.view = {.camera = camera}, .max_bytes = 256 << 20});
+//     for (const ShownRange& range : streamer->mesh().shown()) draw(range);
+//
+// Memory: what BlockViewParameters::max_bytes allows of resident blocks, and beside that at most
+// StreamOptions::max_pending_bytes of payloads and what is being decoded, decoded_bytes of its
+// facts for each thread and one more that waits.
+//
+// Threads: one at a time calls a streamer. Its own ones decode, and touch nothing that it shows.
+#pragma once
+
+#include "crease/async_source.h"
+#include "crease/block_mesh.h"
+#include "crease/result.h"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+namespace crease {
+
+struct StreamOptions {
+  int decode_threads = 1;  // 0: update() decodes a block itself, in a browser without threads
+  // Of payloads that are asked for, or wait for what they need. At least one block's.
+  std::size_t max_pending_bytes = std::size_t(1) << 20;
+  // With nothing missing, what will be missing if the camera goes on like this for so many frames.
+  // 0: nothing.
+  int prefetch_frames = 30;
+  // Before a block that failed is asked for again; twice as long each further time, up to a minute.
+  std::chrono::milliseconds first_pause{500};
+};
+
+struct StreamReport {
+  BlockUpdate cut;
+  std::size_t inserted = 0;  // blocks
+  bool is_complete = false;  // all that the view wants is there
+};
+
+// Since the streamer was opened.
+struct StreamStatistics {
+  AsyncStatistics source;
+  std::size_t blocks_decoded = 0, blocks_dropped = 0, blocks_prefetched = 0, blocks_failed = 0;
+  std::size_t pending_requests = 0;  // now
+  std::size_t pending_bytes = 0;     // now, of payloads
+  double decode_seconds = 0;         // of all threads
+};
+
+class BlockStreamer {
+ public:
+  // `source`: of the same bytes as `file`, of which only the head and the schema are read here.
+  static Result<BlockStreamer> open(const BlockFile& file, AsyncSourcePtr source,
+                                    const StreamOptions& options = {});
+  ~BlockStreamer();
+  BlockStreamer(BlockStreamer&&) noexcept;
+
+  // Takes what has arrived, moves the cut, and asks for what is missing. Never waits. Time: that of
+  // BlockMesh::update() and of what arrived.
+  StreamReport update(const BlockViewParameters& parameters);
+
+  const BlockMesh& mesh() const;
+  StreamStatistics statistics() const;
+  // The last thing that went wrong, while it has not gone right since. What is shown is right all
+  // the same, only coarser.
+  const std::optional<Failure>& trouble() const;
+
+  // For tools: until update() has something to do, or the time is over (false).
+  bool wait(std::chrono::milliseconds timeout);
+
+ private:
+  struct Impl;
+  explicit BlockStreamer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace crease

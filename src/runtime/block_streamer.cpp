@@ -1,0 +1,307 @@
+#include "crease/block_streamer.h"
+
+#include "codec/decode_container.h"
+#include "runtime/decode_workers.h"
+
+#include <algorithm>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+namespace crease {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr float kPagePriority = 1e9f;  // before any block
+constexpr int kUpdatesBetweenPrefetches = 8;
+constexpr std::chrono::milliseconds kLongestPause{60'000};
+
+// On its way from the source to the mesh.
+struct Pending {
+  BlockEntry entry;
+  enum class State { Asked, Waiting, Decoding } state = State::Asked;
+  Ticket ticket{};                 // Asked
+  std::vector<std::byte> payload;  // Waiting, for what it needs
+  bool is_wanted = true;           // by the present view
+  bool is_prefetch = false;
+};
+
+struct Pause {
+  std::chrono::milliseconds length{0};
+  Clock::time_point until;
+};
+
+}  // namespace
+
+struct BlockStreamer::Impl {
+  Impl(BlockFileHead h, BlockMesh m, AsyncSourcePtr s, const StreamOptions& o)
+      : head(std::move(h)),
+        mesh(std::move(m)),
+        source(std::move(s)),
+        options(o),
+        workers(o.decode_threads) {}
+
+  StreamReport update(const BlockViewParameters& parameters);
+  void take_answers();
+  void take_page(Result<std::vector<std::byte>> bytes);
+  void take_payload(BlockId id, Result<std::vector<std::byte>> bytes);
+  void take_decoded(StreamReport& report);
+  void ask_for_page();
+  void ask_for_blocks(const BlockViewParameters& parameters);
+  void ask_for(std::span<const BlockEntry> missing, bool is_prefetch);
+  bool is_coming(BlockId id) const { return mesh.is_resident(id) || pending.contains(id); }
+  void forget_unwanted();
+  void decode_what_can_be();
+  void note_failure(BlockId id, const Failure& failure);
+  bool is_paused(BlockId id) const;
+  std::vector<BlockEntry> missing_soon(const BlockViewParameters& parameters);
+  std::size_t most_decoding() const { return std::size_t(options.decode_threads) + 1; }
+
+  BlockFileHead head;
+  BlockMesh mesh;
+  AsyncSourcePtr source;
+  StreamOptions options;
+  std::map<BlockId, Pending> pending;  // by id: coarse ones first
+  std::unordered_map<std::uint64_t, BlockId> block_of_ticket;
+  std::size_t pending_bytes = 0;
+  std::optional<Ticket> page_ticket;
+  Pause page_pause;
+  std::map<BlockId, Pause> paused;
+  std::optional<Failure> trouble;
+  std::optional<Camera> last_camera;
+  int updates = 0;
+  StreamStatistics statistics;
+  DecodeWorkers workers;  // the last one: its threads end before what they use
+};
+
+StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters) {
+  StreamReport report;
+  take_answers();
+  take_decoded(report);
+  report.cut = mesh.update(parameters);
+  statistics.blocks_dropped += report.cut.dropped.size();
+  ask_for_page();
+  ask_for_blocks(parameters);
+  forget_unwanted();
+  decode_what_can_be();
+  report.is_complete = mesh.missing().empty() && !mesh.next_page();
+  return report;
+}
+
+void BlockStreamer::Impl::take_answers() {
+  for (AsyncAnswer& answer : source->poll()) {
+    if (page_ticket == answer.ticket) {
+      page_ticket.reset();
+      take_page(std::move(answer.bytes));
+      continue;
+    }
+    const auto at = block_of_ticket.find(static_cast<std::uint64_t>(answer.ticket));
+    if (at == block_of_ticket.end()) continue;  // cancelled too late
+    const BlockId id = at->second;
+    block_of_ticket.erase(at);
+    take_payload(id, std::move(answer.bytes));
+  }
+}
+
+void BlockStreamer::Impl::take_page(Result<std::vector<std::byte>> bytes) {
+  const std::uint32_t page = *mesh.next_page();
+  Status added = Done{};
+  if (bytes.ok()) {
+    const Result<DirectoryPage> decoded = decode_page(*bytes, head, page, Checksums::Verify);
+    added = decoded.ok() ? mesh.add_page(*decoded) : decoded.failure();
+  } else {
+    added = bytes.failure();
+  }
+  if (added.ok()) {
+    page_pause = {};
+    trouble.reset();
+    return;
+  }
+  trouble = added.failure();
+  page_pause.length = std::clamp(2 * page_pause.length, options.first_pause, kLongestPause);
+  page_pause.until = Clock::now() + page_pause.length;
+}
+
+void BlockStreamer::Impl::take_payload(BlockId id, Result<std::vector<std::byte>> bytes) {
+  const auto at = pending.find(id);
+  if (!bytes.ok()) return note_failure(id, bytes.failure());
+  at->second.state = Pending::State::Waiting;
+  at->second.payload = *std::move(bytes);
+}
+
+void BlockStreamer::Impl::note_failure(BlockId id, const Failure& failure) {
+  pending_bytes -= pending.at(id).entry.bytes;
+  pending.erase(id);
+  ++statistics.blocks_failed;
+  trouble = failure;
+  Pause& pause = paused[id];
+  pause.length = std::clamp(2 * pause.length, options.first_pause, kLongestPause);
+  pause.until = Clock::now() + pause.length;
+}
+
+bool BlockStreamer::Impl::is_paused(BlockId id) const {
+  const auto at = paused.find(id);
+  return at != paused.end() && Clock::now() < at->second.until;
+}
+
+void BlockStreamer::Impl::take_decoded(StreamReport& report) {
+  for (DecodeWorkers::Decoded& decoded : workers.take()) {
+    if (!decoded.block.ok()) {
+      note_failure(decoded.id, decoded.block.failure());
+      continue;
+    }
+    const auto at = pending.find(decoded.id);
+    statistics.blocks_prefetched += at->second.is_prefetch;
+    pending_bytes -= at->second.entry.bytes;
+    pending.erase(at);
+    if (paused.erase(decoded.id) > 0 && paused.empty()) trouble.reset();
+    ++statistics.blocks_decoded;
+    mesh.insert(*std::move(decoded.block));
+    ++report.inserted;
+  }
+}
+
+void BlockStreamer::Impl::ask_for_page() {
+  const std::optional<std::uint32_t> page = mesh.next_page();
+  if (!page || page_ticket || Clock::now() < page_pause.until) return;
+  page_ticket = source->request(head.pages[*page], kPagePriority);
+}
+
+void BlockStreamer::Impl::ask_for_blocks(const BlockViewParameters& parameters) {
+  for (auto& [id, p] : pending) p.is_wanted = false;
+  for (const BlockEntry& entry : mesh.missing()) {
+    if (const auto at = pending.find(entry.id); at != pending.end()) at->second.is_wanted = true;
+  }
+  ask_for(mesh.missing(), false);
+  const std::vector<BlockEntry> soon = missing_soon(parameters);
+  for (const BlockEntry& entry : soon) {
+    if (const auto at = pending.find(entry.id); at != pending.end()) at->second.is_wanted = true;
+  }
+  ask_for(soon, true);
+  last_camera = parameters.view.camera;
+}
+
+// In their order, as far as there is room, and with what they need on its way.
+void BlockStreamer::Impl::ask_for(std::span<const BlockEntry> missing, bool is_prefetch) {
+  std::vector<RangeRequest> requests;
+  std::vector<BlockId> ids;
+  float priority = is_prefetch ? 0 : static_cast<float>(missing.size());
+  for (const BlockEntry& entry : missing) {
+    if (pending_bytes > 0 && pending_bytes + entry.bytes > options.max_pending_bytes) break;
+    priority -= 1;
+    if (pending.contains(entry.id) || is_paused(entry.id)) continue;
+    const std::vector<BlockId> needed = mesh.lacking(entry.id);
+    if (!std::all_of(needed.begin(), needed.end(), [this](BlockId id) { return is_coming(id); })) {
+      continue;
+    }
+    pending[entry.id] = {.entry = entry, .payload = {}, .is_prefetch = is_prefetch};
+    pending_bytes += entry.bytes;
+    requests.push_back({{entry.offset, entry.bytes}, priority});
+    ids.push_back(entry.id);
+  }
+  if (requests.empty()) return;
+  const Ticket first = source->request(requests);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const Ticket ticket = ticket_after(first, i);
+    pending[ids[i]].ticket = ticket;
+    block_of_ticket[static_cast<std::uint64_t>(ticket)] = ids[i];
+  }
+}
+
+// If the camera goes on as from the last view to this one.
+std::vector<BlockEntry> BlockStreamer::Impl::missing_soon(const BlockViewParameters& parameters) {
+  const Camera& now = parameters.view.camera;
+  if (++updates % kUpdatesBetweenPrefetches != 0 || options.prefetch_frames == 0 || !last_camera ||
+      !mesh.missing().empty() || pending_bytes > options.max_pending_bytes / 2 ||
+      (last_camera->position == now.position && last_camera->target == now.target)) {
+    return {};
+  }
+  BlockViewParameters soon = parameters;
+  const double frames = options.prefetch_frames;
+  soon.view.camera.position = now.position + (now.position - last_camera->position) * frames;
+  soon.view.camera.target = now.target + (now.target - last_camera->target) * frames;
+  return mesh.missing_for(soon);
+}
+
+// What was prefetched may come while nobody else needs its room.
+void BlockStreamer::Impl::forget_unwanted() {
+  const bool has_room = mesh.missing().empty() || pending_bytes <= options.max_pending_bytes / 2;
+  for (auto at = pending.begin(); at != pending.end();) {
+    Pending& p = at->second;
+    if (p.is_wanted || p.state == Pending::State::Decoding || (p.is_prefetch && has_room)) {
+      ++at;
+      continue;
+    }
+    if (p.state == Pending::State::Asked) {
+      source->cancel(p.ticket);
+      block_of_ticket.erase(static_cast<std::uint64_t>(p.ticket));
+    }
+    pending_bytes -= p.entry.bytes;
+    at = pending.erase(at);
+  }
+}
+
+void BlockStreamer::Impl::decode_what_can_be() {
+  for (auto& [id, p] : pending) {
+    if (workers.outstanding() >= most_decoding()) return;
+    if (p.state != Pending::State::Waiting) continue;
+    std::optional<BlockDecodeJob> job = mesh.decode_job(id);
+    if (!job) continue;
+    p.state = Pending::State::Decoding;
+    workers.add(*std::move(job), std::move(p.payload));
+  }
+}
+
+Result<BlockStreamer> BlockStreamer::open(const BlockFile& file, AsyncSourcePtr source,
+                                          const StreamOptions& options) {
+  Result<BlockMesh> mesh = BlockMesh::open(file);
+  if (!mesh.ok()) return mesh.failure();
+  return BlockStreamer(
+      std::make_unique<Impl>(file.head(), *std::move(mesh), std::move(source), options));
+}
+
+BlockStreamer::BlockStreamer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+BlockStreamer::~BlockStreamer() = default;
+BlockStreamer::BlockStreamer(BlockStreamer&&) noexcept = default;
+
+StreamReport BlockStreamer::update(const BlockViewParameters& parameters) {
+  return impl_->update(parameters);
+}
+
+const BlockMesh& BlockStreamer::mesh() const {
+  return impl_->mesh;
+}
+
+StreamStatistics BlockStreamer::statistics() const {
+  StreamStatistics statistics = impl_->statistics;
+  statistics.source = impl_->source->statistics();
+  statistics.pending_requests = impl_->block_of_ticket.size();
+  statistics.pending_bytes = impl_->pending_bytes;
+  statistics.decode_seconds = impl_->workers.seconds();
+  return statistics;
+}
+
+const std::optional<Failure>& BlockStreamer::trouble() const {
+  return impl_->trouble;
+}
+
+bool BlockStreamer::wait(std::chrono::milliseconds timeout) {
+  constexpr std::chrono::milliseconds kLook{2};  // at the one while waiting for the other
+  const Clock::time_point end = Clock::now() + timeout;
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
+    const bool is_decoding = impl_->workers.outstanding() > 0;
+    if (is_decoding && impl_->options.decode_threads == 0) return true;
+    if (is_decoding && impl_->workers.wait(std::min(left, kLook))) return true;
+    if (impl_->source->wait(is_decoding ? std::min(left, kLook) : left)) return true;
+    if (left <= std::chrono::milliseconds(0)) return false;
+    if (!is_decoding) {
+      std::this_thread::sleep_for(std::min(left, kLook));  // nothing is outstanding: a pause
+      return Clock::now() < end;
+    }
+  }
+}
+
+}  // namespace crease

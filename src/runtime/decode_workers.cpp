@@ -1,0 +1,74 @@
+#include "runtime/decode_workers.h"
+
+#include <utility>
+
+namespace crease {
+
+DecodeWorkers::DecodeWorkers(int threads) {
+  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+}
+
+DecodeWorkers::~DecodeWorkers() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  has_work_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void DecodeWorkers::add(BlockDecodeJob job, std::vector<std::byte> payload) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back({std::move(job), std::move(payload)});
+    ++outstanding_;
+  }
+  has_work_.notify_one();
+}
+
+std::vector<DecodeWorkers::Decoded> DecodeWorkers::take() {
+  std::unique_lock lock(mutex_);
+  if (threads_.empty() && !waiting_.empty()) decode_next(lock);
+  outstanding_ -= done_.size();
+  return std::exchange(done_, {});
+}
+
+std::size_t DecodeWorkers::outstanding() const {
+  const std::lock_guard lock(mutex_);
+  return outstanding_;
+}
+
+double DecodeWorkers::seconds() const {
+  const std::lock_guard lock(mutex_);
+  return seconds_;
+}
+
+bool DecodeWorkers::wait(std::chrono::milliseconds timeout) {
+  std::unique_lock lock(mutex_);
+  return has_results_.wait_for(lock, timeout, [this] { return !done_.empty(); });
+}
+
+void DecodeWorkers::work() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    has_work_.wait(lock, [this] { return is_ending_ || !waiting_.empty(); });
+    if (is_ending_) return;
+    decode_next(lock);
+  }
+}
+
+void DecodeWorkers::decode_next(std::unique_lock<std::mutex>& lock) {
+  using Clock = std::chrono::steady_clock;
+  Waiting next = std::move(waiting_.front());
+  waiting_.pop_front();
+  lock.unlock();
+  const Clock::time_point start = Clock::now();
+  Result<ResidentBlockPtr> block = next.job.run(next.payload);
+  const std::chrono::duration<double> took = Clock::now() - start;
+  lock.lock();
+  seconds_ += took.count();
+  done_.push_back({next.job.entry().id, std::move(block)});
+  has_results_.notify_all();
+}
+
+}  // namespace crease

@@ -1,0 +1,29 @@
+// What a BlockMesh should show, by decode_model() and needs_block() over all blocks.
+#pragma once
+
+#include "codec/encoded_model.h"
+#include "crease/block_mesh.h"
+
+#include <random>
+#include <set>
+
+namespace crease {
+
+using BlockSet = std::set<BlockId>;
+
+// What is shown is the model of these blocks, as a mesh and as triangles to draw.
+void check_shown(const BlockFile& file, const BlockMesh& mesh, const BlockSet& refined);
+
+// Those that the cut goes through.
+BlockSet refined_blocks(const BlockFile& file, const BlockMesh& mesh);
+
+// What is seen to be wrong, and what that needs.
+BlockSet wanted_blocks(const BlockFile& file, const ViewParameters& view);
+
+// Whatever is off at all is wrong, wherever the camera is; no budget.
+BlockViewParameters view_of_all();
+
+// Some camera near the mesh, which has vertices.
+BlockViewParameters random_view(const Mesh& mesh, std::mt19937_64& random);
+
+}  // namespace crease

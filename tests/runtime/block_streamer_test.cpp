@@ -1,0 +1,205 @@
+// A mesh that streams: whatever the source does, what is shown is a cut of blocks that are right,
+// and in the end all that the view wants.
+#include "crease/block_streamer.h"
+#include "runtime/block_mesh_oracle.h"
+#include "support/mesh_zoo.h"
+#include "support/sanitized.h"
+
+#include <doctest/doctest.h>
+
+#include <deque>
+#include <map>
+#include <random>
+
+namespace crease {
+namespace {
+
+// Answers late, in any order, wrongly, or not at all but with a failure.
+class UnsteadySource : public AsyncSource {
+ public:
+  UnsteadySource(std::span<const std::byte> bytes, std::uint64_t seed, int failures_of_ten)
+      : bytes_(bytes), random_(seed), failures_of_ten_(failures_of_ten) {}
+
+  std::string name() const override { return "unsteady"; }
+  std::optional<std::uint64_t> size() const override { return bytes_.size(); }
+
+  Ticket request(std::span<const RangeRequest> ranges) override {
+    const Ticket first{next_};
+    for (const RangeRequest& r : ranges) waiting_[Ticket{next_++}] = r.range;
+    return first;
+  }
+  void cancel(Ticket ticket) override { cancelled_ += waiting_.erase(ticket); }
+  void prioritize(Ticket, float) override {}
+
+  std::vector<AsyncAnswer> poll() override {
+    std::vector<AsyncAnswer> answers;
+    for (auto at = waiting_.begin(); at != waiting_.end();) {
+      if (random_() % 3 != 0) {
+        ++at;
+        continue;
+      }
+      answers.push_back({at->first, answer(at->second)});
+      at = waiting_.erase(at);
+    }
+    std::shuffle(answers.begin(), answers.end(), random_);
+    return answers;
+  }
+  bool wait(std::chrono::milliseconds) override { return !waiting_.empty(); }
+  AsyncStatistics statistics() const override { return {.cancelled = cancelled_}; }
+
+  void set_failures(int of_ten) { failures_of_ten_ = of_ten; }
+
+ private:
+  Result<std::vector<std::byte>> answer(const FileRange& range) {
+    const auto part = bytes_.subspan(range.offset, range.bytes);
+    std::vector<std::byte> bytes(part.begin(), part.end());
+    if (int(random_() % 10) >= failures_of_ten_) return bytes;
+    if (random_() % 2) return fail(Error::ReadFailed, "unsteady: broke");
+    if (!bytes.empty()) bytes[random_() % bytes.size()] ^= std::byte{64};
+    return bytes;
+  }
+
+  std::span<const std::byte> bytes_;
+  std::mt19937_64 random_;
+  int failures_of_ten_;
+  std::uint64_t next_ = 1, cancelled_ = 0;
+  std::map<Ticket, FileRange> waiting_;
+};
+
+BlockStreamer opened_streamer(const BlockFile& file, AsyncSourcePtr source,
+                              const StreamOptions& options) {
+  Result<BlockStreamer> streamer = BlockStreamer::open(file, std::move(source), options);
+  REQUIRE(streamer.ok());
+  return *std::move(streamer);
+}
+
+void finish(BlockStreamer& streamer, const BlockViewParameters& parameters) {
+  for (int frames = 0; !streamer.update(parameters).is_complete; ++frames) {
+    REQUIRE(frames < 100'000);
+    streamer.wait(std::chrono::milliseconds(50));
+  }
+}
+
+StreamOptions hasty(int threads) {
+  return {.decode_threads = threads,
+          .max_pending_bytes = 4096,
+          .prefetch_frames = 3,
+          .first_pause = std::chrono::milliseconds(1)};
+}
+
+TEST_CASE("a view is complete in the end, whatever the source does on the way") {
+  std::uint64_t seed = 0;
+  for (const ZooMesh& zoo : mesh_zoo()) {
+    if (zoo.mesh.vertex_count() == 0) continue;
+    INFO(zoo.name);
+    const EncodedCase c = simplified_case(zoo.mesh, 100, 14, kCoarsePrecision);
+    const BlockFile file = opened(c.bytes);
+    std::mt19937_64 random(++seed);
+    for (const int threads : {0, 1, 3}) {
+      const auto source = std::make_shared<UnsteadySource>(c.bytes, seed, threads);
+      BlockStreamer streamer = opened_streamer(file, source, hasty(threads));
+      for (int v = 0; v < (kSanitized ? 1 : 3); ++v) {
+        const BlockViewParameters parameters = random_view(c.mesh, random);
+        for (int frame = 0; frame < 4; ++frame) {
+          streamer.update(parameters);
+          const BlockSet refined = refined_blocks(file, streamer.mesh());
+          if (!refined.empty()) check_shown(file, streamer.mesh(), refined);
+        }
+        finish(streamer, parameters);
+        CHECK((refined_blocks(file, streamer.mesh()) == wanted_blocks(file, parameters.view)));
+      }
+      CHECK((threads > 0 || !streamer.trouble()));
+    }
+  }
+}
+
+TEST_CASE("while the source fails what is shown stays, and says what is wrong") {
+  const EncodedCase c = simplified_case(smooth_sphere(40, 60), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  const auto source = std::make_shared<UnsteadySource>(c.bytes, 3, 0);
+  BlockStreamer streamer = opened_streamer(file, source, hasty(1));
+  BlockViewParameters coarse = view_of_all(), fine = view_of_all();
+  coarse.view.max_triangles = c.mesh.triangle_count() / 4;
+  finish(streamer, coarse);
+  const std::size_t triangles = streamer.mesh().triangle_count();
+  CHECK(triangles > 0);
+  source->set_failures(10);
+  for (int frame = 0; frame < 50; ++frame) {
+    CHECK(!streamer.update(fine).is_complete);
+    streamer.wait(std::chrono::milliseconds(2));
+  }
+  CHECK(streamer.mesh().triangle_count() == triangles);
+  REQUIRE(streamer.trouble().has_value());
+  CHECK(!streamer.trouble()->message.empty());
+  CHECK(streamer.statistics().blocks_failed > 0);
+  source->set_failures(0);
+  finish(streamer, fine);
+  CHECK(streamer.mesh().triangle_count() == c.mesh.triangle_count());
+  CHECK(!streamer.trouble().has_value());
+}
+
+TEST_CASE("what is asked for at once is bounded, and cancelled when nobody wants it") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  const auto source = std::make_shared<UnsteadySource>(c.bytes, 5, 0);
+  const StreamOptions options = hasty(1);
+  BlockStreamer streamer = opened_streamer(file, source, options);
+  std::mt19937_64 random(1);
+  BlockViewParameters last = view_of_all();
+  for (int frame = 0; frame < 300; ++frame) {
+    if (frame % 5 == 0) last = random_view(c.mesh, random);
+    streamer.update(last);
+    const StreamStatistics statistics = streamer.statistics();
+    CHECK(statistics.pending_bytes <= options.max_pending_bytes);
+  }
+  CHECK(streamer.statistics().source.cancelled > 0);
+  finish(streamer, last);
+  CHECK((refined_blocks(file, streamer.mesh()) == wanted_blocks(file, last.view)));
+}
+
+TEST_CASE("a camera that moves on finds what it will want") {
+  const EncodedCase c = simplified_case(smooth_sphere(80, 120), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  for (const bool prefetches : {false, true}) {
+    StreamOptions options = hasty(0);
+    options.max_pending_bytes = 1 << 20;
+    options.prefetch_frames = prefetches ? 60 : 0;
+    BlockStreamer streamer = opened_streamer(file, async_memory_source(c.bytes), options);
+    BlockViewParameters parameters = view_of_all();
+    parameters.view.camera.pixels = 1;
+    parameters.view.camera.target = {0, 0, 0};
+    for (int frame = 0; frame < 400; ++frame) {
+      parameters.view.camera.position = {0.05 * frame - 20, 1.5, 0};
+      streamer.update(parameters);
+    }
+    CHECK((streamer.statistics().blocks_prefetched > 0) == prefetches);
+  }
+}
+
+TEST_CASE("memory stays within the budget along a flight") {
+  const EncodedCase c = simplified_case(smooth_sphere(80, 120), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  BlockStreamer streamer = opened_streamer(file, async_memory_source(c.bytes), hasty(1));
+  BlockViewParameters parameters = view_of_all();
+  finish(streamer, parameters);
+  const std::size_t all = streamer.mesh().resident_bytes();
+  parameters.max_bytes = all / 3;
+  parameters.view.coarse_outside = true;
+  parameters.view.camera.pixels = 0.25;
+  std::size_t dropped = 0;
+  for (int frame = 0; frame < 200; ++frame) {
+    const double angle = 0.05 * frame;
+    parameters.view.camera.position = {1.6 * std::cos(angle), 1.6 * std::sin(angle), 0.3};
+    parameters.view.camera.target = {0, 0, 0};
+    dropped += streamer.update(parameters).cut.dropped.size();
+    CHECK(streamer.mesh().resident_bytes() <= parameters.max_bytes);
+    if (frame % 20 == 0) {
+      finish(streamer, parameters);
+      check_shown(file, streamer.mesh(), refined_blocks(file, streamer.mesh()));
+    }
+  }
+  CHECK(dropped > 0);
+}
+
+}  // namespace
+}  // namespace crease
