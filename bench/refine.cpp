@@ -10,6 +10,7 @@
 #include "crease/adaptive_mesh.h"
 #include "crease/build_hierarchy.h"
 #include "crease/simplify.h"
+#include "flight.h"
 #include "models.h"
 
 #include <CLI/CLI.hpp>
@@ -30,48 +31,6 @@ double processor_seconds() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
-struct Box {
-  Vec3d low, high;
-  Vec3d at(double x, double y, double z) const {
-    return {low.x + x * (high.x - low.x), low.y + y * (high.y - low.y),
-            low.z + z * (high.z - low.z)};
-  }
-  double diagonal() const { return length(high - low); }
-};
-
-Box box_of(const Mesh& mesh) {
-  Box box{mesh.positions[0], mesh.positions[0]};
-  for (const Vec3d& p : mesh.positions) {
-    for (int i = 0; i < 3; ++i) {
-      box.low[i] = std::min(box.low[i], p[i]);
-      box.high[i] = std::max(box.high[i], p[i]);
-    }
-  }
-  return box;
-}
-
-// A city is flown over, low, along a curve that looks ahead; anything else is orbited, near and
-// far.
-Camera camera_at(const Box& box, bool is_city, double share) {
-  const double a = 2 * kPi * share;
-  Camera camera;
-  camera.pixels = 1;
-  if (is_city) {
-    const auto point = [&](double t) {
-      return box.at(0.5 + 0.35 * std::sin(t), 0.5 + 0.35 * std::sin(2 * t), 0) +
-             Vec3d{0, 0, 0.04 * box.diagonal()};
-    };
-    camera.position = point(a);
-    camera.target = point(a + 0.3) - Vec3d{0, 0, 0.02 * box.diagonal()};
-  } else {
-    const Vec3d middle = box.at(0.5, 0.5, 0.5);
-    const double distance = box.diagonal() * (0.6 + 0.3 * std::cos(3 * a));
-    camera.position = middle + Vec3d{std::cos(a), std::sin(a), 0.5 * std::sin(2 * a)} * distance;
-    camera.target = middle;
-  }
-  return camera;
 }
 
 struct Flight {
@@ -134,7 +93,7 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
     std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), model.failure().message.c_str());
     return false;
   }
-  const Box box = box_of(model->mesh);
+  const Box box = box_of(model->mesh.positions);
   const std::size_t vertices = model->mesh.vertex_count(), triangles = model->mesh.triangle_count();
   const Result<ContractionSequence> sequence = simplify(model->mesh, model->grid, {});
   if (!sequence.ok()) return false;

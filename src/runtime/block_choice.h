@@ -16,6 +16,10 @@ class BlockChooser {
  public:
   explicit BlockChooser(const BlockGraph& graph, const Grid& grid) : graph_(graph), grid_(grid) {}
 
+  struct Candidate {
+    float error = 0;  // 1: just what is allowed; infinite: the base
+    std::uint32_t block = 0;
+  };
   struct Limits {
     std::size_t max_bytes = 0;
     std::function<std::size_t(std::uint32_t block)> bytes_of;
@@ -26,15 +30,12 @@ class BlockChooser {
   // base always. Time O(blocks that are wrong and next to them).
   std::span<const std::uint32_t> choose(const ViewParameters& view, const Limits& limits);
 
+  // Those that the last choose() found wrong, the worst first.
+  std::span<const Candidate> wrong() const { return wrong_; }
   std::size_t evaluated() const { return evaluated_; }  // by the last choose()
   bool is_chosen(std::uint32_t block) const { return chosen_at_[block] == round_; }
 
  private:
-  struct Candidate {
-    float error = 0;  // 1: just what is allowed
-    std::uint32_t block = 0;
-  };
-
   void find_wrong(const ViewParameters& view, const Limits& limits);
   void collect_needed(std::uint32_t block);
 

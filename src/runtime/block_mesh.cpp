@@ -42,6 +42,7 @@ struct BlockMesh::Impl {
   std::vector<BlockEntry> missing;
   std::vector<ShownRange> shown;
   LevelError shown_error;
+  float view_error = 0;
   std::size_t shown_triangles = 0, resident_count = 0, resident_bytes = 0;
   std::uint64_t updates = 0;
   BlockViewParameters last;
@@ -72,6 +73,10 @@ BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
     if (!resident[block]) missing.push_back(graph.entry(block));
   }
   move_cut(chosen, report);
+  view_error = 0;
+  for (const BlockChooser::Candidate& wrong : chooser.wrong()) {
+    if (!is_refined[wrong.block]) view_error = std::max(view_error, wrong.error);
+  }
   drop_beyond(parameters.max_bytes, report);
   return report;
 }
@@ -249,6 +254,10 @@ std::size_t BlockMesh::triangle_count() const {
 
 LevelError BlockMesh::error() const {
   return impl_->shown_error;
+}
+
+float BlockMesh::view_error() const {
+  return impl_->view_error;
 }
 
 std::size_t BlockMesh::resident_count() const {

@@ -1,0 +1,261 @@
+// A flight through a file that streams, in real time: what a frame costs, what is shown, and what
+// memory it takes.
+//
+//   bench_stream city.crease --budget 256 --frames 1200
+//   bench_stream http://127.0.0.1:8080/city.crease --city --csv flight.csv
+//   bench_stream berlin.crease --vertex          beside the mesh by vertex, at the same error
+//
+// The camera moves by the clock: a frame that takes long is a frame that misses what lies between.
+// Only the calls that a program makes each frame are timed; drawing is not among them.
+#include "crease/adaptive_mesh.h"
+#include "crease/block_streamer.h"
+#include "crease/build_hierarchy.h"
+#include "crease/decode_model.h"
+#include "crease/file.h"
+#include "crease/http_source.h"
+#include "flight.h"
+
+#include <CLI/CLI.hpp>
+
+#include <sys/resource.h>
+#include <ctime>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace crease::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double thread_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+double peak_megabytes() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return double(usage.ru_maxrss) / 1024;
+}
+
+struct Options {
+  std::string file, csv;
+  double budget_mb = 256, pixels = 1, frames_per_second = 30;
+  int frames = 900, threads = 1;
+  bool is_city = false, by_vertex = false;
+};
+
+struct Frame {
+  double at = 0, wall = 0, cpu = 0;
+  std::size_t triangles = 0, resident = 0, blocks = 0, missing = 0;
+  float error = 0;
+};
+
+struct Opened {
+  BlockFile file;
+  BlockStreamer streamer;
+};
+
+Result<Opened> open(const Options& options) {
+  const bool is_url = is_http_url(options.file);
+  Result<ByteSourcePtr> bytes =
+      is_url ? open_http_source(options.file) : open_file_source(options.file);
+  if (!bytes.ok()) return bytes.failure();
+  Result<BlockFile> file = BlockFile::open(*bytes);
+  if (!file.ok()) return file.failure();
+  Result<AsyncSourcePtr> source = is_url ? Result<AsyncSourcePtr>(open_async_http(options.file))
+                                         : open_async_file(options.file);
+  if (!source.ok()) return source.failure();
+  Result<BlockStreamer> streamer =
+      BlockStreamer::open(*file, *source, {.decode_threads = options.threads});
+  if (!streamer.ok()) return streamer.failure();
+  return Opened{*std::move(file), *std::move(streamer)};
+}
+
+// What the first blocks show, to know where to fly.
+Box box_of_start(BlockStreamer& streamer) {
+  BlockViewParameters none;
+  none.view.max_triangles = 0;
+  while (streamer.mesh().shown().empty()) {
+    streamer.update(none);
+    streamer.wait(std::chrono::milliseconds(100));
+  }
+  const DrawList list = streamer.mesh().shown().front().block->draw_list();
+  std::vector<Vec3d> positions;
+  for (const Vec3f& p : list.positions) positions.push_back(list.origin + Vec3d{p.x, p.y, p.z});
+  return box_of(positions);
+}
+
+Frame fly_one(BlockStreamer& streamer, const BlockViewParameters& parameters) {
+  Frame frame;
+  const Clock::time_point start = Clock::now();
+  const double cpu = thread_seconds();
+  streamer.update(parameters);
+  frame.cpu = thread_seconds() - cpu;
+  frame.wall = seconds_since(start);
+  const BlockMesh& mesh = streamer.mesh();
+  frame.triangles = mesh.triangle_count();
+  frame.resident = mesh.resident_bytes();
+  frame.blocks = mesh.resident_count();
+  frame.missing = mesh.missing().size();
+  frame.error = mesh.view_error() * float(parameters.view.camera.pixels);
+  return frame;
+}
+
+double of_all(std::vector<double> all, double share) {
+  std::sort(all.begin(), all.end());
+  return all.empty() ? 0 : all[std::min(all.size() - 1, std::size_t(share * double(all.size())))];
+}
+
+void write_csv(const std::string& path, const std::vector<Frame>& frames) {
+  std::FILE* out = std::fopen(path.c_str(), "w");
+  if (out == nullptr) return;
+  std::fprintf(out, "seconds,update_ms,triangles,resident_mb,blocks,missing,error_pixels\n");
+  for (const Frame& f : frames) {
+    std::fprintf(out, "%.3f,%.4f,%zu,%.2f,%zu,%zu,%.3f\n", f.at, f.wall * 1e3, f.triangles,
+                 double(f.resident) / 1e6, f.blocks, f.missing, double(f.error));
+  }
+  std::fclose(out);
+}
+
+void report(const Options& options, const BlockStreamer& streamer,
+            const std::vector<Frame>& frames) {
+  std::vector<double> cpu, wall, triangles, errors, blocks;
+  std::size_t resident = 0, within = 0;
+  for (const Frame& f : frames) {
+    cpu.push_back(f.cpu * 1e3);
+    wall.push_back(f.wall * 1e3);
+    triangles.push_back(double(f.triangles));
+    errors.push_back(double(f.error));
+    blocks.push_back(double(f.blocks));
+    resident = std::max(resident, f.resident);
+    within += f.error <= float(options.pixels);
+  }
+  const StreamStatistics statistics = streamer.statistics();
+  std::printf(
+      "%s: %zu frames of %.1f s, budget %.0f MB\n"
+      "  update: cpu %.3f ms median, %.3f 99 %%, %.3f most; by the clock %.3f ms 99 %%, %.3f most\n"
+      "  shown: %.0f triangles median; error %.2f px median, %.2f 95 %%; within %.3g px in %.1f %% "
+      "of the frames\n"
+      "  resident: %.0f blocks median, %.1f MB most; process %.0f MB most\n"
+      "  source: %.1f MB in %llu requests, latency mean %.1f ms, most %.1f ms, %llu retries\n"
+      "  decoded %zu blocks in %.2f s, prefetched %zu, dropped %zu, failed %zu\n",
+      options.file.c_str(), frames.size(), frames.back().at, options.budget_mb, of_all(cpu, 0.5),
+      of_all(cpu, 0.99), of_all(cpu, 1), of_all(wall, 0.99), of_all(wall, 1),
+      of_all(triangles, 0.5), of_all(errors, 0.5), of_all(errors, 0.95), options.pixels,
+      100.0 * double(within) / double(frames.size()), of_all(blocks, 0.5), double(resident) / 1e6,
+      peak_megabytes(), double(statistics.source.bytes_transferred) / 1e6,
+      static_cast<unsigned long long>(statistics.source.requests),
+      statistics.source.latency_mean_seconds * 1e3, statistics.source.latency_max_seconds * 1e3,
+      static_cast<unsigned long long>(statistics.source.retries), statistics.blocks_decoded,
+      statistics.decode_seconds, statistics.blocks_prefetched, statistics.blocks_dropped,
+      statistics.blocks_failed);
+}
+
+int fly(const Options& options) {
+  const Clock::time_point start = Clock::now();
+  Result<Opened> opened = open(options);
+  if (!opened.ok()) {
+    std::fprintf(stderr, "%s\n", opened.failure().message.c_str());
+    return 2;
+  }
+  BlockStreamer& streamer = opened->streamer;
+  const Box box = box_of_start(streamer);
+  const StreamStatistics at_start = streamer.statistics();
+  std::printf("first picture after %.3f s, %.1f kB of blocks\n", seconds_since(start),
+              double(at_start.source.bytes_transferred) / 1e3);
+  BlockViewParameters parameters;
+  parameters.max_bytes = std::size_t(options.budget_mb * 1e6);
+  std::vector<Frame> frames;
+  const Clock::time_point begin = Clock::now();
+  for (int f = 0; f < options.frames; ++f) {
+    parameters.view.camera = camera_at(box, options.is_city, double(f) / options.frames);
+    parameters.view.camera.pixels = options.pixels;
+    frames.push_back(fly_one(streamer, parameters));
+    frames.back().at = seconds_since(begin);
+    std::this_thread::sleep_until(
+        begin + std::chrono::duration_cast<Clock::duration>(
+                    std::chrono::duration<double>((f + 1) / options.frames_per_second)));
+  }
+  if (streamer.trouble()) std::printf("trouble: %s\n", streamer.trouble()->message.c_str());
+  report(options, streamer, frames);
+  if (!options.csv.empty()) write_csv(options.csv, frames);
+  return 0;
+}
+
+// Everything in memory: triangles and time at the same error, along the same path.
+int compare_granularities(const Options& options) {
+  Result<Opened> opened = open(options);
+  if (!opened.ok()) return 2;
+  BlockStreamer& streamer = opened->streamer;
+  const Box box = box_of_start(streamer);
+  const Result<DecodedModel> model = decode_model(opened->file);
+  if (!model.ok()) return 2;
+  Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
+  if (!hierarchy.ok()) return 2;
+  AdaptiveMesh by_vertex(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
+  BlockViewParameters parameters;
+  parameters.max_bytes = std::size_t(8) << 30;
+  std::vector<double> block_ms, vertex_ms, ratios, blocks;
+  for (int f = 0; f < options.frames; ++f) {
+    parameters.view.camera = camera_at(box, options.is_city, double(f) / options.frames);
+    parameters.view.camera.pixels = options.pixels;
+    while (!streamer.update(parameters).is_complete) streamer.wait(std::chrono::milliseconds(100));
+  }
+  for (int f = 0; f < options.frames; ++f) {
+    parameters.view.camera = camera_at(box, options.is_city, double(f) / options.frames);
+    parameters.view.camera.pixels = options.pixels;
+    double start = thread_seconds();
+    streamer.update(parameters);
+    block_ms.push_back((thread_seconds() - start) * 1e3);
+    start = thread_seconds();
+    by_vertex.update(parameters.view);
+    vertex_ms.push_back((thread_seconds() - start) * 1e3);
+    blocks.push_back(double(streamer.mesh().resident_count()));
+    if (by_vertex.triangle_count() > 0) {
+      ratios.push_back(double(streamer.mesh().triangle_count()) /
+                       double(by_vertex.triangle_count()));
+    }
+  }
+  std::printf(
+      "%s at %.3g px: update by block %.4f ms median, %.4f 99 %% (%.0f blocks resident); by vertex "
+      "%.3f ms median, %.3f 99 %%; triangles by block / by vertex %.2f median, %.2f most\n",
+      options.file.c_str(), options.pixels, of_all(block_ms, 0.5), of_all(block_ms, 0.99),
+      of_all(blocks, 1), of_all(vertex_ms, 0.5), of_all(vertex_ms, 0.99), of_all(ratios, 0.5),
+      of_all(ratios, 1));
+  return 0;
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app("A flight through a file that streams");
+  app.add_option("FILE", options.file, "a .crease, or its URL")->required();
+  app.add_option("--budget", options.budget_mb, "of resident blocks, MB");
+  app.add_option("--pixels", options.pixels, "error allowed on the screen");
+  app.add_option("--frames", options.frames, "of the flight")->check(CLI::PositiveNumber);
+  app.add_option("--fps", options.frames_per_second, "by the clock");
+  app.add_option("--threads", options.threads, "that decode");
+  app.add_flag("--city", options.is_city, "fly over it, low, instead of around");
+  app.add_flag("--vertex", options.by_vertex, "beside the mesh by vertex, with all in memory");
+  app.add_option("--csv", options.csv, "a line for each frame");
+  CLI11_PARSE(app, argc, argv);
+  return options.by_vertex ? compare_granularities(options) : fly(options);
+}
+
+}  // namespace
+}  // namespace crease::bench
+
+int main(int argc, char** argv) {
+  return crease::bench::run(argc, argv);
+}
