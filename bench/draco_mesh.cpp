@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -147,12 +148,59 @@ std::vector<char> DracoMesh::encode() const {
   return {buffer.data(), buffer.data() + buffer.size()};
 }
 
-std::size_t decode_draco(std::span<const char> bytes) {
+namespace {
+
+std::unique_ptr<draco::Mesh> decoded(std::span<const char> bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   draco::Decoder decoder;
   auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
-  return mesh.ok() ? mesh.value()->num_faces() : 0;
+  return mesh.ok() ? std::move(mesh).value() : nullptr;
+}
+
+}  // namespace
+
+std::size_t decode_draco(std::span<const char> bytes) {
+  const std::unique_ptr<draco::Mesh> mesh = decoded(bytes);
+  return mesh == nullptr ? 0 : mesh->num_faces();
+}
+
+Mesh draco_result(std::span<const char> bytes, const Grid& grid) {
+  Mesh result;
+  const std::unique_ptr<draco::Mesh> mesh = decoded(bytes);
+  if (mesh == nullptr) return result;
+  const draco::PointAttribute* position =
+      mesh->GetNamedAttribute(draco::GeometryAttribute::POSITION);
+  const draco::PointAttribute* normal = mesh->GetNamedAttribute(draco::GeometryAttribute::NORMAL);
+  if (position == nullptr || normal == nullptr) return result;
+  std::array<float, 3> value{};
+  for (std::uint32_t i = 0; i < position->size(); ++i) {
+    position->GetValue(draco::AttributeValueIndex(i), value.data());
+    result.positions.push_back(
+        grid.position({std::int32_t(std::lround(value[0])), std::int32_t(std::lround(value[1])),
+                       std::int32_t(std::lround(value[2]))}));
+  }
+  AttributeLayer layer{.name = "normal",
+                       .role = AttributeRole::Normal,
+                       .interpolation = Interpolation::Direction,
+                       .dimension = 3,
+                       .values = {},
+                       .of_corner = {}};
+  for (std::uint32_t i = 0; i < normal->size(); ++i) {
+    normal->GetValue(draco::AttributeValueIndex(i), value.data());
+    layer.values.insert(layer.values.end(), value.begin(), value.end());
+  }
+  for (std::uint32_t f = 0; f < mesh->num_faces(); ++f) {
+    Triangle triangle;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const draco::PointIndex point = mesh->face(draco::FaceIndex(f))[c];
+      triangle[c] = VertexId(position->mapped_index(point).value());
+      layer.of_corner.push_back(AttributeId(normal->mapped_index(point).value()));
+    }
+    result.triangles.push_back(triangle);
+  }
+  result.layers.push_back(std::move(layer));
+  return result;
 }
 
 }  // namespace crease::bench

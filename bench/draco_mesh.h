@@ -37,4 +37,7 @@ class DracoMesh {
 // Decodes everything and gives the number of triangles, 0 where it fails.
 std::size_t decode_draco(std::span<const char> bytes);
 
+// The same as a mesh on the grid, as a viewer shows it; empty where it fails. With normals.
+Mesh draco_result(std::span<const char> bytes, const Grid& grid);
+
 }  // namespace crease::bench

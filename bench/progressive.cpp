@@ -84,10 +84,10 @@ bool add_crease(const SizedModel& model, const std::string& method, Report& repo
   return true;
 }
 
-// Draco gives the snapped mesh, after all of its bytes.
 void add_draco(const SizedModel& model, Report& report) {
-  const std::vector<char> bytes = DracoMesh(model.mesh, model.sequence.grid, true, false).encode();
-  report.add("draco", "100%", bytes.size(), model.mesh);
+  const Grid& grid = model.sequence.grid;
+  const std::vector<char> bytes = DracoMesh(model.mesh, grid, true, false).encode();
+  report.add("draco", "100%", bytes.size(), draco_result(bytes, grid));
 }
 
 // Levels by meshoptimizer's own simplifyWithUpdate, each as a GLB; bytes of all so far.
