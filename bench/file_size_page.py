@@ -166,18 +166,21 @@ def progressive_table(rows):
     head = ["model", "file", "read", "kB", "triangles", "distance, ppm", "normals, degrees"]
     lines = []
     for row in rows:
-        step = f"{100 * row['step']:.0f} %" if isinstance(row["step"], float) else row["step"]
-        lines.append([row["model"], METHODS[row["method"]][0], step.replace("%", " %"),
+        if "Draco" in row["step"]:
+            continue
+        step = {"1/1": "all"}.get(row["step"], row["step"].replace("%", " %"))
+        lines.append([row["model"], METHODS[row["method"]][0], step,
                       f"{row['bytes'] / 1000:,.1f}", f"{row['triangles']:,.0f}",
-                      f"{row['mean_ppm']:.3g}", f"{row['normal_mean_deg']:.3g}"])
+                      f"{row['mean_ppm']:,.0f}" if row["mean_ppm"] >= 100 else
+                      f"{row['mean_ppm']:.3g}", f"{row['normal_mean_deg']:.2g}"])
     return table(head, lines)
 
 
 def shown_at(rows, model, method, budget):
     """The last thing that a method shows within so many bytes."""
     shown = None
-    for row in rows:
-        if (row["model"], row["method"]) == (model, method) and row["bytes"] <= budget:
+    for row in sorted(rows, key=lambda row: row["bytes"]):
+        if (row["model"], row["method"]) == (model, method) and row["bytes"] <= budget + 1:
             shown = row
     return shown
 
@@ -193,7 +196,7 @@ def equal_bytes_table(rows):
             line = [draco["model"], METHODS[method][0]]
             for share in shares:
                 row = shown_at(rows, draco["model"], method, share * draco["bytes"])
-                line.append(f"{row['mean_ppm']:.3g} / {row['normal_mean_deg']:.2g}" if row
+                line.append(f"{row['mean_ppm']:,.0f} / {row['normal_mean_deg']:.2g}" if row
                             else "–")
             lines.append(line)
     return table(head, lines)
@@ -213,8 +216,8 @@ def draw(rows):
         for line, (key, words) in enumerate(quantities):
             axis = axes[line][column]
             for method, (name, color) in METHODS.items():
-                points = [(row["bytes"] / 1000, row[key]) for row in rows
-                          if (row["model"], row["method"]) == (model, method)]
+                points = sorted((row["bytes"] / 1000, row[key]) for row in rows
+                                if (row["model"], row["method"]) == (model, method))
                 x, y = zip(*points)
                 axis.step(x + (end,), y + (y[-1],), where="post", color=color, label=name,
                           linewidth=1.4)

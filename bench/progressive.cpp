@@ -26,6 +26,7 @@ namespace {
 
 constexpr double kPrefixes[] = {1, 2, 5, 10, 20, 50, 100};  // percent
 constexpr std::size_t kChain[] = {64, 16, 4, 1};            // shares of the triangles
+constexpr double kFiner = 1.1;  // a level with fewer triangles than so many times the last is none
 
 struct Options {
   std::vector<std::string> models{"bunny", "lucy", "kuka", "berlin", "city200k"};
@@ -44,7 +45,7 @@ class Report {
     if (shown.triangle_count() == 0) return;
     const Comparison c = compare_meshes(original_, shown, {.samples = samples_});
     const double ppm = 0.5e6 * (c.distance.a_to_b.mean + c.distance.b_to_a.mean) / c.diagonal;
-    std::printf("%-10s %-16s %-6s %9zu bytes %8zu triangles %10.2f ppm %8.3f degrees\n",
+    std::printf("%-10s %-16s %-13s %9zu bytes %8zu triangles %10.2f ppm %8.3f degrees\n",
                 entry_.name.c_str(), method.c_str(), step.c_str(), bytes, shown.triangle_count(),
                 ppm, c.normal_deviation.mean);
     std::fflush(stdout);
@@ -66,31 +67,50 @@ Result<std::uint32_t> blocks_in(std::span<const std::byte> prefix) {
   return file->complete_blocks();
 }
 
-bool add_crease(const SizedModel& model, const std::string& method, Report& report) {
+bool add_prefix(const BlockFile& file, std::span<const std::byte> prefix, const std::string& method,
+                const std::string& step, Report& report) {
+  const Result<std::uint32_t> blocks = blocks_in(prefix);
+  if (!blocks.ok() || *blocks == 0) return true;  // not even the head, or not the base
+  const Result<DecodedModel> shown = decode_model(
+      file, {.wants = [&](const BlockEntry& entry) { return index_of(entry.id) < *blocks; }});
+  if (shown.ok()) report.add(method, step, prefix.size(), shown->mesh);
+  return shown.ok();
+}
+
+std::size_t share(std::size_t bytes, double percent) {
+  return std::size_t(std::llround(double(bytes) * percent / 100));
+}
+
+// Of its own bytes, and of as many as Draco takes.
+bool add_crease(const SizedModel& model, const std::string& method, std::size_t draco_bytes,
+                Report& report) {
   const std::vector<std::byte> bytes = encode_sized(model);
   const Result<BlockFile> file = BlockFile::open(memory_source(bytes));
   if (!file.ok()) return false;
   for (const double percent : kPrefixes) {
-    const std::size_t there = std::size_t(std::llround(double(bytes.size()) * percent / 100));
-    const Result<std::uint32_t> blocks = blocks_in(std::span(bytes).first(there));
-    if (!blocks.ok() || *blocks == 0) continue;  // not even the head, or not the base
-    const Result<DecodedModel> shown = decode_model(
-        *file, {.wants = [&](const BlockEntry& entry) { return index_of(entry.id) < *blocks; }});
-    if (!shown.ok()) return false;
     char step[16];
     std::snprintf(step, sizeof step, "%g%%", percent);
-    report.add(method, step, there, shown->mesh);
+    const std::size_t own = share(bytes.size(), percent);
+    const std::size_t dracos = std::min(share(draco_bytes, percent), bytes.size());
+    if (!add_prefix(*file, std::span(bytes).first(own), method, step, report) ||
+        !add_prefix(*file, std::span(bytes).first(dracos), method, std::string(step) + " of Draco",
+                    report)) {
+      return false;
+    }
   }
   return true;
 }
 
-void add_draco(const SizedModel& model, Report& report) {
+// Gives its bytes.
+std::size_t add_draco(const SizedModel& model, Report& report) {
   const Grid& grid = model.sequence.grid;
   const std::vector<char> bytes = DracoMesh(model.mesh, grid, true, false).encode();
   report.add("draco", "100%", bytes.size(), draco_result(bytes, grid));
+  return bytes.size();
 }
 
-// Levels by meshoptimizer's own simplifyWithUpdate, each as a GLB; bytes of all so far.
+// Levels by meshoptimizer's own simplifyWithUpdate, each as a GLB; bytes of all so far. Where it
+// stops short, levels that would repeat a coarser one are left out.
 bool add_chain(const ModelEntry& entry, const Mesh& original, const Options& options,
                Report& report) {
   const std::filesystem::path cache = options.cache / (entry.name + "_chain");
@@ -101,10 +121,11 @@ bool add_chain(const ModelEntry& entry, const Mesh& original, const Options& opt
   if (!exchange::write_mesh(input.string(), to_exchange(original))) return false;
   const Peer update = all_peers(options.programs, options.cache).front();
   std::size_t bytes = 0, zipped = 0;
-  for (const std::size_t share : kChain) {
+  double last_triangles = 0;
+  for (const std::size_t part : kChain) {
     std::filesystem::path level = input;
-    if (share > 1) {
-      const std::size_t triangles = original.triangle_count() / share;
+    if (part > 1) {
+      const std::size_t triangles = original.triangle_count() / part;
       if (!run_peer(update, cache, triangles)) return false;
       level = cache / ("update_" + std::to_string(triangles) + ".bin");
     }
@@ -117,8 +138,10 @@ bool add_chain(const ModelEntry& entry, const Mesh& original, const Options& opt
         !exchange::read_mesh(decoded.string(), shown)) {
       return false;
     }
+    if (double(shown.triangle_count()) < kFiner * last_triangles) continue;
+    last_triangles = double(shown.triangle_count());
     const Mesh mesh = from_exchange(shown, entry.kind);
-    const std::string step = share == 1 ? "1" : "1/" + std::to_string(share);
+    const std::string step = "1/" + std::to_string(part);
     report.add("meshopt", step, bytes += glb, mesh);
     report.add("meshopt_gzip", step, zipped += gzip, mesh);
   }
@@ -132,13 +155,12 @@ bool measure(const ModelEntry& entry, const Options& options, std::ofstream& csv
     return true;  // reported and left out
   }
   Report report(entry, *original, options.samples, csv);
-  for (const Placement placement : {Placement::Endpoint, Placement::Optimal}) {
-    const bool is_endpoint = placement == Placement::Endpoint;
-    const SizedModel model = simplify_sized(*original, placement, true);
-    if (!add_crease(model, is_endpoint ? "crease_endpoint" : "crease_optimal", report)) {
-      return false;
-    }
-    if (is_endpoint) add_draco(model, report);
+  const SizedModel endpoint = simplify_sized(*original, Placement::Endpoint, true);
+  const std::size_t draco_bytes = add_draco(endpoint, report);
+  if (!add_crease(endpoint, "crease_endpoint", draco_bytes, report) ||
+      !add_crease(simplify_sized(*original, Placement::Optimal, true), "crease_optimal",
+                  draco_bytes, report)) {
+    return false;
   }
   return add_chain(entry, *original, options, report);
 }
