@@ -4,8 +4,8 @@
 //   bench_resident [--models bunny,berlin] [--csv resident.csv]
 //
 // Meta-nodes as in view-dependence trees before compression (El-Sana and Chiang 2000, which CAME
-// compares itself with), 32 bits a number, nothing shared, nothing packed: see kNode and the
-// others.
+// compares itself with), as we count them: 32 bits a number, nothing shared, nothing packed; see
+// kNode and the others.
 #include "crease/build.h"
 #include "crease/build_hierarchy.h"
 #include "crease/file.h"
