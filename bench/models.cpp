@@ -4,11 +4,11 @@
 #include "crease/import.h"
 #include "mesh/normals.h"
 #include "mesh/weld.h"
+#include "support/normals_alone.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <sstream>
 
 namespace crease::bench {
@@ -28,18 +28,6 @@ Result<Mesh> load_any(const ModelEntry& entry, const std::filesystem::path& data
       import_mesh(data / entry.where, {.normals = *normals, .progress = {}});
   if (!imported.ok()) return imported.failure();
   return std::move(imported->mesh);
-}
-
-Vec3d centre_of(const Mesh& mesh) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  Vec3d low{kInf, kInf, kInf}, high{-kInf, -kInf, -kInf};
-  for (const Vec3d& p : mesh.positions) {
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
-  }
-  return low + (high - low) * 0.5;
 }
 
 }  // namespace
@@ -66,22 +54,33 @@ Result<std::vector<ModelEntry>> read_models(const std::filesystem::path& list) {
   return entries;
 }
 
-Result<Model> load_model(const ModelEntry& entry, const std::filesystem::path& data) {
+std::vector<ModelEntry> all_models(const std::vector<std::string>& names) {
+  std::vector<ModelEntry> chosen;
+  for (const char* list : {"models.txt", "models_more.txt"}) {
+    const Result<std::vector<ModelEntry>> entries =
+        read_models(std::filesystem::path(CREASE_BENCH_SOURCE) / list);
+    if (!entries.ok()) continue;
+    for (const ModelEntry& entry : *entries) {
+      if (names.empty() || std::ranges::find(names, entry.name) != names.end()) {
+        chosen.push_back(entry);
+      }
+    }
+  }
+  return chosen;
+}
+
+Result<Mesh> load_mesh(const ModelEntry& entry, const std::filesystem::path& data) {
   Result<Mesh> loaded = load_any(entry, data);
   if (!loaded.ok()) return loaded.failure();
+  return normals_alone(std::move(*loaded));
+}
+
+Result<Model> load_model(const ModelEntry& entry, const std::filesystem::path& data) {
+  Result<Mesh> loaded = load_mesh(entry, data);
+  if (!loaded.ok()) return loaded.failure();
   Model model{.mesh = std::move(*loaded), .grid = {}};
-  Mesh& mesh = model.mesh;
-  const Vec3d centre = centre_of(mesh);
-  for (Vec3d& p : mesh.positions) p = p - centre;
-  AttributeLayer normals = std::move(*mesh.normals());
-  mesh.layers.clear();
-  mesh.layers.push_back(std::move(normals));
-  mesh.material_of_triangle.clear();
-  mesh.part_of_triangle.clear();
-  mesh.materials.clear();
-  mesh.parts.clear();
-  model.grid = make_grid(mesh, {});
-  snap(mesh, model.grid);
+  model.grid = make_grid(model.mesh, {});
+  snap(model.mesh, model.grid);
   return model;
 }
 

@@ -16,6 +16,11 @@ struct ModelEntry {
   std::string name, kind, normals, where;
 };
 Result<std::vector<ModelEntry>> read_models(const std::filesystem::path& list);
+// Of models.txt and models_more.txt, those that are named, or all.
+std::vector<ModelEntry> all_models(const std::vector<std::string>& names);
+
+// Around the origin, not snapped yet.
+Result<Mesh> load_mesh(const ModelEntry& entry, const std::filesystem::path& data);
 
 struct Model {
   Mesh mesh;  // snapped

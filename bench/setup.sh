@@ -1,8 +1,9 @@
 #!/bin/sh
 # Configures build/bench (or $CREASE_BENCH_BUILD), builds the programs named, and gets meshoptimizer
-# from npm once. Needs libvtk9-dev libcgal-dev libopenmesh-dev libeigen3-dev nodejs npm.
+# from npm once. Needs libvtk9-dev libcgal-dev libopenmesh-dev libeigen3-dev libdraco-dev nodejs npm
+# (scripts/setup.sh bench).
 #
-#   bench/setup.sh bench_quality
+#   bench/setup.sh bench_quality peer_vtk peer_cgal peer_openmesh
 set -eu
 cd "$(dirname "$0")/.."
 build=${CREASE_BENCH_BUILD:-build/bench}
@@ -13,7 +14,7 @@ if [ ! -f "$build/build.ninja" ]; then
   cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DCREASE_BENCH=ON -DCREASE_TESTS=OFF \
     $launcher > "$build/setup.log" 2>&1 || { cat "$build/setup.log" >&2; exit 1; }
 fi
-cmake --build "$build" --target peer_vtk peer_cgal peer_openmesh "$@" > "$build/setup.log" 2>&1 || {
+cmake --build "$build" --target "$@" > "$build/setup.log" 2>&1 || {
   cat "$build/setup.log" >&2
   exit 1
 }

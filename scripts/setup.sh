@@ -13,7 +13,7 @@ libraries="libtbb-dev libembree-dev libcli11-dev nlohmann-json3-dev libfast-floa
   libzstd-dev liblzma-dev libpng-dev libstb-dev libepoxy-dev libegl-dev libgl1-mesa-dri
   libeigen3-dev libcurl4-openssl-dev libmicrohttpd-dev"
 tests="doctest-dev librapidcheck-dev nginx-light openssl"
-peers="libvtk9-dev libcgal-dev libopenmesh-dev"
+peers="libvtk9-dev libcgal-dev libopenmesh-dev libdraco-dev python3-matplotlib"
 
 packages="$tools $libraries $tests"
 [ "${1:-}" = bench ] && packages="$packages $peers"

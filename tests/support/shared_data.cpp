@@ -10,7 +10,8 @@ namespace {
 // CREASE_SHARED_DATA, else the folder beside the source tree.
 std::filesystem::path data_folder() {
   if (const char* given = std::getenv("CREASE_SHARED_DATA")) return given;
-  return std::filesystem::path(__FILE__).parent_path() / "../../../shared/data";
+  // Not by __FILE__, which ccache makes a path from somewhere else.
+  return std::filesystem::path(CREASE_SOURCE_FOLDER) / "../shared/data";
 }
 
 bool is_model(const std::filesystem::path& path) {
