@@ -82,15 +82,11 @@ namespace {
 void name_vertices(BlockState& block) {
   std::vector<Name>& names = block.end.names;
   const std::size_t known = names.size();
-  const bool any_made_elsewhere =
-      std::any_of(names.begin() + block.coarse_vertices, names.end(),
-                  [&](const Name& name) { return name.block != block.number; });
   names.resize(block.surface.places.size());
   for (std::uint32_t v = 0; v < names.size(); ++v) {
     const bool is_root = v >= block.coarse_vertices && v < known;
     if (!is_root && block.is_split_or_root(v)) names[v] = {block.number, v};
   }
-  if (!any_made_elsewhere) return;
   demand(std::set<Name>(names.begin(), names.end()).size() == names.size(),
          "two vertices with one name");
 }

@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -18,7 +19,8 @@ using codec::DecodedBlock;
 
 struct Shape {
   std::uint32_t vertices = 20, triangles = 60, materials = 1, parts = 1, labels = 1;
-  std::int32_t extent = 1000;  // of coordinates
+  std::int32_t extent = 1000;   // of coordinates
+  bool has_directions = false;  // a second layer, of octahedral codes
 };
 
 codec::BlockPlan random_plan(std::mt19937_64& random, const Shape& shape) {
@@ -48,12 +50,17 @@ codec::BlockPlan random_plan(std::mt19937_64& random, const Shape& shape) {
   return plan;
 }
 
-// One layer of lattice codes, of two components.
+// A layer of lattice codes, of two components, and perhaps one of directions.
 codec::BlockCoding coding_of(const Shape& shape) {
-  return {{{.dimension = 2}}, shape.materials, shape.parts};
+  codec::BlockCoding coding{{{.dimension = 2}}, shape.materials, shape.parts};
+  if (shape.has_directions) coding.layers.push_back({.dimension = 3, .octahedral_bits = 10});
+  return coding;
 }
 plain::BlockSchema schema_of(const Shape& shape) {
-  return {{{plain::BlockLayer::Kind::Lattice, 8, 2, false}}, shape.materials, shape.parts};
+  using Kind = plain::BlockLayer::Kind;
+  plain::BlockSchema schema{{{Kind::Lattice, 8, 2, false}}, shape.materials, shape.parts};
+  if (shape.has_directions) schema.layers.push_back({Kind::Octahedral, 10, 3, false});
+  return schema;
 }
 
 struct Both {
@@ -123,6 +130,48 @@ TEST_CASE("both decoders find one of more than 65,536 vertices") {
     const Shape shape{.vertices = vertices, .triangles = 100};
     check_base(random_plan(random, shape), shape);
   }
+}
+
+// Corners are held against the first 256 at their vertex.
+TEST_CASE("both decoders find codes that few of many corners have") {
+  std::mt19937_64 random(6);
+  for (int trial = 0; trial < 5; ++trial) {
+    INFO(trial);
+    const Shape shape{.vertices = 4, .triangles = 900};
+    codec::BlockPlan plan = random_plan(random, shape);
+    for (codec::CodedValue& value : plan.fine.values[0]) {
+      const bool is_rare = random() % 100 == 0;
+      value = {std::int32_t(is_rare ? 3 + random() % 2 : random() % 3), 0, 0, 0};
+    }
+    check_base(plan, shape);
+  }
+}
+
+// A wheel whose first 300 triangles are flat and have one code, while the others are folded and
+// have several. Its hub, the last vertex, is asked after all others.
+TEST_CASE("both decoders look at the bends of the first 256 triangles") {
+  constexpr std::uint32_t kSpokes = 400, kFlat = 300;
+  const Shape shape{.vertices = kSpokes + 1, .triangles = kSpokes, .has_directions = true};
+  codec::BlockPlan plan;
+  codec::PatchMesh& mesh = plan.fine;
+  mesh.values.resize(2);
+  for (std::uint32_t i = 0; i < kSpokes; ++i) {
+    const double angle = 2 * kPi * i / kSpokes;
+    mesh.positions.push_back({std::int32_t(10'000 * std::cos(angle)),
+                              std::int32_t(10'000 * std::sin(angle)),
+                              i > kFlat && i % 2 == 0 ? 9'000 : 0});
+    mesh.triangles.push_back({i, (i + 1) % kSpokes, kSpokes});
+    mesh.category.push_back(0);
+    mesh.derived.push_back(0);
+    plan.labels.push_back(0);
+    for (std::int32_t c = 0; c < 3; ++c) {
+      const bool is_folded = i > kFlat && c < 2;
+      mesh.values[0].push_back({is_folded ? std::int32_t(i) : 7, 0, 0, 0});
+      mesh.values[1].push_back({is_folded ? std::int32_t(i) : 500, 510, 0, 0});
+    }
+  }
+  mesh.positions.push_back({0, 0, 0});
+  check_base(plan, shape);
 }
 
 // Block 1 starts from a part of block 0, and names vertices of the rest.

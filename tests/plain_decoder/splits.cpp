@@ -131,7 +131,7 @@ void SplitReader::split(std::uint32_t v, const std::optional<Fan>& fan) {
   demand(shape.added.size() <= block_.limits.triangles - surface_.triangles.size(),
          "more triangles than there are");
   VertexState& state = block_.vertices[v];
-  state.generation = std::min<std::size_t>(state.generation + 1, 255);
+  ++state.generation;
   block_.vertices.push_back(VertexState(state));
   const std::uint32_t u = surface_.add_vertex(s);
   block_.splits.push_back({v, u, static_cast<std::uint32_t>(surface_.triangles.size()),
