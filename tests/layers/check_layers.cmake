@@ -9,6 +9,8 @@
 # (3) apps/ include public headers, their own and other people's, never src/.
 # (4) decode_* never includes encode_*.
 # (5) A third-party header is included only where the table says it lives; never in crease_runtime.
+# (6) The plain decoder in tests/plain_decoder, but for its tests, includes itself and the standard
+#     library.
 cmake_minimum_required(VERSION 3.25)
 include(${TABLES})
 
@@ -133,6 +135,20 @@ foreach(folder IN LISTS apps)
     check_file()
     math(EXPR count "${count} + 1")
   endforeach()
+endforeach()
+
+file(GLOB plain ${ROOT}/tests/plain_decoder/*.h ${ROOT}/tests/plain_decoder/*.cpp)
+list(FILTER plain EXCLUDE REGEX "_test\\.(h|cpp)$")
+foreach(path IN LISTS plain)
+  file(RELATIVE_PATH shown ${ROOT} ${path})
+  file(STRINGS "${path}" lines REGEX "^[ \t]*#[ \t]*include")
+  foreach(line IN LISTS lines)
+    if(NOT "${line}" MATCHES "include[ \t]*(\"plain_decoder/[a-z_]+\\.h\"|<[a-z_0-9]+>)" OR
+       "${line}" MATCHES "_test\\.h")
+      complain("the plain decoder stands alone: ${line}")
+    endif()
+  endforeach()
+  math(EXPR count "${count} + 1")
 endforeach()
 
 if(count EQUAL 0)

@@ -1,0 +1,337 @@
+#include "plain_decoder/container.h"
+
+#include "plain_decoder/checksum.h"
+
+#include <bit>
+#include <cmath>
+
+namespace plain {
+
+namespace {
+
+constexpr std::uint32_t kBlocksOfPage = 512, kMaxHead = 65'536, kMaxPage = 4'194'304;
+
+// Little-endian numbers, one after the other.
+class Reader {
+ public:
+  explicit Reader(Bytes bytes) : bytes_(std::move(bytes)) {}
+
+  std::uint64_t number(std::size_t bytes) {
+    demand(bytes <= left(), "it ends too early");
+    std::uint64_t x = 0;
+    for (std::size_t i = bytes; i-- > 0;) {
+      x = x << 8 | std::to_integer<std::uint64_t>(bytes_[at_ + i]);
+    }
+    at_ += bytes;
+    return x;
+  }
+  std::uint8_t u8() { return static_cast<std::uint8_t>(number(1)); }
+  std::uint16_t u16() { return static_cast<std::uint16_t>(number(2)); }
+  std::uint32_t u32() { return static_cast<std::uint32_t>(number(4)); }
+  std::uint64_t u64() { return number(8); }
+  std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
+  float f32() { return std::bit_cast<float>(u32()); }
+  double f64() { return std::bit_cast<double>(u64()); }
+  std::string text() {
+    const std::uint32_t length = u32();
+    demand(length <= left(), "a text that ends too late");
+    std::string result;
+    for (std::uint32_t i = 0; i < length; ++i) result += static_cast<char>(u8());
+    return result;
+  }
+  void reserved(std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; ++i) demand(u8() == 0, "a reserved byte that is not 0");
+  }
+  std::size_t left() const { return bytes_.size() - at_; }
+  void end() const { demand(left() == 0, "bytes behind the end"); }
+
+ private:
+  Bytes bytes_;
+  std::size_t at_ = 0;
+};
+
+Bytes part_of(const Bytes& file, std::uint64_t offset, std::uint64_t bytes) {
+  demand(offset <= file.size() && bytes <= file.size() - offset, "it ends after the file");
+  const auto begin = file.begin() + static_cast<std::ptrdiff_t>(offset);
+  return {begin, begin + static_cast<std::ptrdiff_t>(bytes)};
+}
+
+std::uint32_t blocks_of_page(const Head& head, std::size_t page) {
+  return std::min(kBlocksOfPage, head.blocks - kBlocksOfPage * static_cast<std::uint32_t>(page));
+}
+
+bool are_errors(const Errors& errors) {
+  return std::all_of(errors.begin(), errors.end(),
+                     [](float e) { return std::isfinite(e) && e >= 0; });
+}
+
+// "Attribute layer".
+Layer read_layer(Reader& in) {
+  struct Rule {
+    int least, most;
+    bool directions;
+  };
+  constexpr std::array<Rule, 4> kRules{
+      {{0, 0, false}, {1, 32, false}, {4, 16, true}, {2, 12, true}}};
+  Layer layer;
+  layer.name = in.text();
+  layer.role = in.u8();
+  layer.interpolation = in.u8();
+  layer.dimension = in.u8();
+  layer.coding = in.u8();
+  layer.bits = in.u8();
+  in.reserved(3);
+  demand(layer.role <= 3 && layer.interpolation <= 2 && layer.coding <= 3, "an unknown code");
+  demand(layer.dimension >= 1 && layer.dimension <= 4, "a layer's dimension");
+  const Rule& rule = kRules[layer.coding];
+  demand(layer.bits >= rule.least && layer.bits <= rule.most, "a layer's bits");
+  demand(!rule.directions || (layer.dimension == 3 && layer.interpolation == 0),
+         "a coding of directions for what is none");
+  return layer;
+}
+
+// "Band".
+Band read_band(Reader& in) {
+  Band band;
+  band.patches = in.u32();
+  band.contractions = in.u64();
+  band.triangles_after = in.u64();
+  for (float& e : band.errors) e = in.f32();
+  demand(are_errors(band.errors), "an error that is none");
+  return band;
+}
+
+Part read_part(Reader& in) {
+  const std::uint64_t bytes = in.u64(), checksum = in.u64();
+  demand(bytes > 0 || checksum == 0, "the checksum of what is absent");
+  return {bytes, checksum};
+}
+
+// "Head".
+Head read_head(const Bytes& file) {
+  constexpr std::array<std::uint8_t, 8> kMagic{0x89, 0x43, 0x52, 0x45, 0x41, 0x53, 0x45, 0x0a};
+  Reader start(file);
+  for (const std::uint8_t byte : kMagic) demand(start.u8() == byte, "not a file of this kind");
+  demand(start.u16() == 2, "not version 2");
+  start.u16();  // flags; below
+  Head head;
+  head.bytes = start.u32();
+  head.file_bytes = start.u64();
+  const std::uint64_t told = start.u64();
+  demand(head.bytes >= 144 && head.bytes <= kMaxHead, "the size of the head");
+  const Bytes whole = part_of(file, 0, head.bytes);
+  Bytes covered = whole;
+  covered.erase(covered.begin() + 24, covered.begin() + 32);
+  demand(checksum(covered) == told, "the checksum of the head");
+  demand(file.size() == head.file_bytes, "the size of the file");
+
+  Reader in(whole);
+  in.number(8);
+  in.u16();
+  in.reserved(2);
+  in.number(4);
+  in.number(8);
+  in.number(8);
+  head.blocks = in.u32();
+  const std::uint16_t bands = in.u16(), layers = in.u16();
+  head.vertices = in.u64();
+  head.triangles = in.u64();
+  for (double& x : head.origin) x = in.f64();
+  head.step = in.f64();
+  head.grid_bits = in.u8();
+  in.reserved(7);
+  head.materials = read_part(in);
+  head.part_names = read_part(in);
+  head.tables = read_part(in);
+  for (int l = 0; l < layers; ++l) head.layers.push_back(read_layer(in));
+  for (int b = 0; b < bands; ++b) head.bands.push_back(read_band(in));
+  const std::uint64_t pages = (std::uint64_t(head.blocks) + kBlocksOfPage - 1) / kBlocksOfPage;
+  for (std::uint64_t p = 0; p < pages; ++p) {
+    const std::uint64_t offset = in.u64();
+    head.pages.push_back({offset, in.u32()});
+    demand(head.pages.back().bytes <= kMaxPage, "the size of a page");
+  }
+  in.end();
+
+  demand(std::isfinite(head.step) && head.step > 0, "the grid's step");
+  for (const double x : head.origin) {
+    demand(std::isfinite(x) && std::abs(x) <= head.step * 0x1p50, "the grid's origin");
+  }
+  demand(head.grid_bits <= 31, "the grid's bits");
+  const auto is_normal = [](const Layer& layer) { return layer.role == 0; };
+  demand(std::count_if(head.layers.begin(), head.layers.end(), is_normal) <= 1,
+         "two layers of normals");
+  return head;
+}
+
+Bytes read_part(const Bytes& file, std::uint64_t& offset, const Part& part) {
+  Bytes bytes = part_of(file, offset, part.bytes);
+  offset += part.bytes;
+  demand(bytes.empty() || checksum(bytes) == part.checksum, "the checksum of names or tables");
+  return bytes;
+}
+
+// "Materials, part names, model tables".
+std::vector<Material> read_materials(const Bytes& bytes) {
+  std::vector<Material> materials;
+  if (bytes.empty()) return materials;
+  Reader in(bytes);
+  const std::uint32_t count = in.u32();
+  demand(count > 0, "no materials");
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Material material;
+    material.name = in.text();
+    for (float& c : material.colour) {
+      c = in.f32();
+      demand(std::isfinite(c), "a colour that is not finite");
+    }
+    material.texture = in.text();
+    materials.push_back(material);
+  }
+  in.end();
+  return materials;
+}
+
+std::vector<std::string> read_part_names(const Bytes& bytes) {
+  std::vector<std::string> names;
+  if (bytes.empty()) return names;
+  Reader in(bytes);
+  const std::uint32_t count = in.u32();
+  demand(count > 0, "no parts");
+  for (std::uint32_t i = 0; i < count; ++i) names.push_back(in.text());
+  in.end();
+  return names;
+}
+
+Lattice read_lattice(Reader& in) {
+  constexpr std::int32_t kMost = 1 << 24;
+  Lattice lattice;
+  lattice.divisor = in.f32();
+  lattice.least = in.i32();
+  lattice.greatest = in.i32();
+  const std::uint32_t entries = in.u32();
+  demand(std::isfinite(lattice.divisor) && lattice.divisor > 0, "a divisor");
+  demand(-kMost <= lattice.least && lattice.least <= lattice.greatest && lattice.greatest <= kMost,
+         "the codes of a lattice");
+  for (std::uint32_t i = 0; i < entries; ++i) {
+    const float entry = in.f32();
+    demand(std::isfinite(entry), "an entry that is not finite");
+    demand(i == 0 || lattice.entries.back() < entry, "entries that do not ascend");
+    lattice.entries.push_back(entry);
+  }
+  demand(
+      entries == 0 || std::int64_t(entries) == std::int64_t(lattice.greatest) - lattice.least + 1,
+      "not an entry for every code");
+  if (entries == 0) {
+    for (const std::int32_t code : {lattice.least, lattice.greatest}) {
+      demand(std::isfinite(float(code) / lattice.divisor), "a value that is not finite");
+    }
+  }
+  return lattice;
+}
+
+// "Directory page". An error's code is the upper half of an f32 without its sign.
+Errors read_error_codes(Reader& in) {
+  Errors errors{};
+  for (float& e : errors) e = std::bit_cast<float>(std::uint32_t(in.u16()) << 15);
+  demand(are_errors(errors), "an error that is none");
+  return errors;
+}
+
+Entry read_entry(Reader& in) {
+  Entry entry;
+  entry.checksum = in.u64();
+  entry.bytes = in.u32();
+  entry.memory = in.u32();
+  entry.band = in.u16();
+  in.reserved(2);
+  entry.patch = in.u32();
+  for (std::size_t k = 0; k < 3; ++k) entry.centre.along(k) = in.i32();
+  entry.radius = in.u32();
+  entry.splits = in.u32();
+  entry.vertices = in.u32();
+  entry.coarse_triangles = in.u32();
+  entry.fine_triangles = in.u32();
+  entry.coarse = read_error_codes(in);
+  entry.fine = read_error_codes(in);
+  for (std::size_t k = 0; k < 4; ++k) {
+    demand(entry.fine[k] <= entry.coarse[k], "a fine end that has the greater error");
+  }
+  return entry;
+}
+
+// Reads page p. Its blocks lie behind it, and behind them is the next page or the file's end.
+void read_page(const Bytes& file, const Head& head, std::size_t p, std::vector<Entry>& entries) {
+  const PageReference& reference = head.pages[p];
+  const Bytes bytes = part_of(file, reference.offset, reference.bytes);
+  Reader in(bytes);
+  const std::uint64_t told = in.u64();
+  demand(checksum({bytes.begin() + 8, bytes.end()}) == told, "the checksum of a page");
+  demand(in.u32() == p, "another page");
+  const std::uint32_t dependencies = in.u32(), count = blocks_of_page(head, p);
+  demand(reference.bytes == 16 + 76 * std::uint64_t(count) + 4 * std::uint64_t(dependencies),
+         "the size of a page");
+  std::uint64_t offset = reference.offset + reference.bytes;
+  std::vector<std::uint32_t> ends{0};
+  const std::size_t first = entries.size();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Entry entry = read_entry(in);
+    demand(entry.band <= head.bands.size(), "a band that there is none of");
+    entry.offset = offset;
+    offset += entry.bytes;
+    ends.push_back(in.u32());
+    demand(ends[i] <= ends[i + 1] && ends[i + 1] <= dependencies, "the end of dependencies");
+    entries.push_back(entry);
+  }
+  demand(ends.back() == dependencies, "dependencies of no block");
+  const bool is_last = p + 1 == head.pages.size();
+  demand(offset == (is_last ? head.file_bytes : head.pages[p + 1].offset),
+         "blocks that do not end where the next page begins");
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::vector<std::uint32_t>& needs = entries[first + i].needs;
+    while (ends[i] + needs.size() < ends[i + 1]) {
+      const std::uint32_t needed = in.u32();
+      demand(needed < first + i, "a block that needs one that is not before it");
+      demand(needs.empty() || needs.back() < needed, "needed blocks that do not ascend");
+      needs.push_back(needed);
+    }
+  }
+  in.end();
+}
+
+}  // namespace
+
+// "The whole".
+Container read_container(const Bytes& file) {
+  Container container;
+  container.head = read_head(file);
+  const Head& head = container.head;
+  std::uint64_t offset = head.bytes;
+  container.materials = read_materials(read_part(file, offset, head.materials));
+  container.part_names = read_part_names(read_part(file, offset, head.part_names));
+  container.tables = read_part(file, offset, head.tables);
+  demand(offset == (head.pages.empty() ? head.file_bytes : head.pages[0].offset),
+         "page 0 is not behind names and tables");
+  for (std::size_t p = 0; p < head.pages.size(); ++p) read_page(file, head, p, container.entries);
+  return container;
+}
+
+std::vector<std::vector<Lattice>> read_lattices(const std::vector<Layer>& layers,
+                                                const Bytes& tables) {
+  std::vector<std::vector<Lattice>> lattices(layers.size());
+  Reader in(tables);
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    if (layers[l].coding != 1) continue;
+    for (int k = 0; k < layers[l].dimension; ++k) lattices[l].push_back(read_lattice(in));
+  }
+  in.end();
+  return lattices;
+}
+
+Bytes read_payload(const Bytes& file, const Entry& entry) {
+  Bytes payload = part_of(file, entry.offset, entry.bytes);
+  demand(checksum(payload) == entry.checksum, "the checksum of a block");
+  return payload;
+}
+
+}  // namespace plain

@@ -1,0 +1,54 @@
+// docs/format-block.md, "Mixtures".
+#pragma once
+
+#include "plain_decoder/bits.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace plain {
+
+inline constexpr std::size_t kComponents = 8;
+using PerComponent = std::array<double, kComponents>;
+using Sizes = std::array<double, 4>;
+
+struct Axis {
+  PerComponent weight{}, centre{}, inverse_scale{};
+};
+
+// "axis(start, size)".
+std::int32_t read_axis(RangeDecoder& in, Axis& axis, std::int32_t start, double size);
+
+// "round(x)" and "excess(q)".
+std::int32_t round_of(double x);
+double excess(double q);
+
+// "What mixtures learn".
+struct ComponentWeights {
+  PerComponent of{};
+  int n = 0;
+
+  void learn(const PerComponent& shares);
+};
+
+struct MeanSizes {
+  Sizes of{};
+  bool has_any = false;
+
+  void learn(const Sizes& sizes);
+};
+
+struct ComponentScales {
+  PerComponent logarithm{};
+  std::array<Sizes, 2> slope{};
+
+  PerComponent at(const Sizes& sizes) const;
+  void learn(const PerComponent& shares, const PerComponent& excesses, const Sizes& sizes,
+             const Sizes& mean);
+};
+
+// Of the weights that the last axis left; false if there is nothing to learn from.
+bool make_shares(PerComponent& weights);
+
+}  // namespace plain

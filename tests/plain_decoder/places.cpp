@@ -1,0 +1,189 @@
+#include "plain_decoder/places.h"
+
+#include "plain_decoder/tables.h"
+
+#include <optional>
+
+namespace plain {
+
+// Surroundings.
+
+Surroundings surroundings(const Surface& surface, std::uint32_t first, std::uint32_t second,
+                          const Point& s) {
+  Surroundings result;
+  std::array<Vector, 2> normals;
+  Vector thirds;
+  double third_count = 0, size = 0, size_count = 0;
+  for (const std::size_t which : {0u, 1u}) {
+    const std::uint32_t child = which == 0 ? first : second;
+    const std::uint32_t other = which == 0 ? second : first;
+    Vector sum;
+    double count = 0;
+    for (const std::uint32_t t : surface.list(child)) {
+      const std::uint32_t after = surface.start_of(t, child), before = surface.end_of(t, child);
+      const Vector a = difference(surface.places[after], s);
+      const Vector b = difference(surface.places[before], s);
+      if (after == other || before == other) {
+        thirds = thirds + (after == other ? b : a);
+        third_count += 1;
+      } else {
+        normals[which] = normals[which] + cross(a, b);
+      }
+      if (after != other) {
+        sum = sum + a;
+        count += 1;
+        size += length_1(a);
+        size_count += 1;
+      }
+      if (before != other) {
+        sum = sum + b;
+        count += 1;
+        size += length_1(b);
+        size_count += 1;
+      }
+    }
+    if (count > 0) result.middle[which] = sum * (1 / count);
+  }
+  if (third_count > 0) result.thirds = thirds * (1 / third_count);
+  if (size_count > 0) result.edge = size / size_count;
+  const Vector N = normals[0] + normals[1];
+  result.normal = unit(N);
+  const double cosine = dot(unit(normals[0]), unit(normals[1]));
+  result.bend = result.edge * std::sqrt(std::max(0.0, 1 - cosine));
+  std::size_t third = 0;
+  for (const std::size_t k : {1u, 2u}) {
+    if (std::abs(N.along(k)) > std::abs(N.along(third))) third = k;
+  }
+  result.axis = {(third + 1) % 3, (third + 2) % 3, third};
+  return result;
+}
+
+// Positions: sizes.
+
+Sizes sizes_of_place(const Surroundings& around, const Miss& expected) {
+  return {log2_of(double(expected.tangent) + 0.25), log2_of(double(expected.normal) + 0.25),
+          log2_of(around.edge + 1), log2_of(around.bend + 1)};
+}
+
+namespace {
+
+using Direction = std::array<double, 3>;  // of the normal along the three axes
+
+double rise(const Direction& D, double x, double y) {
+  return -(D[0] * x + D[1] * y) / D[2];
+}
+
+// Positions: components. The place that each expects; none where it has no weight.
+std::array<std::optional<Vector>, kComponents> expected_places(const Surroundings& around,
+                                                               const Child& child) {
+  const std::array<double, 8>& k = kPlaces[std::size_t(child.who)].k;
+  const Vector& own = around.middle[child.second ? 1 : 0];
+  const Vector& other = around.middle[child.second ? 0 : 1];
+  const Vector &normal = around.normal, &sibling = child.sibling;
+  const double q = k[4] * dot(own, normal) + k[5] * dot(other, normal) +
+                   k[6] * dot(around.thirds, normal) + k[7] * dot(sibling, normal);
+  std::array<std::optional<Vector>, kComponents> places;
+  places[0] = own * k[0] + other * k[1] + around.thirds * k[2] + sibling * k[3] + normal * q;
+  places[1] = child.who == Who::FirstOfBoth ? sibling * -1 : own * 0.6;
+  if (!child.ring.empty()) {
+    const std::vector<Vector>& r = child.ring;
+    const std::size_t c = r.size(), h = c / 2;
+    places[2] = (r[0] + r[h]) * 0.5;
+    places[3] = r[c - 1] + r[0] - child.after;
+    places[4] = r[1] + r[0] - child.before;
+    places[5] = (r[1] + r[(1 + h) % c]) * 0.5;
+    places[6] = (r[c - 1] + r[c - 1 - h]) * 0.5;
+  }
+  places[7] = Vector{};
+  return places;
+}
+
+}  // namespace
+
+PlaceModel::PlaceModel(Who who) {
+  const PlaceStart& start = kPlaces[std::size_t(who)];
+  for (std::size_t c = 0; c < weights_.size(); ++c) weights_[c].of = start.weights[c];
+  tangent_ = {start.tangent, start.tangent_slopes};
+  normal_ = {start.normal, start.normal_slopes};
+}
+
+// Positions: coding.
+std::array<std::int32_t, 3> PlaceModel::read(RangeDecoder& in, const Surroundings& around,
+                                             const Child& child, const Sizes& sizes, Miss& miss) {
+  ComponentWeights& weights = weights_[std::clamp<std::size_t>(child.triangles, 3, 8) - 3];
+  const std::array<std::size_t, 3>& axis = around.axis;
+  Direction D{0, 0, 1};
+  if (around.normal.along(axis[2]) != 0) {
+    D = {around.normal.along(axis[0]), around.normal.along(axis[1]), around.normal.along(axis[2])};
+  }
+  Axis now;
+  now.weight = weights.of;
+  std::array<PerComponent, 3> centre{};
+  const auto places = expected_places(around, child);
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    if (!places[k]) {
+      now.weight[k] = 0;
+      continue;
+    }
+    const double x = places[k]->along(axis[0]), y = places[k]->along(axis[1]);
+    centre[0][k] = x;
+    centre[1][k] = y;
+    centre[2][k] = places[k]->along(axis[2]) - rise(D, x, y);
+  }
+  const PerComponent T = tangent_.at(sizes), N = normal_.at(sizes);
+  PerComponent tangent_excess{}, normal_excess{};
+
+  // 1.
+  const double across = std::sqrt(std::max(1 - D[0] * D[0], 0.0));
+  PerComponent scale;
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    scale[k] = T[k] * across + 0.2;
+    now.centre[k] = centre[0][k];
+    now.inverse_scale[k] = 1 / scale[k];
+  }
+  const std::int32_t x = read_axis(in, now, round_of(now.centre[0]), scale[0]);
+
+  // 2.
+  const double along = D[0] * D[1] / (across * across), rest = std::abs(D[2]) / across;
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double off = x - now.centre[k], i = now.inverse_scale[k], z = off * i;
+    tangent_excess[k] = excess(z * z) * (1 - 0.2 * i);
+    scale[k] = T[k] * rest * std::sqrt(0.5 + 0.5 * z * z) + 0.2;
+    now.centre[k] = centre[1][k] - along * off;
+    now.inverse_scale[k] = 1 / scale[k];
+  }
+  const std::int32_t y = read_axis(in, now, round_of(now.centre[0]), scale[0]);
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double i = now.inverse_scale[k], z = (y - now.centre[k]) * i;
+    tangent_excess[k] += excess(z * z) * (1 - 0.2 * i);
+  }
+
+  // 3.
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    scale[k] = N[k] / std::abs(D[2]) + 0.2;
+    now.centre[k] = centre[2][k];
+    now.inverse_scale[k] = 1 / scale[k];
+  }
+  const std::int32_t plane = round_of(rise(D, x, y));
+  const std::int32_t above = read_axis(in, now, round_of(now.centre[0]), scale[0]);
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double i = now.inverse_scale[k], z = (above - now.centre[k]) * i;
+    normal_excess[k] = excess(z * z) * (1 - 0.2 * i);
+  }
+  const std::int32_t third = sum_of(above, plane);
+
+  PerComponent shares = now.weight;
+  if (make_shares(shares)) {
+    weights.learn(shares);
+    mean_.learn(sizes);
+    tangent_.learn(shares, tangent_excess, sizes, mean_.of);
+    normal_.learn(shares, normal_excess, sizes, mean_.of);
+  }
+  const float miss_x = static_cast<float>(std::abs(x - centre[0][0]));
+  const float miss_y = static_cast<float>(std::abs(y - centre[1][0]));
+  miss = {std::max(miss_x, miss_y),
+          static_cast<float>(std::abs(third - rise(D, x, y) - centre[2][0]))};
+  return {x, y, third};
+}
+
+}  // namespace plain
