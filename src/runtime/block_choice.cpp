@@ -7,6 +7,13 @@
 
 namespace crease {
 
+namespace {
+
+// To say which of the spheres around the eye are worst, something in them is so near.
+constexpr float kNearestRadii = 0.05f;
+
+}  // namespace
+
 std::span<const std::uint32_t> BlockChooser::choose(const ViewParameters& view,
                                                     const Limits& limits) {
   ++round_;
@@ -60,7 +67,11 @@ void BlockChooser::find_wrong(const ViewParameters& view, const Limits& limits) 
     }
     const float own = is_base ? std::numeric_limits<float>::infinity()
                               : error.of(graph_.own(block).bounds, graph_.own(block).center);
-    if (own > (limits.is_refined[block] ? keep : 1)) wrong_.push_back({own, block});
+    if (own <= (limits.is_refined[block] ? keep : 1)) continue;
+    wrong_.push_back(
+        {is_base ? own
+                 : error.of(graph_.own(block).bounds, graph_.own(block).center, kNearestRadii),
+         block});
   }
 }
 

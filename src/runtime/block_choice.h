@@ -17,7 +17,9 @@ class BlockChooser {
   explicit BlockChooser(const BlockGraph& graph, const Grid& grid) : graph_(graph), grid_(grid) {}
 
   struct Candidate {
-    float error = 0;  // 1: just what is allowed; infinite: the base
+    // 1: just what is allowed; infinite: the base. Seen from a twentieth of the sphere's radius
+    // away, if the eye is nearer.
+    float error = 0;
     std::uint32_t block = 0;
   };
   struct Limits {

@@ -15,6 +15,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr float kPagePriority = 1e9f;  // before any block
+constexpr std::size_t kDecodingPerThread = 8;  // so that none is idle between two frames
 constexpr int kUpdatesBetweenPrefetches = 8;
 constexpr std::chrono::milliseconds kLongestPause{60'000};
 
@@ -57,7 +58,9 @@ struct BlockStreamer::Impl {
   void note_failure(BlockId id, const Failure& failure);
   bool is_paused(BlockId id) const;
   std::vector<BlockEntry> missing_soon(const BlockViewParameters& parameters);
-  std::size_t most_decoding() const { return std::size_t(options.decode_threads) + 1; }
+  std::size_t most_decoding() const {
+    return kDecodingPerThread * std::size_t(std::max(options.decode_threads, 1));
+  }
 
   BlockFileHead head;
   BlockMesh mesh;

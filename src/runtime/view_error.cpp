@@ -64,11 +64,12 @@ ViewError::Motion ViewError::motion_from(const ViewError& before) const {
   return {length(frame_[0] - before.frame_[0]), std::sqrt(sum / 2)};
 }
 
-float ViewError::of(const SplitBounds& bounds, const Vec3f& position) const {
+float ViewError::of(const SplitBounds& bounds, const Vec3f& position, float least_radii) const {
   const Watch w = watch(bounds, position, 1);
   const Vec3f& c = w.center;
   if (inside(c.x, c.y, c.z) + w.radius < 0) return 0;
-  const float nearest = std::max(distance(c.x, c.y, c.z) - w.radius, 1e-20f);
+  const float least = std::max(least_radii * w.radius, 1e-20f);
+  const float nearest = std::max(distance(c.x, c.y, c.z) - w.radius, least);
   const float error = std::max(decoded(bounds.surface), decoded(bounds.line));
   float excess = error > 0 ? std::min(error * pixels_at_one_ / nearest, kMost) : 0;
   const float size = std::min(1.0f, w.radius * full_size_at_one_ / nearest);

@@ -90,8 +90,9 @@ class ViewError {
   ViewError() = default;
   ViewError(const ViewParameters& view, const Grid& grid);
 
-  // `position` in model units from the grid's origin. 1: just what is allowed.
-  float of(const SplitBounds& bounds, const Vec3f& position) const;
+  // `position` in model units from the grid's origin. 1: just what is allowed. The eye counts as no
+  // nearer to the sphere than so many of its radii: with 0, from inside any error is far too large.
+  float of(const SplitBounds& bounds, const Vec3f& position, float least_radii = 0) const;
 
   // For the question "is it more than `limit`?".
   Watch watch(const SplitBounds& bounds, const Vec3f& position, float limit) const;
