@@ -135,8 +135,8 @@ class BlockMesh {
   std::size_t triangle_count() const;         // of what is shown
   // The largest of what is shown.
   LevelError error() const;
-  // How wrong the worst of it is seen to be by the last update()'s view: what is off by just as much
-  // as is allowed counts 1. 0: nothing is off by more than that. Where the eye is inside of a
+  // How wrong the worst of it is seen to be by the last update()'s view: what is off by just as
+  // much as is allowed counts 1. 0: nothing is off by more than that. Where the eye is inside of a
   // block's sphere, it counts as a twentieth of the radius away from what is wrong.
   float view_error() const;
 

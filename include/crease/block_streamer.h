@@ -8,8 +8,8 @@
 //     for (const ShownRange& range : streamer->mesh().shown()) draw(range);
 //
 // Memory: what BlockViewParameters::max_bytes allows of resident blocks, and beside that at most
-// StreamOptions::max_pending_bytes of payloads, of each thread the BlockFacts::decoded_bytes of what
-// it decodes, and eight decoded blocks that wait for the next update().
+// StreamOptions::max_pending_bytes of payloads, of each thread the BlockFacts::decoded_bytes of
+// what it decodes, and eight decoded blocks that wait for the next update().
 //
 // Threads: one at a time calls a streamer. Its own ones decode, and touch nothing that it shows.
 #pragma once

@@ -22,16 +22,20 @@ std::span<const std::uint32_t> BlockChooser::choose(const ViewParameters& view,
   open_dependencies_.resize(graph_.size(), 0);
   chosen_.clear();
   find_wrong(view, limits);
-  std::sort(wrong_.begin(), wrong_.end(), [](const Candidate& a, const Candidate& b) {
-    return a.error != b.error ? a.error > b.error : a.block < b.block;
-  });
+  // A heap: mostly the budget ends long before the list.
+  const auto is_less = [](const Candidate& a, const Candidate& b) {
+    return a.error != b.error ? a.error < b.error : a.block > b.block;
+  };
+  std::make_heap(wrong_.begin(), wrong_.end(), is_less);
   std::size_t bytes = 0, triangles = 0;
-  for (const Candidate& candidate : wrong_) {
+  for (auto end = wrong_.end(); end != wrong_.begin(); --end) {
+    std::pop_heap(wrong_.begin(), end, is_less);
+    const Candidate& candidate = *(end - 1);
     collect_needed(candidate.block);
     std::size_t more_bytes = 0, more_triangles = 0;
     for (const std::uint32_t block : needed_) {
       const BlockFacts& facts = graph_.entry(block).facts;
-      more_bytes += limits.bytes_of(block);
+      more_bytes += limits.bytes_of_block[block];
       more_triangles +=
           facts.triangles_fine - std::min(facts.triangles_coarse, facts.triangles_fine);
     }

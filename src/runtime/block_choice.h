@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,15 +23,15 @@ class BlockChooser {
   };
   struct Limits {
     std::size_t max_bytes = 0;
-    std::function<std::size_t(std::uint32_t block)> bytes_of;
-    std::span<const char> is_refined;  // per block: the cut is through it
+    std::span<const std::size_t> bytes_of_block;  // per block
+    std::span<const char> is_refined;             // per block: the cut goes through it
   };
   // Those whose coarse ends are seen to be wrong and what they need: the most visible errors first,
   // what a block needs before it, until the view's triangles or the limits' bytes are used up. The
   // base always. Time O(blocks that are wrong and next to them).
   std::span<const std::uint32_t> choose(const ViewParameters& view, const Limits& limits);
 
-  // Those that the last choose() found wrong, the worst first.
+  // Those that the last choose() found wrong, in no order.
   std::span<const Candidate> wrong() const { return wrong_; }
   std::size_t evaluated() const { return evaluated_; }  // by the last choose()
   bool is_chosen(std::uint32_t block) const { return chosen_at_[block] == round_; }

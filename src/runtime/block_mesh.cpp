@@ -36,9 +36,10 @@ struct BlockMesh::Impl {
   BlockChooser chooser;
   // Per block.
   std::vector<ResidentBlockPtr> resident;
-  std::vector<char> is_refined;          // it is in the cut: resident, and so is what it needs
-  std::vector<std::uint64_t> wanted_at;  // the last update that wanted it
-  std::vector<std::uint32_t> cut;        // those that are refined, ascending
+  std::vector<std::size_t> bytes_of_block;  // what it takes, or at most would
+  std::vector<char> is_refined;             // it is in the cut: resident, and so is what it needs
+  std::vector<std::uint64_t> wanted_at;     // the last update that wanted it
+  std::vector<std::uint32_t> cut;           // those that are refined, ascending
   std::vector<BlockEntry> missing;
   std::vector<ShownRange> shown;
   LevelError shown_error;
@@ -50,12 +51,7 @@ struct BlockMesh::Impl {
 };
 
 BlockChooser::Limits BlockMesh::Impl::limits(const BlockViewParameters& parameters) const {
-  return {parameters.max_bytes,
-          [this](std::uint32_t block) {
-            return resident[block] ? resident[block]->bytes()
-                                   : resident_bytes_of(graph.entry(block).facts, *schema);
-          },
-          is_refined};
+  return {parameters.max_bytes, bytes_of_block, is_refined};
 }
 
 BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
@@ -184,6 +180,9 @@ Status BlockMesh::add_page(const DirectoryPage& page) {
   if (Status status = impl_->graph.add_page(page); !status.ok()) return status.failure();
   const std::size_t count = impl_->graph.size();
   impl_->resident.resize(count);
+  for (std::size_t block = impl_->bytes_of_block.size(); block < count; ++block) {
+    impl_->bytes_of_block.push_back(bytes_of(impl_->graph.entry(std::uint32_t(block)).facts));
+  }
   impl_->is_refined.resize(count, 0);
   impl_->wanted_at.resize(count, 0);
   impl_->has_changed = true;
@@ -236,6 +235,7 @@ void BlockMesh::insert(ResidentBlockPtr block) {
   ResidentBlockPtr& place = impl_->resident[index_of(block->id())];
   if (place) return;
   impl_->resident_bytes += block->bytes();
+  impl_->bytes_of_block[index_of(block->id())] = block->bytes();
   ++impl_->resident_count;
   // As if it had just been wanted: what was prefetched is not the first to go.
   std::uint64_t& wanted_at = impl_->wanted_at[index_of(block->id())];

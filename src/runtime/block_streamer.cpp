@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr float kPagePriority = 1e9f;  // before any block
+constexpr float kPagePriority = 1e9f;          // before any block
 constexpr std::size_t kDecodingPerThread = 8;  // so that none is idle between two frames
 constexpr int kUpdatesBetweenPrefetches = 8;
 constexpr std::chrono::milliseconds kLongestPause{60'000};
