@@ -4,6 +4,8 @@
 //   bench_stream city.crease --budget 256 --frames 1200
 //   bench_stream http://127.0.0.1:8080/city.crease --city --csv flight.csv
 //   bench_stream berlin.crease --vertex          beside the mesh by vertex, at the same error
+//   bench_stream http://127.0.0.1:8080/city.crease --still      time and bytes until the model,
+//                                                   seen whole, has its first picture and is right
 //
 // The camera moves by the clock: a frame that takes long is a frame that misses what lies between.
 // Only the calls that a program makes each frame are timed; drawing is not among them.
@@ -53,7 +55,7 @@ struct Options {
   std::string file, csv;
   double budget_mb = 256, pixels = 1, frames_per_second = 30;
   int frames = 900, threads = 1;
-  bool is_city = false, by_vertex = false;
+  bool is_city = false, by_vertex = false, is_still = false;
 };
 
 struct Frame {
@@ -194,6 +196,43 @@ int fly(const Options& options) {
   return 0;
 }
 
+// A camera that sees the whole model and does not move.
+int stand_still(const Options& options) {
+  const Clock::time_point start = Clock::now();
+  Result<Opened> opened = open(options);
+  if (!opened.ok()) {
+    std::fprintf(stderr, "%s\n", opened.failure().message.c_str());
+    return 2;
+  }
+  BlockStreamer& streamer = opened->streamer;
+  const std::uint64_t file_bytes = opened->file.head().file_bytes;
+  const auto report = [&](const char* what) {
+    // What opening read stays with the source that read it.
+    const double bytes =
+        double(opened->file.source().bytes_read() + streamer.statistics().source.bytes_transferred);
+    std::printf("  %-14s %7.3f s  %9.1f kB  %5.1f %% of the file  %zu triangles, %.2f px\n", what,
+                seconds_since(start), bytes / 1e3, 100 * bytes / double(file_bytes),
+                streamer.mesh().triangle_count(),
+                double(streamer.mesh().view_error()) * options.pixels);
+  };
+  std::printf("%s\n", options.file.c_str());
+  const Box box = box_of_start(streamer);
+  report("first picture");
+  BlockViewParameters parameters;
+  parameters.max_bytes = std::size_t(options.budget_mb * 1e6);
+  Camera& camera = parameters.view.camera;
+  camera.target = box.at(0.5, 0.5, 0.5);
+  camera.position = camera.target + normalized(Vec3d{0.6, -1, 0.7}) * (1.3 * box.diagonal());
+  camera.width_px = 1920;
+  camera.height_px = 1080;
+  for (const double pixels : {16.0, 4.0, 1.0}) {
+    camera.pixels = pixels * options.pixels;
+    while (!streamer.update(parameters).is_complete) streamer.wait(std::chrono::milliseconds(16));
+    report(pixels > 10 ? "within 16 px" : pixels > 2 ? "within 4 px" : "within 1 px");
+  }
+  return 0;
+}
+
 // Everything in memory: triangles and time at the same error, along the same path.
 int compare_granularities(const Options& options) {
   Result<Opened> opened = open(options);
@@ -248,8 +287,10 @@ int run(int argc, char** argv) {
   app.add_option("--threads", options.threads, "that decode");
   app.add_flag("--city", options.is_city, "fly over it, low, instead of around");
   app.add_flag("--vertex", options.by_vertex, "beside the mesh by vertex, with all in memory");
+  app.add_flag("--still", options.is_still, "until a camera that sees all of it is satisfied");
   app.add_option("--csv", options.csv, "a line for each frame");
   CLI11_PARSE(app, argc, argv);
+  if (options.is_still) return stand_still(options);
   return options.by_vertex ? compare_granularities(options) : fly(options);
 }
 
