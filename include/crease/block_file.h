@@ -111,12 +111,14 @@ struct BlockFileHead {
   std::uint64_t file_bytes = 0;  // of the whole, however much of it is there
   std::uint32_t head_bytes = 0;
   std::uint32_t block_count = 0;
+  std::uint32_t part_count = 0;
   ModelFacts facts;
   struct Section {
     FileRange range;
     std::uint64_t checksum = 0;
   };
-  Section materials, parts, tables;
+  Section materials, tables;
+  Section parts;  // the names: the last bytes of the file
   std::vector<FileRange> pages;
 };
 
@@ -144,7 +146,9 @@ class BlockFile {
 
   // Empty where the file has none.
   Result<std::vector<Material>> read_materials() const;
+  // Truncated while the file has not arrived as a whole: names lie at its end.
   Result<std::vector<std::string>> read_parts() const;
+  bool has_parts() const;  // all that read_parts() reads is there
   Result<std::vector<std::byte>> read_tables() const;
 
   // Blocks 0 .. n - 1 are there, of a file that was cut or is still arriving. Reads one page, or

@@ -29,6 +29,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace crease {
@@ -103,7 +104,7 @@ struct BlockUpdate {
 
 class BlockMesh {
  public:
-  // Reads the schema: tables, materials, parts. The directory comes by add_page().
+  // Reads the schema: tables and materials. The directory comes by add_page().
   static Result<BlockMesh> open(const BlockFile& file);
   ~BlockMesh();
   BlockMesh(BlockMesh&&) noexcept;
@@ -112,6 +113,10 @@ class BlockMesh {
   std::optional<std::uint32_t> next_page() const;
   // The next one. Fails if it does not continue those before.
   Status add_page(const DirectoryPage& page);
+
+  // Those of the file's parts, which lie at its end; without them extract() has no parts. As many
+  // as the head says.
+  void set_part_names(std::vector<std::string> names);
 
   // Moves the cut to what the view wants, as far as blocks are resident, and says what is missing
   // for the rest. Drops what was not wanted for longest while more than max_bytes are resident;

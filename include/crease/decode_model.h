@@ -62,7 +62,7 @@ struct DecodeOptions {
 };
 
 struct DecodedModel {
-  Mesh mesh;                        // snapped; holds check_mesh()
+  Mesh mesh;  // snapped; holds check_mesh(). Without parts if their names have not arrived yet
   LevelError error;                 // of the mesh: not 0 where finer blocks were left out
   ContractionSequence sequence;     // of it, without bands; holds check_contractions()
   std::vector<BlockId> blocks;      // that were decoded, ascending

@@ -105,9 +105,13 @@ Result<std::vector<Material>> BlockFile::read_materials() const {
 Result<std::vector<std::string>> BlockFile::read_parts() const {
   const auto bytes = read_section(head_.parts, "part names", kNamesFactor);
   if (!bytes.ok()) return bytes.failure();
-  auto parts = decode_parts(*bytes);
+  auto parts = decode_parts(*bytes, head_.part_count);
   if (!parts.ok()) return named(parts.failure());
   return parts;
+}
+
+bool BlockFile::has_parts() const {
+  return source_->size() >= head_.parts.range.offset + head_.parts.range.bytes;
 }
 
 Result<std::vector<std::byte>> BlockFile::read_tables() const {

@@ -21,9 +21,11 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
 Result<DirectoryPage> decode_page(std::span<const std::byte> bytes, const BlockFileHead& head,
                                   std::uint32_t page, Checksums checksums);
 
-// `bytes`: all of the section, whose checksum is right; none: there are no names.
+// `bytes`: all of the section, whose checksum is right; none: there are no names. `count`: as the
+// head says.
 Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes);
-Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes);
+Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes,
+                                              std::uint32_t count);
 
 std::string page_name(const BlockFileHead& head, std::uint32_t page);  // "page 3 at byte 81920"
 std::string block_name(const BlockEntry& entry);                       // "block 17 at byte 81920"

@@ -50,18 +50,27 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head) {
   for (int i = 0; i < 3; ++i) facts.grid.origin[i] = in.f64();
   facts.grid.step = in.f64();
   facts.grid_bits = in.u8();
-  std::uint8_t reserved = decode_reserved(in, 7);
-  std::uint64_t end = head.head_bytes;
+  std::uint8_t reserved = decode_reserved(in, 3);
+  head.part_count = in.u32();
+  std::uint64_t end = head.head_bytes, left = head.file_bytes - end;
   for (auto* section : {&head.materials, &head.parts, &head.tables}) {
-    section->range = {end, in.u64()};
+    section->range.bytes = in.u64();
     section->checksum = in.u64();
-    if (section->range.bytes > head.file_bytes - end) {
-      return bad_head("names or tables that end after the file");
-    }
+    if (section->range.bytes > left) return bad_head("names or tables that end after the file");
+    left -= section->range.bytes;
     if (section->range.bytes == 0 && section->checksum != 0) {
       return bad_head("the checksum of what is absent");
     }
+  }
+  for (auto* section : {&head.materials, &head.tables}) {
+    section->range.offset = end;
     end += section->range.bytes;
+  }
+  const std::uint64_t blocks_end = head.file_bytes - head.parts.range.bytes;
+  head.parts.range.offset = blocks_end;
+  if (head.part_count == 0 ? head.parts.range.bytes != 0
+                           : head.part_count > head.parts.range.bytes / format::kMinPartBytes) {
+    return bad_head("there are not as many names as parts");
   }
   const std::uint32_t pages = format::page_count(head.block_count);
   if (std::uint64_t(layer_count) * format::kLayerBytes +
@@ -93,7 +102,7 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head) {
     if (page.bytes < least || (page.bytes - least) % 4 != 0 || page.bytes > format::kMaxPageBytes) {
       return bad_head(name + " has a size that no such page has");
     }
-    if (page.offset > head.file_bytes || page.bytes > head.file_bytes - page.offset) {
+    if (page.offset > blocks_end || page.bytes > blocks_end - page.offset) {
       return bad_head(name + " ends after the file");
     }
     end = page.offset + page.bytes;
@@ -101,7 +110,7 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head) {
   }
   if (in.truncated() || in.remaining() != 0) return bad_head("it is not as long as it says");
   if (reserved != 0) return bad_head("a reserved byte is not 0");
-  if (pages == 0 && end != head.file_bytes) return bad_head("bytes behind a file without blocks");
+  if (pages == 0 && end != blocks_end) return bad_head("bytes behind a file without blocks");
   if (std::string wrong = broken_rule(facts); !wrong.empty()) return bad_head(wrong);
   return head;
 }
@@ -169,12 +178,12 @@ Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes)
   return materials;
 }
 
-Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes) {
+Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes,
+                                              std::uint32_t count) {
   std::vector<std::string> parts;
   if (bytes.empty()) return parts;
   ByteReader in(bytes);
-  const std::uint32_t count = in.u32();
-  if (count == 0 || count > in.remaining() / format::kMinPartBytes) {
+  if (in.u32() != count || count > in.remaining() / format::kMinPartBytes) {
     return fail(Error::BadFormat, "part names: their number is not as many as there are");
   }
   parts.reserve(count);

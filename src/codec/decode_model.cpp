@@ -48,6 +48,11 @@ class ModelDecoder {
     Result<codec::ModelSchema> schema = codec::read_schema(file_);
     if (!schema.ok()) return schema.failure();
     schema_ = *std::move(schema);
+    if (file_.has_parts()) {  // a model of a file that was cut has no parts
+      Result<std::vector<std::string>> parts = file_.read_parts();
+      if (!parts.ok()) return parts.failure();
+      schema_.parts = *std::move(parts);
+    }
     if (Status status = choose_blocks(); !status.ok()) return status.failure();
     if (options_.count_bits) model_.bits.resize(facts_.bands.size() + 1);
     // chosen_ goes from the base to the finest band, as the file does. While a band is decoded, the

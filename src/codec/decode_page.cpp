@@ -83,7 +83,7 @@ class PageDecoder {
     result_.dependency_ends.reserve(count);
     std::uint64_t offset = range.offset + range.bytes;
     const std::uint64_t end =
-        page_ + 1 < head_.pages.size() ? head_.pages[page_ + 1].offset : head_.file_bytes;
+        page_ + 1 < head_.pages.size() ? head_.pages[page_ + 1].offset : head_.parts.range.offset;
     std::uint32_t dependency_end = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       DecodedEntry decoded = decode_entry(in_);

@@ -118,10 +118,17 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   for (int i = 0; i < 3; ++i) head.f64(facts.grid.origin[i]);
   head.f64(facts.grid.step);
   head.u8(facts.grid_bits);
-  encode_reserved(head, 7);
-  for (const auto& section :
-       {encode_materials(content.materials), encode_parts(content.parts), content.tables}) {
-    if (Status status = writer.write_section(section); !status.ok()) return status.failure();
+  encode_reserved(head, 3);
+  head.u32(static_cast<std::uint32_t>(content.parts.size()));
+  const std::vector<std::byte> materials = encode_materials(content.materials);
+  writer.parts_ = encode_parts(content.parts);
+  using Section = const std::vector<std::byte>*;
+  for (const Section section : {Section(&materials), Section(&writer.parts_), &content.tables}) {
+    head.u64(section->size());
+    head.u64(section->empty() ? 0 : checksum(*section));
+  }
+  for (const Section section : {Section(&materials), &content.tables}) {
+    if (Status status = writer.write_section(*section); !status.ok()) return status.failure();
   }
   head.append(lists.bytes());
   if (page_count > 0) writer.begin_page();
@@ -129,8 +136,6 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
 }
 
 Status ContainerWriter::write_section(std::span<const std::byte> bytes) {
-  head_.u64(bytes.size());
-  head_.u64(bytes.empty() ? 0 : checksum(bytes));
   const std::uint64_t offset = position_;
   position_ += bytes.size();
   return bytes.empty() ? Status(Done{}) : sink_->write(offset, bytes);
@@ -208,6 +213,7 @@ Status ContainerWriter::finish() {
     return fail(Error::Invalid, std::to_string(next_) + " of " + std::to_string(block_count_) +
                                     " blocks were written");
   }
+  if (Status status = write_section(parts_); !status.ok()) return status;
   for (const Page& page : pages_) {
     head_.u64(page.offset);
     head_.u32(page.bytes);

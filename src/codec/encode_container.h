@@ -7,7 +7,7 @@
 //   file->commit();
 //
 // Every call may fail, and after a failure the file is not worth finishing. Memory: one page of the
-// directory and 16 bytes for each of the others; no payload is kept.
+// directory, 16 bytes for each of the others, and the parts' names; no payload is kept.
 #pragma once
 
 #include "base/bytes.h"
@@ -61,6 +61,7 @@ class ContainerWriter {
   std::uint32_t head_bytes_ = 0;
   ByteWriter head_;  // from byte 32 up to the pages
   std::vector<Page> pages_;
+  std::vector<std::byte> parts_;       // the names, which come last
   std::uint64_t position_ = 0;         // where the next payload or page goes
   std::uint32_t next_ = 0;             // block
   ByteWriter entries_, dependencies_;  // of the page of block next_

@@ -20,11 +20,12 @@ Result<ModelSchema> read_schema(const BlockFile& file) {
   Result<std::vector<Material>> materials = file.read_materials();
   if (!materials.ok()) return materials.failure();
   schema.materials = *std::move(materials);
-  Result<std::vector<std::string>> parts = file.read_parts();
-  if (!parts.ok()) return parts.failure();
-  schema.parts = *std::move(parts);
+  const std::uint64_t part_count = file.head().part_count;
+  if (part_count * std::max<std::size_t>(1, schema.materials.size()) >> 32 != 0) {
+    return fail(Error::BadFormat, "more materials and parts than triangles can tell apart");
+  }
   schema.coding = block_coding(schema.facts.layers, schema.codings, schema.materials.size(),
-                               schema.parts.size());
+                               static_cast<std::size_t>(part_count));
   return schema;
 }
 

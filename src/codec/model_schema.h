@@ -19,11 +19,11 @@ struct ModelSchema {
   ModelFacts facts;
   std::vector<LayerCoding> codings;  // per layer
   std::vector<Material> materials;
-  std::vector<std::string> parts;
+  std::vector<std::string> parts;  // or empty, while names are not known
   BlockCoding coding;
 };
 
-// Reads the tables, materials and parts.
+// Reads the tables and materials. The names of parts lie at the file's end and are left out.
 Result<ModelSchema> read_schema(const BlockFile& file);
 
 // "block 7: " and what is wrong with it.

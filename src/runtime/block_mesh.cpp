@@ -31,6 +31,7 @@ struct BlockMesh::Impl {
   BlockChooser::Limits limits(const BlockViewParameters& parameters) const;
 
   std::shared_ptr<const ModelSchema> schema;
+  std::vector<std::string> part_names;
   std::uint32_t page_count;
   BlockGraph graph;
   BlockChooser chooser;
@@ -189,6 +190,11 @@ Status BlockMesh::add_page(const DirectoryPage& page) {
   return Done{};
 }
 
+void BlockMesh::set_part_names(std::vector<std::string> names) {
+  CREASE_ASSERT(names.size() == impl_->schema->coding.part_count || names.empty());
+  impl_->part_names = std::move(names);
+}
+
 BlockUpdate BlockMesh::update(const BlockViewParameters& parameters) {
   return impl_->update(parameters);
 }
@@ -309,8 +315,10 @@ Mesh BlockMesh::extract() const {
     }
     pieces.push_back({&end.mesh, vertices[i]});
   }
-  codec::LayerPools layers(*impl_->schema);
-  return codec::join_ends(*impl_->schema, pieces, triangles, positions, layers.pools());
+  ModelSchema schema = *impl_->schema;
+  schema.parts = impl_->part_names;
+  codec::LayerPools layers(schema);
+  return codec::join_ends(schema, pieces, triangles, positions, layers.pools());
 }
 
 }  // namespace crease

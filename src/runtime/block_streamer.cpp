@@ -42,11 +42,14 @@ struct BlockStreamer::Impl {
         mesh(std::move(m)),
         source(std::move(s)),
         options(o),
-        workers(o.decode_threads) {}
+        workers(o.decode_threads) {
+    lacks_names = head.part_count > 0;
+  }
 
   StreamReport update(const BlockViewParameters& parameters);
   void take_answers();
   void take_page(Result<std::vector<std::byte>> bytes);
+  void take_names(const Result<std::vector<std::byte>>& bytes);
   void take_payload(BlockId id, Result<std::vector<std::byte>> bytes);
   void take_decoded(StreamReport& report);
   void ask_for_page();
@@ -55,6 +58,10 @@ struct BlockStreamer::Impl {
   bool is_coming(BlockId id) const { return mesh.is_resident(id) || pending.contains(id); }
   void forget_unwanted();
   void decode_what_can_be();
+  void lengthen(Pause& pause) const {
+    pause.length = std::clamp(2 * pause.length, options.first_pause, kLongestPause);
+    pause.until = Clock::now() + pause.length;
+  }
   void note_failure(BlockId id, const Failure& failure);
   bool is_paused(BlockId id) const;
   std::vector<BlockEntry> missing_soon(const BlockViewParameters& parameters);
@@ -69,8 +76,9 @@ struct BlockStreamer::Impl {
   std::map<BlockId, Pending> pending;  // by id: coarse ones first
   std::unordered_map<std::uint64_t, BlockId> block_of_ticket;
   std::size_t pending_bytes = 0;
-  std::optional<Ticket> page_ticket;
-  Pause page_pause;
+  std::optional<Ticket> page_ticket, names_ticket;
+  bool lacks_names = false;
+  Pause page_pause, names_pause;
   std::map<BlockId, Pause> paused;
   std::optional<Failure> trouble;
   std::optional<Camera> last_camera;
@@ -95,6 +103,10 @@ StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters) 
 
 void BlockStreamer::Impl::take_answers() {
   for (AsyncAnswer& answer : source->poll()) {
+    if (names_ticket == answer.ticket) {
+      take_names(answer.bytes);
+      continue;
+    }
     if (page_ticket == answer.ticket) {
       page_ticket.reset();
       take_page(std::move(answer.bytes));
@@ -123,8 +135,19 @@ void BlockStreamer::Impl::take_page(Result<std::vector<std::byte>> bytes) {
     return;
   }
   trouble = added.failure();
-  page_pause.length = std::clamp(2 * page_pause.length, options.first_pause, kLongestPause);
-  page_pause.until = Clock::now() + page_pause.length;
+  lengthen(page_pause);
+}
+
+// Nothing that is shown waits for them, so that it is no trouble if they fail.
+void BlockStreamer::Impl::take_names(const Result<std::vector<std::byte>>& bytes) {
+  names_ticket.reset();
+  if (bytes.ok() && checksum(*bytes) == head.parts.checksum) {
+    Result<std::vector<std::string>> names = decode_parts(*bytes, head.part_count);
+    lacks_names = false;
+    if (names.ok()) mesh.set_part_names(*std::move(names));
+    return;
+  }
+  lengthen(names_pause);
 }
 
 void BlockStreamer::Impl::take_payload(BlockId id, Result<std::vector<std::byte>> bytes) {
@@ -139,9 +162,7 @@ void BlockStreamer::Impl::note_failure(BlockId id, const Failure& failure) {
   pending.erase(id);
   ++statistics.blocks_failed;
   trouble = failure;
-  Pause& pause = paused[id];
-  pause.length = std::clamp(2 * pause.length, options.first_pause, kLongestPause);
-  pause.until = Clock::now() + pause.length;
+  lengthen(paused[id]);
 }
 
 bool BlockStreamer::Impl::is_paused(BlockId id) const {
@@ -167,6 +188,11 @@ void BlockStreamer::Impl::take_decoded(StreamReport& report) {
 }
 
 void BlockStreamer::Impl::ask_for_page() {
+  // Names last: once the view has what it wants.
+  if (lacks_names && !names_ticket && Clock::now() >= names_pause.until && !mesh.next_page() &&
+      mesh.missing().empty() && !mesh.shown().empty()) {
+    names_ticket = source->request(head.parts.range, 0);
+  }
   const std::optional<std::uint32_t> page = mesh.next_page();
   if (!page || page_ticket || Clock::now() < page_pause.until) return;
   page_ticket = source->request(head.pages[*page], kPagePriority);

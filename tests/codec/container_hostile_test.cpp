@@ -266,7 +266,10 @@ TEST_CASE("what the container promises is looked at behind the checksums") {
       {8, 0x00010002, "version or flags at byte 8"},
       {80, 0, "head: grid"},  // the step's lower half; its upper one follows
       {88, 32, "head: grid: more than 31 bits"},
-      {89, 1, "head: a reserved byte is not 0"},
+      {89, 0x03000001, "head: a reserved byte is not 0"},  // and three parts
+      {92, 0x7fffffff, "head: there are not as many names as parts"},
+      {92, 0, "head: there are not as many names as parts"},
+      {92, 2, "part names: their number is not as many as there are"},
       {144 + 4 + 6, 4, "head: layer 0: unknown role"},
       {page + 16 + 16, 3, "block 0: there is no such band"},
       {page + 16 + 18, 1, "block 0: a reserved byte is not 0"},

@@ -139,7 +139,8 @@ Head read_head(const Bytes& file) {
   for (double& x : head.origin) x = in.f64();
   head.step = in.f64();
   head.grid_bits = in.u8();
-  in.reserved(7);
+  in.reserved(3);
+  head.parts = in.u32();
   head.materials = read_part(in);
   head.part_names = read_part(in);
   head.tables = read_part(in);
@@ -192,12 +193,13 @@ std::vector<Material> read_materials(const Bytes& bytes) {
   return materials;
 }
 
-std::vector<std::string> read_part_names(const Bytes& bytes) {
+std::vector<std::string> read_part_names(const Bytes& bytes, std::uint32_t parts) {
   std::vector<std::string> names;
+  demand(bytes.empty() == (parts == 0), "parts without names");
   if (bytes.empty()) return names;
   Reader in(bytes);
   const std::uint32_t count = in.u32();
-  demand(count > 0, "no parts");
+  demand(count == parts, "the number of parts");
   for (std::uint32_t i = 0; i < count; ++i) names.push_back(in.text());
   in.end();
   return names;
@@ -285,7 +287,7 @@ void read_page(const Bytes& file, const Head& head, std::size_t p, std::vector<E
   }
   demand(ends.back() == dependencies, "dependencies of no block");
   const bool is_last = p + 1 == head.pages.size();
-  demand(offset == (is_last ? head.file_bytes : head.pages[p + 1].offset),
+  demand(offset == (is_last ? head.file_bytes - head.part_names.bytes : head.pages[p + 1].offset),
          "blocks that do not end where the next page begins");
   for (std::uint32_t i = 0; i < count; ++i) {
     std::vector<std::uint32_t>& needs = entries[first + i].needs;
@@ -308,10 +310,12 @@ Container read_container(const Bytes& file) {
   const Head& head = container.head;
   std::uint64_t offset = head.bytes;
   container.materials = read_materials(read_part(file, offset, head.materials));
-  container.part_names = read_part_names(read_part(file, offset, head.part_names));
   container.tables = read_part(file, offset, head.tables);
-  demand(offset == (head.pages.empty() ? head.file_bytes : head.pages[0].offset),
+  demand(head.part_names.bytes <= head.file_bytes, "the size of the names");
+  std::uint64_t names = head.file_bytes - head.part_names.bytes;
+  demand(offset == (head.pages.empty() ? names : head.pages[0].offset),
          "page 0 is not behind names and tables");
+  container.part_names = read_part_names(read_part(file, names, head.part_names), head.parts);
   for (std::size_t p = 0; p < head.pages.size(); ++p) read_page(file, head, p, container.entries);
   return container;
 }

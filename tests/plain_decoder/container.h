@@ -43,6 +43,7 @@ struct Head {
   std::array<double, 3> origin{};
   double step = 0;
   std::uint8_t grid_bits = 0;
+  std::uint32_t parts = 0;
   Part materials, part_names, tables;
   std::vector<Layer> layers;
   std::vector<Band> bands;

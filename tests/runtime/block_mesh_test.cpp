@@ -20,6 +20,9 @@ BlockMesh opened_mesh(const BlockFile& file) {
     REQUIRE(read.ok());
     REQUIRE(mesh->add_page(*read).ok());
   }
+  Result<std::vector<std::string>> names = file.read_parts();
+  REQUIRE(names.ok());
+  mesh->set_part_names(*std::move(names));
   return *std::move(mesh);
 }
 

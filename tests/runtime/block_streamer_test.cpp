@@ -157,6 +157,24 @@ TEST_CASE("what is asked for at once is bounded, and cancelled when nobody wants
   CHECK((refined_blocks(file, streamer.mesh()) == wanted_blocks(file, last.view)));
 }
 
+TEST_CASE("the names of parts come once the view has what it wants") {
+  for (const ZooMesh& zoo : mesh_zoo()) {
+    if (zoo.mesh.parts.empty()) continue;
+    INFO(zoo.name);
+    const EncodedCase c = simplified_case(zoo.mesh, 100, 14, kCoarsePrecision);
+    const BlockFile file = opened(c.bytes);
+    const auto source = std::make_shared<UnsteadySource>(c.bytes, 7, 5);
+    BlockStreamer streamer = opened_streamer(file, source, hasty(1));
+    BlockViewParameters parameters = view_of_all();
+    finish(streamer, parameters);
+    for (int frame = 0; streamer.mesh().extract().parts != c.mesh.parts; ++frame) {
+      REQUIRE(frame < 10'000);
+      streamer.update(parameters);
+      streamer.wait(std::chrono::milliseconds(1));
+    }
+  }
+}
+
 TEST_CASE("a camera that moves on finds what it will want") {
   const EncodedCase c = simplified_case(smooth_sphere(80, 120), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
