@@ -127,6 +127,9 @@ TEST_CASE("a whole file instead of a part is skipped into") {
   const Outcome first = read({0, 100}, nullptr, "HTTP/1.1 200 OK\nContent-Length: 10\n", file);
   CHECK(first.verdict.kind == Kind::Complete);
   CHECK(first.bytes == file);
+  const Outcome short_of = read({3, 4}, &known, "HTTP/1.1 200 OK\n", "01234");
+  CHECK(short_of.verdict.kind == Kind::Again);  // it has no length, but we know it
+  CHECK(short_of.bytes == "34");
   const Outcome chunked = read({0, 100}, nullptr, "HTTP/1.1 200 OK\n", file);
   CHECK(chunked.verdict.kind == Kind::Complete);
   const Outcome cut = read({0, 100}, nullptr, "HTTP/1.1 200 OK\n", file, true);
