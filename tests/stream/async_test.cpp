@@ -73,6 +73,18 @@ TEST_CASE("a range beyond the end fails alone, with the name of the source") {
   }
 }
 
+TEST_CASE("a range of no bytes is answered once the size is known") {
+  const Everywhere everywhere;
+  for (const AsyncSourcePtr& source : everywhere.sources()) {
+    CAPTURE(source->name());
+    const Ticket ticket = source->request(FileRange{});
+    const auto answers = all_answers(*source);
+    REQUIRE(answers.at(ticket).ok());
+    CHECK(answers.at(ticket)->empty());
+    CHECK(source->size() == everywhere.bytes.size());
+  }
+}
+
 TEST_CASE("nothing is outstanding: waiting returns at once") {
   const Everywhere everywhere;
   for (const AsyncSourcePtr& source : everywhere.sources()) {

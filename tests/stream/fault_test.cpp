@@ -340,6 +340,24 @@ TEST_CASE("a host without ranges and a file beyond the limit") {
   CHECK(read_failure(**source, {300'000, 10}).error == Error::OverLimit);
 }
 
+TEST_CASE("a host that promises more than there can be takes no memory for it") {
+  const std::vector<std::byte> file = some_bytes(kBytes);
+  for (const char* head :
+       {"HTTP/1.1 200 OK\r\nContent-Length: 9000000000000000000\r\n\r\n",
+        "HTTP/1.1 206 Partial Content\r\nContent-Length: 9000000000000000000\r\n"
+        "Content-Range: bytes 0-8999999999999999999/9000000000000000000\r\n\r\n"}) {
+    FaultHost host([&](const HostRequest& request) {
+      return request.number == 0 ? HostReply{head + text_of(file), HostReply::Close}
+                                 : HostReply{"", HostReply::Close};
+    });
+    const Result<ByteSourcePtr> source = open_http_source(host.url(), hasty());
+    REQUIRE(source.ok());
+    CHECK((*source)->size() == 9'000'000'000'000'000'000);
+    CHECK(read_all(**source, {0, 65536}) == part_of(file, {0, 65536}));
+    CHECK(read_failure(**source, {1'000'000'000, 10}).error == Error::ReadFailed);
+  }
+}
+
 TEST_CASE("a whole file for one part, once ranges are known to work") {
   const std::vector<std::byte> file = some_bytes(kBytes);
   FaultHost host([&](const HostRequest& request) {
