@@ -31,6 +31,7 @@ struct Report {
   // status that goes with it.
   Error short_of{};
   std::string shortfall;
+  bool is_printed = false;  // the command did that itself, as others wait for it
 };
 
 struct Command {
@@ -45,5 +46,6 @@ Command add_compare(CLI::App& app, const Common& common);
 Command add_render(CLI::App& app, const Common& common);
 Command add_validate(CLI::App& app, const Common& common);
 Command add_generate(CLI::App& app, const Common& common);
+Command add_serve(CLI::App& app, const Common& common);
 
 }  // namespace crease::cli

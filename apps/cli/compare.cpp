@@ -64,7 +64,8 @@ Command add_compare(CLI::App& app, const Common& common) {
   auto options = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand(
       "compare", "surface distance and normal deviation of two meshes, both ways");
-  command->add_option("A", options->a, "mesh or .crease file, at full resolution")->required();
+  command->add_option("A", options->a, "mesh file, .crease or its URL, at full resolution")
+      ->required();
   command->add_option("B", options->b, "the other one")->required();
   command->add_option("--samples", options->compare.samples, "points on each surface")
       ->type_name("N")

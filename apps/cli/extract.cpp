@@ -250,7 +250,9 @@ Result<Report> run_extract(const ExtractArguments& options, const Common& common
 Command add_extract(CLI::App& app, const Common& common) {
   auto options = std::make_shared<ExtractArguments>();
   CLI::App* command = app.add_subcommand("extract", "one level of detail, or a chain, as a mesh");
-  command->add_option("FILE", options->file, ".crease, or a mesh file, which is built on the fly")
+  command
+      ->add_option("FILE", options->file,
+                   ".crease or its URL, or a mesh file, which is built on the fly")
       ->required();
   command->add_option("-o,--output", options->output, ".obj, .ply, .stl or .glb")
       ->required()
@@ -268,8 +270,18 @@ Command add_extract(CLI::App& app, const Common& common) {
   command->footer(
       "Examples:\n  crease extract bunny.crease -o bunny_10.glb --ratio 0.1\n"
       "  crease extract bunny.crease -o bunny_lod.glb --levels 4\n"
-      "  crease extract city.crease -o seen.glb --view camera.json");
-  return {command, [options, &common] { return run_extract(*options, common); }};
+      "  crease extract city.crease -o seen.glb --view camera.json\n"
+      "  crease extract https://host/city.crease -o coarse.glb --triangles 5000");
+  const CLI::Option* samples = command->get_option("--samples");
+  return {command, [options, samples, &common] {
+            ExtractArguments asked = *options;
+            const bool must_measure = asked.level.error || asked.chain.levels > 0;
+            // To measure takes all of the file, which is not what a URL is asked for.
+            if (is_url(asked.file) && samples->count() == 0 && !must_measure) {
+              asked.level.samples = 0;
+            }
+            return run_extract(asked, common);
+          }};
 }
 
 }  // namespace crease::cli

@@ -17,6 +17,7 @@ namespace {
 
 struct InfoArguments {
   std::filesystem::path file;
+  bool head_only = false;
   ReadOptions read;
 };
 
@@ -44,6 +45,17 @@ const char* name_of(Interpolation interpolation) {
       return "categorical";
   }
   return "";
+}
+
+Json attributes_json(const std::vector<LayerSchema>& layers) {
+  Json attributes = Json::array();
+  for (const LayerSchema& layer : layers) {
+    attributes.push_back({{"name", layer.name},
+                          {"role", name_of(layer.role)},
+                          {"interpolation", name_of(layer.interpolation)},
+                          {"dimension", layer.dimension}});
+  }
+  return attributes;
 }
 
 Json attributes_json(const Mesh& mesh) {
@@ -215,16 +227,51 @@ Report file_report(const ModelFile& file, const DecodedModel& model) {
   return report;
 }
 
+// What the head says, which is the first 64 KiB at most.
+Report head_report(const ModelFile& file) {
+  const ModelFacts& facts = file.blocks().facts();
+  Report report;
+  Json bands = Json::array();
+  for (const BandFacts& band : facts.bands) {
+    bands.push_back({{"patches", band.patches},
+                     {"contractions", band.contractions},
+                     {"triangles_after", band.triangles_after},
+                     {"surface_error", band.error.surface},
+                     {"error", to_json(band.error)}});
+  }
+  report.json = {{"triangles", facts.triangle_count},           {"vertices", facts.vertex_count},
+                 {"attributes", attributes_json(facts.layers)}, {"version", 2},
+                 {"bytes", file.blocks().head().file_bytes},    {"bands", bands},
+                 {"blocks", file.blocks().block_count()},       {"precision", facts.grid.step},
+                 {"bytes_read", file.bytes_to_open()}};
+  report.text = grouped(facts.triangle_count) + " triangles, " + grouped(facts.vertex_count) +
+                " vertices, " + in_bytes(file.blocks().head().file_bytes) + " in " +
+                grouped(file.blocks().block_count()) + " blocks\nbands:";
+  for (const BandFacts& band : facts.bands) {
+    report.text += "\n  down to " + grouped(band.triangles_after) + " triangles: error " +
+                   in_length(band.error.surface) + ", " + grouped(band.patches) + " blocks";
+  }
+  return report;
+}
+
 Result<Report> run_info(const InfoArguments& options, const Common& common) {
   Report report;
   if (is_crease_file(options.file)) {
     const Result<ModelFile> file = open_model(options.file, options.read, common);
     if (!file.ok()) return file.failure();
+    if (options.head_only) {
+      report = head_report(*file);
+      report.text_is_answer = true;
+      return report;
+    }
     DecodeOptions decode = decode_options(common);
     decode.count_bits = true;
     const Result<DecodedModel> model = decode_model(file->blocks(), decode);
     if (!model.ok()) return model.failure();
     report = file_report(*file, *model);
+    report.json["bytes_read"] = file->blocks().source().bytes_read();
+  } else if (options.head_only) {
+    return fail(Error::NotCrease, options.file.string() + ": --head is of .crease files");
   } else {
     Result<ImportOptions> import = import_options(options.read, common);
     if (!import.ok()) return import.failure();
@@ -244,9 +291,13 @@ Result<Report> run_info(const InfoArguments& options, const Common& common) {
 Command add_info(CLI::App& app, const Common& common) {
   auto options = std::make_shared<InfoArguments>();
   CLI::App* command = app.add_subcommand("info", "what is inside a .crease or a mesh file");
-  command->add_option("FILE", options->file, "the file")->required();
+  command->add_option("FILE", options->file, "the file, or the URL of a .crease")->required();
+  command->add_flag("--head", options->head_only,
+                    "what the head of a .crease says; reads 64 KiB at most");
   add_import_options(*command, options->read);
-  command->footer("Example:\n  crease info bunny.crease --json");
+  command->footer(
+      "Examples:\n  crease info bunny.crease --json\n"
+      "  crease info https://host/city.crease --head");
   return {command, [options, &common] { return run_info(*options, common); }};
 }
 

@@ -38,7 +38,9 @@ int print_failure(const Failure& failure, const Common& common) {
 
 int print_report(const Report& report, const Common& common) {
   wipe_progress_bar();
-  if (common.json) {
+  if (report.is_printed) {
+    // nothing is left to say
+  } else if (common.json) {
     std::printf("%s\n", report.json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   } else if (!report.text.empty() && (report.text_is_answer || !common.quiet)) {
     std::printf("%s\n", report.text.c_str());
@@ -58,10 +60,10 @@ int run_main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
 
   Common common;
-  const std::vector<Command> commands = {add_build(app, common),   add_info(app, common),
-                                         add_extract(app, common), add_compare(app, common),
-                                         add_render(app, common),  add_validate(app, common),
-                                         add_generate(app, common)};
+  const std::vector<Command> commands = {add_build(app, common),    add_info(app, common),
+                                         add_extract(app, common),  add_compare(app, common),
+                                         add_render(app, common),   add_validate(app, common),
+                                         add_generate(app, common), add_serve(app, common)};
   for (const Command& command : commands) add_common_options(*command.app, common);
 
   try {

@@ -5,6 +5,7 @@
 #include "cli/text.h"
 #include "crease/block_view.h"
 #include "crease/build_progressive_arrays.h"
+#include "crease/http_source.h"
 #include "crease/threads.h"
 
 #include <utility>
@@ -122,8 +123,12 @@ Result<BuildOptions> build_options(const ReadOptions& options, const Common& com
   return build;
 }
 
+bool is_url(const std::filesystem::path& path) {
+  return is_http_url(path.string());
+}
+
 bool is_crease_file(const std::filesystem::path& path) {
-  if (path.extension() == ".crease") return true;
+  if (is_url(path) || path.extension() == ".crease") return true;
   const Result<BlockFile> file = open_crease(path);
   if (file.ok()) return true;
   const Error error = file.failure().error;
@@ -165,6 +170,18 @@ std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles) {
 
 }  // namespace
 
+// A host was asked for more than the head, a disk is as if it had not been.
+ModelFile::ModelFile(BlockFile blocks, std::vector<std::byte> built, const Common& common)
+    : built_(std::move(built)),
+      blocks_(std::move(blocks)),
+      bytes_to_open_(is_http_url(blocks_.source().name()) ? blocks_.source().bytes_read()
+                                                          : blocks_.head().head_bytes),
+      common_(&common) {}
+
+std::string ModelFile::name() const {
+  return std::filesystem::path(blocks_.source().name()).filename().string();
+}
+
 Result<Model> ModelFile::load(const Detail& detail) const {
   DecodeOptions options = decode_options(*common_);
   const ModelFacts& facts = blocks_.facts();
@@ -184,15 +201,28 @@ Result<Model> ModelFile::load(const Detail& detail) const {
   Result<DecodedModel> decoded = decode_model(blocks_, options);
   if (!decoded.ok()) return decoded.failure();
   Model model{*std::move(decoded), blocks_.source().bytes_read() - before};
-  model.bytes_read += blocks_.head().head_bytes;
+  model.bytes_read += bytes_to_open_;
   if (interrupted()) return interrupted_failure();
   return model;
 }
 
+namespace {
+
+Result<BlockFile> open_crease_or_url(const std::filesystem::path& path) {
+  if (!is_url(path)) return open_crease(path);
+  HttpOptions options;
+  options.stopped = interrupted;
+  Result<ByteSourcePtr> source = open_http_source(path.string(), options);
+  if (!source.ok()) return source.failure();
+  return BlockFile::open(*std::move(source));
+}
+
+}  // namespace
+
 Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOptions& options,
                              const Common& common) {
   if (is_crease_file(path)) {
-    Result<BlockFile> file = open_crease(path);
+    Result<BlockFile> file = open_crease_or_url(path);
     if (!file.ok()) return file.failure();
     return ModelFile(*std::move(file), {}, common);
   }

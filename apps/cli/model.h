@@ -1,4 +1,4 @@
-// FILE of the command line: a .crease, or any mesh file.
+// FILE of the command line: a .crease here or at a URL, or any mesh file.
 //
 //   Result<Mesh> mesh = load_mesh("city.crease", {}, common);      // full resolution of either
 //   Result<ModelFile> file = open_model("city.obj", {}, common);   // blocks of either
@@ -61,18 +61,23 @@ class ModelFile {
   std::size_t triangle_count() const {
     return static_cast<std::size_t>(blocks_.facts().triangle_count);
   }
+  std::uint64_t bytes_to_open() const { return bytes_to_open_; }
+  std::string name() const;                           // without folders or host
   bool was_built() const { return !built_.empty(); }  // FILE was a mesh, built on the fly
 
  private:
   friend Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOptions& options,
                                       const Common& common);
-  ModelFile(BlockFile blocks, std::vector<std::byte> built, const Common& common)
-      : built_(std::move(built)), blocks_(std::move(blocks)), common_(&common) {}
+  ModelFile(BlockFile blocks, std::vector<std::byte> built, const Common& common);
 
   std::vector<std::byte> built_;  // what blocks_ reads, or empty
   BlockFile blocks_;
+  std::uint64_t bytes_to_open_;
   const Common* common_;
 };
+
+// http://... or https://...; such a FILE is a .crease.
+bool is_url(const std::filesystem::path& path);
 
 // Told from the first bytes, whatever the name. False as well when the file cannot be read.
 bool is_crease_file(const std::filesystem::path& path);

@@ -43,12 +43,35 @@ std::vector<float> errors_in_pixels(const AdaptiveMesh& mesh, const Camera& came
   return errors;
 }
 
-std::string level_name(const ProgressiveMesh& mesh) {
-  if (mesh.applied() == 0) return "original";
-  const double share =
-      static_cast<double>(mesh.triangle_count()) / static_cast<double>(mesh.full_triangle_count());
+std::string level_name(const ProgressiveMesh& mesh, std::size_t full) {
+  if (mesh.triangle_count() == full) return "original";
+  const double share = static_cast<double>(mesh.triangle_count()) / static_cast<double>(full);
   const double digit = std::pow(10.0, std::floor(std::log10(share)) - 1);
   return in_percent(std::round(share / digit) * digit);  // 19.98 % is 20 %
+}
+
+// As many levels as panels, by their counts where a share is asked for.
+std::vector<LevelOptions> levels_of(const PanelOptions& options, std::size_t full) {
+  std::vector<LevelOptions> levels;
+  for (const double ratio : options.ratios) levels.push_back({.ratio = ratio});
+  if (levels.empty()) levels.push_back(options.level);
+  for (LevelOptions& level : levels) {
+    if (!level.ratio) continue;
+    const double count = *level.ratio * static_cast<double>(full);
+    level.triangles = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(count)));
+    level.ratio = std::nullopt;
+  }
+  return levels;
+}
+
+// Of the finest level, where nothing is measured against the full model.
+std::optional<std::size_t> triangles_needed(const std::vector<LevelOptions>& levels) {
+  std::size_t most = 0;
+  for (const LevelOptions& level : levels) {
+    if (!level.triangles) return std::nullopt;
+    most = std::max(most, *level.triangles);
+  }
+  return most;
 }
 
 }  // namespace
@@ -94,8 +117,8 @@ void Panels::add(Source source, const std::string& title, Json json, const Panel
   json_.push_back(std::move(json));
 }
 
-void Panels::add_level(ProgressiveMesh mesh, const Mesh& full, const std::string& name,
-                       const PanelOptions& options, const Common& common) {
+void Panels::add_level(ProgressiveMesh mesh, const Mesh& full, std::size_t full_count,
+                       const std::string& name, const PanelOptions& options, const Common& common) {
   Source source;
   source.progressive = std::make_unique<ProgressiveMesh>(std::move(mesh));
   if (options.errors_of_positions) {
@@ -106,8 +129,7 @@ void Panels::add_level(ProgressiveMesh mesh, const Mesh& full, const std::string
     source.errors = distances_to(full, points, common.threads);
   }
   const std::size_t triangles = source.progressive->triangle_count();
-  const float share = level_share(source.progressive->full_triangle_count(),
-                                  source.progressive->base_triangle_count(), triangles);
+  const float share = level_share(full_count, source.progressive->base_triangle_count(), triangles);
   add(std::move(source), name + ": " + grouped(triangles) + " triangles",
       {{"triangles", triangles}, {"control", false}}, options, share);
 }
@@ -125,6 +147,7 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
   if (!file.ok()) return file.failure();
   Result<ViewedModel> model = load_viewed(*file, *options.view);
   if (!model.ok()) return model.failure();
+  bytes_read_ += model->bytes_read;
   const std::size_t full = file->triangle_count();
   Source source;
   source.adaptive = std::make_unique<AdaptiveMesh>(std::move(model->mesh));
@@ -132,7 +155,7 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
   if (options.errors_of_positions) source.errors = errors_in_pixels(mesh, *options.view);
   const std::size_t triangles = mesh.triangle_count();
   const std::size_t coarsest = mesh.hierarchy().vertices.coarse_triangles().size();
-  const std::string name = path.filename().string();
+  const std::string name = file->name();
   const Mesh shown = options.control ? mesh.extract() : Mesh{};
   add(std::move(source), name + ": " + grouped(triangles) + " of " + grouped(full) + " triangles",
       {{"triangles", triangles}, {"full_triangles", full}, {"control", false}}, options,
@@ -163,23 +186,23 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
 
   const Result<ModelFile> file = open_model(path, options.read, common);
   if (!file.ok()) return file.failure();
-  const Result<Model> model = file->load();
+  const std::size_t full_count = file->triangle_count();
+  const std::vector<LevelOptions> levels = levels_of(options, full_count);
+  const auto needed = options.errors_of_positions ? std::nullopt : triangles_needed(levels);
+  const Result<Model> model = file->load({.triangles = needed});
   if (!model.ok()) return model.failure();
+  bytes_read_ += model->bytes_read;
   const Mesh& full = model->decoded.mesh;
   const ProgressiveArraysPtr arrays =
       build_progressive_arrays(model->decoded.mesh, model->decoded.sequence);
-  std::vector<LevelOptions> levels;
-  for (double ratio : options.ratios) levels.push_back({.ratio = ratio});
-  if (levels.empty()) levels.push_back(one);
-
   std::vector<std::pair<std::string, Mesh>> controls;
   for (const LevelOptions& level : levels) {
     ProgressiveMesh mesh(arrays);
     const Result<Chosen> chosen = choose_level(mesh, full, level, common);
     if (!chosen.ok()) return chosen.failure();
-    const std::string name = level_name(mesh);
+    const std::string name = level_name(mesh, full_count);
     if (options.control) controls.emplace_back(name, mesh.extract());
-    add_level(std::move(mesh), full, name, options, common);
+    add_level(std::move(mesh), full, full_count, name, options, common);
     if (interrupted()) return interrupted_failure();
   }
   for (const auto& [name, mesh] : controls) add_control(mesh, name, options);

@@ -6,6 +6,7 @@
 #include "crease/adaptive_mesh.h"
 #include "crease/render.h"
 
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -36,6 +37,7 @@ class Panels {
   const Json& json() const { return json_; }  // one object a panel
   // So that each control stands below its level.
   int columns() const { return columns_; }
+  std::uint64_t bytes_read() const { return bytes_read_; }  // of .crease files
 
  private:
   // What a panel's views point into.
@@ -47,8 +49,8 @@ class Panels {
   };
   Status add_view(const std::filesystem::path& path, const PanelOptions& options,
                   const Common& common);
-  void add_level(ProgressiveMesh mesh, const Mesh& full, const std::string& name,
-                 const PanelOptions& options, const Common& common);
+  void add_level(ProgressiveMesh mesh, const Mesh& full, std::size_t full_count,
+                 const std::string& name, const PanelOptions& options, const Common& common);
   void add_control(const Mesh& level, const std::string& name, const PanelOptions& options);
   void add(Source source, const std::string& title, Json json, const PanelOptions& options,
            float level_share);
@@ -57,6 +59,7 @@ class Panels {
   std::vector<Panel> panels_;
   Json json_ = Json::array();
   int columns_ = 0;
+  std::uint64_t bytes_read_ = 0;
 };
 
 // One normal a vertex: the average of the corners' stored normals, weighted by their angles. What a

@@ -106,11 +106,9 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
   if (!written.ok()) return written.failure();
 
   Report report;
-  report.json = {{"output", options.output.string()},
-                 {"width", image->width},
-                 {"height", image->height},
-                 {"panels", panels.json()},
-                 {"seconds", watch.seconds()}};
+  report.json = {{"output", options.output.string()}, {"width", image->width},
+                 {"height", image->height},           {"panels", panels.json()},
+                 {"bytes_read", panels.bytes_read()}, {"seconds", watch.seconds()}};
   report.text = options.output.string() + ": " + std::to_string(image->width) + " x " +
                 std::to_string(image->height) + ", " + std::to_string(panels.list().size()) +
                 " panels, " + in_seconds(watch.seconds());
@@ -123,7 +121,9 @@ Command add_render(CLI::App& app, const Common& common) {
   auto options = std::make_shared<RenderArguments>();
   CLI::App* command =
       app.add_subcommand("render", "a picture without a display, levels side by side");
-  command->add_option("FILE", options->files, ".crease or mesh files, each with its own panels")
+  command
+      ->add_option("FILE", options->files,
+                   ".crease files, URLs of them, or mesh files, each with its own panels")
       ->required();
   command->add_option("-o,--output", options->output, "the picture")
       ->required()

@@ -112,6 +112,30 @@ Result<std::vector<double>> parse_ratios(std::string_view text) {
   }
 }
 
+Result<double> parse_rate(std::string_view text) {
+  struct Unit {
+    std::string_view name;
+    double bytes;
+  };
+  constexpr Unit kUnits[] = {{"kbit", 1e3 / 8},
+                             {"mbit", 1e6 / 8},
+                             {"gbit", 1e9 / 8},
+                             {"kb", 1e3},
+                             {"mb", 1e6},
+                             {"gb", 1e9},
+                             {"", 1}};
+  std::string lowered(text);
+  for (char& c : lowered) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const Unit& unit : kUnits) {
+    if (!lowered.ends_with(unit.name)) continue;
+    const auto count =
+        parse_number(std::string_view(lowered).substr(0, lowered.size() - unit.name.size()));
+    if (count && *count > 0) return *count * unit.bytes;
+  }
+  return fail(Error::CommandLine, "--limit: '" + std::string(text) +
+                                      "' is no rate like 20Mbit, 2.5MB or 1000 (bytes a second)");
+}
+
 Result<std::pair<int, int>> parse_size(std::string_view text) {
   constexpr int kMaxSide = 16384;
   const std::size_t cross = text.find('x');

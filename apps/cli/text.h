@@ -29,6 +29,8 @@ Result<Precision> parse_precision(std::string_view text);
 Result<int> parse_bits(std::string_view option, std::string_view text, int low, int high);
 // "1,0.2,0.02": shares of the triangles, each in (0, 1].
 Result<std::vector<double>> parse_ratios(std::string_view text);
+// "20Mbit", "500kbit", "2.5MB", "64kB", "1000": bytes a second; letters in any case.
+Result<double> parse_rate(std::string_view text);
 // "1920x1080".
 Result<std::pair<int, int>> parse_size(std::string_view text);
 

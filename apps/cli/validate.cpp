@@ -92,6 +92,7 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
   report.json = {{"ok", problems.empty()},
                  {"errors", problems},
                  {"bytes", bytes},
+                 {"bytes_read", file.ok() ? file->blocks().source().bytes_read() : 0},
                  {"hierarchy", hierarchy},
                  {"seconds", watch.seconds()}};
   report.text_is_answer = true;
@@ -115,7 +116,7 @@ Command add_validate(CLI::App& app, const Common& common) {
   auto options = std::make_shared<ValidateArguments>();
   CLI::App* command = app.add_subcommand(
       "validate", "every checksum and every invariant of a .crease file and its hierarchy");
-  command->add_option("FILE", options->file, "the .crease file")->required();
+  command->add_option("FILE", options->file, "the .crease file, or its URL")->required();
   command->add_flag("--file-only", options->file_only,
                     "not the hierarchy, which is made from the full resolution");
   command->footer("Example:\n  crease validate bunny.crease --json");

@@ -85,7 +85,8 @@ class AsyncSource {
   // Of the whole file. Nothing until that is known: of a host, before the first answer.
   virtual std::optional<std::uint64_t> size() const = 0;
 
-  // The ticket of ranges[0]; the others' follow. Time O(log waiting) a range.
+  // The ticket of ranges[0]; the others' follow. A range of no bytes is answered as soon as the
+  // size is known, or with the reason why it will not be. Time O(log waiting) a range.
   virtual Ticket request(std::span<const RangeRequest> ranges) = 0;
   Ticket request(const FileRange& range, float priority = 0) {
     const RangeRequest one{range, priority};

@@ -20,6 +20,7 @@ namespace crease {
 
 struct FileRange {
   std::uint64_t offset = 0, bytes = 0;
+  bool operator==(const FileRange&) const = default;
 };
 
 // Random access to bytes. Threads: read() from any, if read_at() of the derived class is.

@@ -149,6 +149,9 @@ std::vector<std::string> BlockFile::validate() const {
     const Result<DirectoryPage> page = read_page(p);
     note(page);
     if (!page.ok()) continue;
+    std::vector<FileRange> ranges;
+    for (const BlockEntry& entry : page->blocks) ranges.push_back({entry.offset, entry.bytes});
+    source_->prefetch(ranges);
     for (const BlockEntry& entry : page->blocks) note(read_block(entry));
   }
   return wrong;

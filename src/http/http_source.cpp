@@ -70,8 +70,8 @@ class HttpSource final : public ByteSource {
     if (kept_.read(offset, into)) return Done{};
     const auto coming = coming_.find(offset);
     if (coming != coming_.end() && coming->second.bytes >= into.size()) {
+      // It keeps its turn: alone and before the others it would take a request of its own.
       const std::uint64_t ticket = number(coming->second.ticket);
-      loader_->prioritize(coming->second.ticket, 1);
       while (prefetched_.contains(ticket)) {
         if (Status status = wait(guard); !status.ok()) return status;
       }

@@ -95,10 +95,17 @@ class Loader::Transfer final : public Exchange {
       is_too_large_ = true;
       return Flow::Stop;
     } else {
-      board.append_prefix(wanted, role_ == Role::Whole ? loader_.known_->size.value_or(0) : 0);
+      board.append_prefix(wanted, expected_prefix());
+      if (role_ == Role::Opening && board.prefix_bytes() > kFirstBytes) return Flow::Stop;
     }
     // What ends by itself leaves its connection to the next request.
     return wanted.size() < chunk.size() && !reader_->wants_more() ? Flow::Stop : Flow::Go;
+  }
+
+  // What the host promises may be anything.
+  std::uint64_t expected_prefix() const {
+    if (role_ != Role::Whole) return kFirstBytes;
+    return std::min(loader_.known_->size.value_or(0), loader_.options_.max_whole_bytes);
   }
 
   // Of the body of a refusal: short ones are read, for the sake of the connection.
@@ -124,6 +131,10 @@ class Loader::Transfer final : public Exchange {
                           "limit of " +
                               std::to_string(loader_.options_.max_whole_bytes) +
                               " bytes; use a host with byte ranges"));
+    }
+    if (role_ == Role::Opening && loader_.known_ && loader_.board_.prefix_bytes() >= kFirstBytes) {
+      is_done_ = true;  // perhaps of more than was asked for
+      return;
     }
     Verdict verdict = reader_->finish(!problem.empty());
     using Kind = Verdict::Kind;

@@ -167,6 +167,7 @@ void ResponseReader::judge_part() {
 void ResponseReader::judge_whole() {
   identity_.size = content_length_;
   if (!is_known_file()) return;
+  if (!identity_.size && known_) identity_.size = known_->size;
   skip_ = asked_.offset;
   if (identity_.size && *identity_.size < asked_.offset) {
     return refuse(Error::ReadFailed, "the host has fewer bytes than it said");

@@ -71,7 +71,7 @@ FileAnswer answer_for(const FileFacts& file, const RequestFields& fields) {
           : names(fields.if_none_match, file.etag);
   if (is_unchanged) return {304, 0, 0, {}};
 
-  const FileAnswer whole{200, 0, file.bytes, {}};
+  FileAnswer whole{200, 0, file.bytes, {}};
   const bool is_the_one_meant = fields.if_range.empty() || fields.if_range == file.etag ||
                                 fields.if_range == file.last_modified;
   if (fields.range.empty() || !is_the_one_meant) return whole;

@@ -17,7 +17,7 @@ struct FileFacts {
 
 // As they were sent; empty: not at all.
 struct RequestFields {
-  std::string_view range, if_range, if_none_match, if_modified_since;
+  std::string_view range{}, if_range{}, if_none_match{}, if_modified_since{};
 };
 
 struct FileAnswer {

@@ -232,7 +232,7 @@ struct FileServer::State {
     Response response(MHD_create_response_from_callback(answer.bytes, serve::kBlockBytes,
                                                         &serve::SlowPart::read, part.get(),
                                                         &serve::SlowPart::free));
-    if (response) part.release();
+    if (response) static_cast<void>(part.release());  // freed with the response
     return response;
   }
 

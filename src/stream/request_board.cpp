@@ -230,7 +230,9 @@ std::optional<Batch> RequestBoard::take_under_lock() {
     }
     if (after != waiting_.begin() && grow(batch, std::prev(after), priority)) grew = true;
   }
-  std::ranges::sort(batch.parts, {}, [](const BatchPart& part) { return end_of(part.range); });
+  std::sort(batch.parts.begin(), batch.parts.end(), [](const BatchPart& a, const BatchPart& b) {
+    return end_of(a.range) < end_of(b.range);
+  });
   return batch;
 }
 

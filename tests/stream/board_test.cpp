@@ -1,0 +1,121 @@
+// How ranges become batches.
+#include "stream/request_board.h"
+
+#include "stream/stream_files.h"
+
+namespace crease {
+namespace {
+
+using stream::Batch;
+using stream::RequestBoard;
+
+constexpr AsyncOptions kSmall{
+    .max_in_flight = 1, .max_gap_bytes = 10, .min_request_bytes = 100, .max_request_bytes = 300};
+
+std::vector<FileRange> spans_of(RequestBoard& board) {
+  std::vector<FileRange> spans;
+  while (const std::optional<Batch> batch = board.take()) spans.push_back(batch->span);
+  return spans;
+}
+
+struct Case {
+  const char* what;
+  std::vector<RangeRequest> asked;
+  std::vector<FileRange> spans;  // in the order in which they are taken
+};
+
+TEST_CASE("ranges that lie near each other become one request") {
+  const Case cases[] = {
+      {"one alone", {{{50, 20}}}, {{50, 20}}},
+      {"neighbours", {{{0, 20}}, {{20, 30}}}, {{0, 50}}},
+      {"a gap that is not too wide", {{{0, 20}}, {{30, 20}}}, {{0, 50}}},
+      {"a gap that is too wide", {{{0, 20}}, {{31, 20}}}, {{0, 20}, {31, 20}}},
+      {"asked for from back to front", {{{40, 20}}, {{20, 20}}, {{0, 20}}}, {{0, 60}}},
+      {"the same twice", {{{5, 20}}, {{5, 20}}}, {{5, 20}}},
+      {"one within another", {{{0, 50}}, {{10, 5}}}, {{0, 50}}},
+      {"equal priorities: up to the largest request",
+       {{{0, 150}}, {{150, 150}}, {{300, 150}}},
+       {{0, 300}, {300, 150}}},
+      {"a large one is not divided", {{{0, 1000}}}, {{0, 1000}}},
+      {"the urgent one first, with what lies near, until it is worth a request",
+       {{{0, 40}, 0}, {{40, 40}, 2}, {{80, 40}, 1}},
+       {{40, 80}, {0, 40}}},
+      {"the first one asked for among equals", {{{500, 20}}, {{0, 20}}}, {{500, 20}, {0, 20}}},
+  };
+  for (const Case& c : cases) {
+    CAPTURE(c.what);
+    RequestBoard board("", kSmall);
+    board.add(c.asked);
+    CHECK(spans_of(board) == c.spans);
+  }
+}
+
+TEST_CASE("a range that becomes urgent goes first") {
+  RequestBoard board("", kSmall);
+  const std::vector<RangeRequest> asked = {{{0, 20}}, {{1000, 20}}};
+  const Ticket first = board.add(asked);
+  board.prioritize(ticket_after(first, 1), 5);
+  CHECK(board.take()->span.offset == 1000);
+}
+
+TEST_CASE("parts are handed out as soon as their bytes are there") {
+  const std::vector<std::byte> file = some_bytes(100);
+  RequestBoard board("", kSmall);
+  const std::vector<RangeRequest> asked = {{{0, 50}}, {{10, 20}}, {{50, 50}}};
+  const Ticket first = board.add(asked);
+  Batch batch = *board.take();
+  board.deliver(batch, std::span(file).first(30));
+  const std::vector<AsyncAnswer> early = board.poll();
+  REQUIRE(early.size() == 1);
+  CHECK(early[0].ticket == ticket_after(first, 1));
+  CHECK(*early[0].bytes == part_of(file, {10, 20}));
+  board.deliver(batch, file);
+  CHECK(board.poll().size() == 2);
+  CHECK(!board.wait(std::chrono::minutes(1)));  // nothing is outstanding, so nothing to wait for
+}
+
+TEST_CASE("what was cancelled is not handed out, wherever it is") {
+  const std::vector<std::byte> file = some_bytes(100);
+  RequestBoard board("", kSmall);
+  const std::vector<RangeRequest> asked = {{{0, 50}}, {{50, 50}}, {{500, 50}}};
+  const Ticket first = board.add(asked);
+  Batch batch = *board.take();
+  board.cancel(ticket_after(first, 2));  // waits
+  board.cancel(first);                   // in flight
+  CHECK(!board.is_abandoned(batch));
+  board.deliver(batch, file);
+  board.cancel(ticket_after(first, 1));  // has arrived
+  CHECK(board.poll().empty());
+  CHECK(board.is_abandoned(batch));
+  CHECK(!board.has_waiting());
+  CHECK(board.statistics().cancelled == 2);
+  CHECK(board.statistics().answered == 1);
+  board.cancel(first);  // once more is no matter
+  CHECK(board.statistics().cancelled == 2);
+}
+
+TEST_CASE("the first bytes and the size answer without a request") {
+  const std::vector<std::byte> file = some_bytes(100);
+  RequestBoard board("a.crease", kSmall);
+  const std::vector<RangeRequest> asked = {{{0, 40}}, {{30, 20}}, {{90, 20}}, {{100, 0}}};
+  const Ticket first = board.add(asked);
+  CHECK(board.poll().empty());
+  board.append_prefix(std::span(file).first(45), 100);
+  board.set_size(100);
+  std::map<Ticket, Result<std::vector<std::byte>>> answers;
+  for (AsyncAnswer& answer : board.poll()) answers.emplace(answer.ticket, std::move(answer.bytes));
+  REQUIRE(answers.size() == 3);
+  CHECK(*answers.at(first) == part_of(file, {0, 40}));
+  const Failure beyond = answers.at(ticket_after(first, 2)).failure();
+  CHECK(beyond.error == Error::Truncated);
+  CHECK(beyond.message == "a.crease: 20 bytes at byte 90 are wanted of 100");
+  CHECK(answers.at(ticket_after(first, 3))->empty());
+  board.append_prefix(std::span(file).subspan(45), 100);
+  const std::vector<AsyncAnswer> rest = board.poll();
+  REQUIRE(rest.size() == 1);
+  CHECK(*rest[0].bytes == part_of(file, {30, 20}));
+  CHECK(board.statistics().requests == 0);
+}
+
+}  // namespace
+}  // namespace crease
