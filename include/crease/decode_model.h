@@ -58,12 +58,13 @@ struct DecodeOptions {
   // Calls body(i) for every i < count, in any order and on any threads. Empty: one after the other.
   std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)> for_each{};
   std::uint64_t max_bytes = std::uint64_t(16) << 30;  // of the decoded blocks together
-  bool count_bits = false;                            // fills DecodedModel::bits; twice as slow
+  bool part_names = true;   // they lie at the file's end; false: the model has no parts
+  bool count_bits = false;  // fills DecodedModel::bits; twice as slow
 };
 
 struct DecodedModel {
-  Mesh mesh;  // snapped; holds check_mesh(). Without parts if their names have not arrived yet
-  LevelError error;                 // of the mesh: not 0 where finer blocks were left out
+  Mesh mesh;         // snapped; holds check_mesh(). Has no parts while their names have not arrived
+  LevelError error;  // of the mesh: not 0 where finer blocks were left out
   ContractionSequence sequence;     // of it, without bands; holds check_contractions()
   std::vector<BlockId> blocks;      // that were decoded, ascending
   std::vector<StreamBits> bits;     // if asked for: per band, finest first, the base last

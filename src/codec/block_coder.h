@@ -199,10 +199,6 @@ class BlockCoder {
   bool is_new(std::uint32_t t) const { return t >= coarse_triangles_; }
   bool was_split(std::uint32_t v) const { return v >= coarse_vertices_ || generation_[v] > 0; }
 
-  static int corner_of(const Corners& t, std::uint32_t v) {
-    return t[0] == v ? 0 : t[1] == v ? 1 : 2;
-  }
-
   Coder& coder_;
   Guide& guide_;
   const BlockCoding& coding_;

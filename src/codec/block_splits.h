@@ -310,7 +310,7 @@ void BlockCoder<Coder, Guide>::apply(std::uint32_t v, std::uint32_t u) {
   for (std::size_t i = 0; i < shape_.triangles.size(); ++i) {
     const std::uint32_t t = shape_.triangles[i];
     if (shape_.to_second[i]) {
-      mesh_.triangles[t][std::size_t(corner_of(mesh_.triangles[t], v))] = u;
+      mesh_.triangles[t][corner_of(mesh_.triangles[t], v)] = u;
       around_.add(u, t);
     } else {
       around_.add(v, t);

@@ -48,7 +48,7 @@ class ModelDecoder {
     Result<codec::ModelSchema> schema = codec::read_schema(file_);
     if (!schema.ok()) return schema.failure();
     schema_ = *std::move(schema);
-    if (file_.has_parts()) {  // a model of a file that was cut has no parts
+    if (options_.part_names && file_.has_parts()) {  // a model of a file that was cut has no parts
       Result<std::vector<std::string>> parts = file_.read_parts();
       if (!parts.ok()) return parts.failure();
       schema_.parts = *std::move(parts);

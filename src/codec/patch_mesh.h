@@ -23,6 +23,11 @@ inline OctahedralCode octahedral_code(const CodedValue& value) {
 
 using Corners = std::array<std::uint32_t, 3>;  // vertices of a triangle
 
+// Which of the corners v is; it must be one.
+constexpr std::uint32_t corner_of(const Corners& corners, std::uint32_t v) {
+  return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
+}
+
 struct PatchMesh {
   std::vector<Vec3i> positions;                 // per vertex, grid units
   std::vector<Corners> triangles;               //

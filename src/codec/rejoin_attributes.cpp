@@ -13,10 +13,6 @@ namespace {
 constexpr double kSameValue = 1e-3;
 constexpr double kSameCopy = 2e-2;  // for a wedge that only moved along
 
-std::uint32_t corner_of(const Corners& corners, std::uint32_t v) {
-  return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
-}
-
 // Where p is on the way from a to b, 0 to 1; half way where there is no way.
 double share_on_the_way(const Vec3i& p, const Vec3i& a, const Vec3i& b) {
   double along = 0, whole = 0;

@@ -21,10 +21,6 @@ bool is_float(double x) {
   return std::abs(x) <= double(std::numeric_limits<float>::max());
 }
 
-std::uint32_t corner_of(const Corners& corners, std::uint32_t v) {
-  return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
-}
-
 }  // namespace
 
 WedgeQuadrics::WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSchema> layers,

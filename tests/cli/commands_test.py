@@ -124,7 +124,9 @@ class Commands(tool.Case):
             built, deviation = self.deviation_at_full(*options)
             self.assertEqual(built["snapped"][0]["precision"], "exact")
             self.assertEqual(built["snapped"][0]["error_max"], 0)
-            self.assertLess(deviation["max"], 1e-3)
+            # Where a sample lies in a sliver is known to float barycentrics alone.
+            self.assertLess(deviation["max"], 0.01)
+            self.assertEqual(deviation["p95"], 0)
 
     def test_texture_coordinates_and_colours_have_bits_of_their_own(self):
         rows = "".join(f"v {x} {y} 0 {(x + y / 77) / 40:.5f} {x * y / 777:.5f} 0.3\n"
