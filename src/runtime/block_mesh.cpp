@@ -291,6 +291,7 @@ const ModelFacts& BlockMesh::facts() const {
 }
 
 Mesh BlockMesh::extract() const {
+  std::vector<codec::PatchMesh> ends;
   std::vector<codec::EndPiece> pieces;
   std::vector<codec::PlacedTriangle> triangles;
   std::vector<Vec3i> positions;
@@ -313,8 +314,9 @@ Mesh BlockMesh::extract() const {
         vertices[i][v] = at->second;
       }
     }
-    pieces.push_back({&end.mesh, vertices[i]});
+    ends.push_back(whole_end(impl_->resident[block]->data()));
   }
+  for (std::uint32_t i = 0; i < ends.size(); ++i) pieces.push_back({&ends[i], vertices[i]});
   ModelSchema schema = *impl_->schema;
   schema.parts = impl_->part_names;
   codec::LayerPools layers(schema);

@@ -17,7 +17,14 @@ std::size_t bytes_of_end(const codec::FineEnd& end) {
   std::size_t bytes = bytes_of_vector(mesh.positions) + bytes_of_vector(mesh.triangles) +
                       bytes_of_vector(mesh.category) + bytes_of_vector(mesh.derived) +
                       bytes_of_vector(end.names) + bytes_of_vector(end.labels);
-  for (const auto& values : mesh.values) bytes += bytes_of_vector(values);
+  return bytes;
+}
+
+std::size_t bytes_of_values(const std::vector<codec::CompactValues>& layers) {
+  std::size_t bytes = bytes_of_vector(layers);
+  for (const codec::CompactValues& layer : layers) {
+    bytes += bytes_of_vector(layer.values) + bytes_of_vector(layer.of_corner);
+  }
   return bytes;
 }
 
@@ -27,7 +34,6 @@ void shrink(codec::FineEnd& end) {
   end.mesh.triangles.shrink_to_fit();
   end.mesh.category.shrink_to_fit();
   end.mesh.derived.shrink_to_fit();
-  for (auto& values : end.mesh.values) values.shrink_to_fit();
   end.names.shrink_to_fit();
   end.labels.shrink_to_fit();
 }
@@ -49,11 +55,13 @@ std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema&
   const std::size_t layers = schema.facts.layers.size();
   const std::size_t of_vertex =
       sizeof(Vec3i) + sizeof(codec::VertexName) + sizeof(std::uint32_t) + 2 * sizeof(Vec3f);
-  // Corners, category, derived, label; a group of its own at most; indices, normals, material.
+  // Corners, category, derived, label; values, each of its own; a group of its own; indices,
+  // normals, material.
   const std::size_t of_triangle =
-      sizeof(codec::Corners) + 9 + 3 * layers * sizeof(codec::CodedValue) + kBytesOfGroup + 12 +
-      3 * sizeof(Vec3f) + 4 + (has_colors ? 3 * sizeof(std::array<float, 4>) : 0);
-  return kBytesOfBlock + of_vertex * facts.vertices + of_triangle * facts.triangles_fine;
+      sizeof(codec::Corners) + 9 + 3 * layers * (sizeof(codec::CodedValue) + 4) + kBytesOfGroup +
+      12 + 3 * sizeof(Vec3f) + 4 + (has_colors ? 3 * sizeof(std::array<float, 4>) : 0);
+  return kBytesOfBlock + layers * sizeof(codec::CompactValues) + of_vertex * facts.vertices +
+         of_triangle * facts.triangles_fine;
 }
 
 ResidentBlock::ResidentBlock(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
@@ -110,7 +118,34 @@ bool names_are_known(const codec::FineEnd& end, std::size_t first, BlockId id,
   return true;
 }
 
+// The start's sources count among the blocks.
+void fill_values(std::span<const ResidentBlock::Data* const> blocks, codec::CoarseEnd& start) {
+  const std::size_t layers = blocks.empty() ? 0 : blocks[0]->values.size();
+  start.mesh.values.resize(layers);
+  for (std::size_t l = 0; l < layers; ++l) {
+    start.mesh.values[l].reserve(3 * start.sources.size());
+    for (const codec::TriangleSource& source : start.sources) {
+      const codec::CompactValues& values = blocks[source.end]->values[l];
+      for (std::size_t c = 0; c < 3; ++c) {
+        start.mesh.values[l].push_back(values.at(3 * std::size_t(source.triangle) + c));
+      }
+    }
+  }
+}
+
 }  // namespace
+
+codec::PatchMesh whole_end(const ResidentBlock::Data& block) {
+  codec::PatchMesh mesh = block.end.mesh;
+  for (const codec::CompactValues& layer : block.values) {
+    std::vector<codec::CodedValue>& values = mesh.values.emplace_back();
+    values.reserve(layer.of_corner.size());
+    for (std::size_t corner = 0; corner < layer.of_corner.size(); ++corner) {
+      values.push_back(layer.at(corner));
+    }
+  }
+  return mesh;
+}
 
 Result<ResidentBlockPtr> BlockDecodeJob::run(std::span<const std::byte> payload) const {
   if (Status status = check_payload(data_->entry, payload); !status.ok()) return status.failure();
@@ -119,11 +154,15 @@ Result<ResidentBlockPtr> BlockDecodeJob::run(std::span<const std::byte> payload)
                            data_->schema->facts.layers.size()) > facts.decoded_bytes) {
     return codec::bad_block(data_->entry.id, "it takes more memory than it says");
   }
+  std::vector<const ResidentBlock::Data*> blocks;
   std::vector<const codec::FineEnd*> ends;
   for (const ResidentBlockPtr& block : data_->needed) {
-    if (block->data().entry.facts.band == facts.band + 1) ends.push_back(&block->data().end);
+    if (block->data().entry.facts.band != facts.band + 1) continue;
+    blocks.push_back(&block->data());
+    ends.push_back(&block->data().end);
   }
   codec::CoarseEnd start = codec::coarse_end_of(ends, facts.patch);
+  fill_values(blocks, start);
   const std::size_t known = start.names.size();
   Result<codec::DecodedBlock> decoded =
       codec::decode_block_of(*data_->schema, data_->entry, payload, std::move(start));
@@ -135,12 +174,16 @@ Result<ResidentBlockPtr> BlockDecodeJob::run(std::span<const std::byte> payload)
   block->entry = data_->entry;
   block->schema = data_->schema;
   block->end = std::move(decoded->end);
-  shrink(block->end);
   lay_out_for_drawing(*block);
-  block->bytes = kBytesOfBlock + bytes_of_end(block->end) + bytes_of_vector(block->groups) +
-                 bytes_of_vector(block->position_of_vertex) + bytes_of_vector(block->positions) +
-                 bytes_of_vector(block->vertex_normals) + block->sn.bytes() + block->fn.bytes() +
-                 block->nsn.bytes();
+  for (const auto& values : block->end.mesh.values) {
+    block->values.push_back(codec::compacted(values));
+  }
+  block->end.mesh.values = {};
+  shrink(block->end);
+  block->bytes = kBytesOfBlock + bytes_of_end(block->end) + bytes_of_values(block->values) +
+                 bytes_of_vector(block->groups) + bytes_of_vector(block->position_of_vertex) +
+                 bytes_of_vector(block->positions) + bytes_of_vector(block->vertex_normals) +
+                 block->sn.bytes() + block->fn.bytes() + block->nsn.bytes();
   return std::make_shared<const ResidentBlock>(std::move(block));
 }
 

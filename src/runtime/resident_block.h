@@ -1,6 +1,7 @@
 // Blocks in memory: decoded from the fine ends of the coarser ones, and laid out for drawing.
 #pragma once
 
+#include "codec/compact_values.h"
 #include "codec/model_schema.h"
 #include "crease/block_mesh.h"
 
@@ -23,7 +24,8 @@ struct BlockPart {
 struct ResidentBlock::Data {
   BlockEntry entry;
   std::shared_ptr<const codec::ModelSchema> schema;
-  codec::FineEnd end;
+  codec::FineEnd end;                        // without its values
+  std::vector<codec::CompactValues> values;  // per layer
   std::vector<BlockGroup> groups;
   std::vector<std::uint32_t> position_of_vertex;  // of the draw list, per vertex of `end`
   std::vector<Vec3f> positions, vertex_normals;   // as in DrawList: SN vertices first
@@ -40,7 +42,10 @@ struct BlockDecodeJob::Data {
 // What a block takes at most.
 std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema& schema);
 
-// Fills what is for drawing from `end`.
+// All of the fine end, with its values.
+codec::PatchMesh whole_end(const ResidentBlock::Data& block);
+
+// Fills what is for drawing from `end`, which has its values.
 void lay_out_for_drawing(ResidentBlock::Data& block);
 
 }  // namespace crease
