@@ -64,25 +64,12 @@ struct Frame {
   float error = 0;
 };
 
-struct Opened {
-  BlockFile file;
-  BlockStreamer streamer;
-};
-
-Result<Opened> open(const Options& options) {
-  const bool is_url = is_http_url(options.file);
-  Result<ByteSourcePtr> bytes =
-      is_url ? open_http_source(options.file) : open_file_source(options.file);
-  if (!bytes.ok()) return bytes.failure();
-  Result<BlockFile> file = BlockFile::open(*bytes);
-  if (!file.ok()) return file.failure();
-  Result<AsyncSourcePtr> source = is_url ? Result<AsyncSourcePtr>(open_async_http(options.file))
-                                         : open_async_file(options.file);
+Result<BlockStreamer> open(const Options& options) {
+  Result<AsyncSourcePtr> source = is_http_url(options.file)
+                                      ? Result<AsyncSourcePtr>(open_async_http(options.file))
+                                      : open_async_file(options.file);
   if (!source.ok()) return source.failure();
-  Result<BlockStreamer> streamer =
-      BlockStreamer::open(*file, *source, {.decode_threads = options.threads});
-  if (!streamer.ok()) return streamer.failure();
-  return Opened{*std::move(file), *std::move(streamer)};
+  return BlockStreamer::open(*source, {.decode_threads = options.threads});
 }
 
 // What the first blocks show, to know where to fly.
@@ -167,12 +154,12 @@ void report(const Options& options, const BlockStreamer& streamer,
 
 int fly(const Options& options) {
   const Clock::time_point start = Clock::now();
-  Result<Opened> opened = open(options);
+  Result<BlockStreamer> opened = open(options);
   if (!opened.ok()) {
     std::fprintf(stderr, "%s\n", opened.failure().message.c_str());
     return 2;
   }
-  BlockStreamer& streamer = opened->streamer;
+  BlockStreamer& streamer = *opened;
   const Box box = box_of_start(streamer);
   const StreamStatistics at_start = streamer.statistics();
   std::printf("first picture after %.3f s, %.1f kB of blocks\n", seconds_since(start),
@@ -199,17 +186,15 @@ int fly(const Options& options) {
 // A camera that sees the whole model and does not move.
 int stand_still(const Options& options) {
   const Clock::time_point start = Clock::now();
-  Result<Opened> opened = open(options);
+  Result<BlockStreamer> opened = open(options);
   if (!opened.ok()) {
     std::fprintf(stderr, "%s\n", opened.failure().message.c_str());
     return 2;
   }
-  BlockStreamer& streamer = opened->streamer;
-  const std::uint64_t file_bytes = opened->file.head().file_bytes;
+  BlockStreamer& streamer = *opened;
+  const std::uint64_t file_bytes = streamer.head().file_bytes;
   const auto report = [&](const char* what) {
-    // What opening read stays with the source that read it.
-    const double bytes =
-        double(opened->file.source().bytes_read() + streamer.statistics().source.bytes_transferred);
+    const double bytes = double(streamer.statistics().source.bytes_transferred);
     std::printf("  %-14s %7.3f s  %9.1f kB  %5.1f %% of the file  %zu triangles, %.2f px\n", what,
                 seconds_since(start), bytes / 1e3, 100 * bytes / double(file_bytes),
                 streamer.mesh().triangle_count(),
@@ -235,11 +220,12 @@ int stand_still(const Options& options) {
 
 // Everything in memory: triangles and time at the same error, along the same path.
 int compare_granularities(const Options& options) {
-  Result<Opened> opened = open(options);
-  if (!opened.ok()) return 2;
-  BlockStreamer& streamer = opened->streamer;
+  Result<BlockStreamer> opened = open(options);
+  const Result<BlockFile> file = open_crease(options.file);
+  if (!opened.ok() || !file.ok()) return 2;
+  BlockStreamer& streamer = *opened;
   const Box box = box_of_start(streamer);
-  const Result<DecodedModel> model = decode_model(opened->file);
+  const Result<DecodedModel> model = decode_model(*file);
   if (!model.ok()) return 2;
   Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
   if (!hierarchy.ok()) return 2;

@@ -1,8 +1,7 @@
 // Feeds a BlockMesh from a source that takes its time: asks for what the view misses, decodes it on
 // threads of its own, and never makes a frame wait.
 //
-//   Result<BlockFile> file = BlockFile::open(*open_http_source(url));
-//   Result<BlockStreamer> streamer = BlockStreamer::open(*file, open_async_http(url));
+//   Result<BlockStreamer> streamer = BlockStreamer::open(open_async_http(url));
 //   every frame:
 //     streamer->update({.view = {.camera = camera}, .max_bytes = 256 << 20});
 //     for (const ShownRange& range : streamer->mesh().shown()) draw(range);
@@ -54,7 +53,11 @@ struct StreamStatistics {
 
 class BlockStreamer {
  public:
-  // `source`: of the same bytes as `file`, of which only the head and the schema are read here.
+  // Waits for the head and the schema, which mostly are in the first 64 KiB; of a host these are
+  // one request, out of which the first picture comes as well. Nothing else may be asked of the
+  // source.
+  static Result<BlockStreamer> open(AsyncSourcePtr source, const StreamOptions& options = {});
+  // Of a file whose head has been read. `source`: of the same bytes.
   static Result<BlockStreamer> open(const BlockFile& file, AsyncSourcePtr source,
                                     const StreamOptions& options = {});
   ~BlockStreamer();
@@ -65,6 +68,7 @@ class BlockStreamer {
   StreamReport update(const BlockViewParameters& parameters);
 
   const BlockMesh& mesh() const;
+  const BlockFileHead& head() const;
   StreamStatistics statistics() const;
   // The last thing that went wrong, while it has not gone right since. What is shown is right all
   // the same, only coarser.

@@ -283,6 +283,45 @@ void BlockStreamer::Impl::decode_what_can_be() {
   }
 }
 
+namespace {
+
+// An asynchronous source of which nothing else is asked, as one that waits.
+class WaitingSource : public ByteSource {
+ public:
+  explicit WaitingSource(AsyncSourcePtr source) : source_(std::move(source)) {}
+
+  std::string name() const override { return source_->name(); }
+  std::uint64_t size() const override { return source_->size().value_or(0); }
+  // Until the size is known.
+  Status begin() const { return read_at(0, {}); }
+
+ private:
+  Status read_at(std::uint64_t offset, std::span<std::byte> into) const override {
+    const Ticket ticket = source_->request({offset, into.size()});
+    for (;;) {
+      source_->wait(std::chrono::milliseconds(1000));
+      for (const AsyncAnswer& answer : source_->poll()) {
+        if (answer.ticket != ticket) continue;
+        if (!answer.bytes.ok()) return answer.bytes.failure();
+        std::copy(answer.bytes->begin(), answer.bytes->end(), into.begin());
+        return Done{};
+      }
+    }
+  }
+
+  AsyncSourcePtr source_;
+};
+
+}  // namespace
+
+Result<BlockStreamer> BlockStreamer::open(AsyncSourcePtr source, const StreamOptions& options) {
+  const auto waiting = std::make_shared<const WaitingSource>(source);
+  if (Status status = waiting->begin(); !status.ok()) return status.failure();
+  const Result<BlockFile> file = BlockFile::open(waiting);
+  if (!file.ok()) return file.failure();
+  return open(*file, std::move(source), options);
+}
+
 Result<BlockStreamer> BlockStreamer::open(const BlockFile& file, AsyncSourcePtr source,
                                           const StreamOptions& options) {
   Result<BlockMesh> mesh = BlockMesh::open(file);
@@ -297,6 +336,10 @@ BlockStreamer::BlockStreamer(BlockStreamer&&) noexcept = default;
 
 StreamReport BlockStreamer::update(const BlockViewParameters& parameters) {
   return impl_->update(parameters);
+}
+
+const BlockFileHead& BlockStreamer::head() const {
+  return impl_->head;
 }
 
 const BlockMesh& BlockStreamer::mesh() const {

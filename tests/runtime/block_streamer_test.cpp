@@ -113,6 +113,20 @@ TEST_CASE("a view is complete in the end, whatever the source does on the way") 
   }
 }
 
+TEST_CASE("an asynchronous source is all that it takes to open a model") {
+  const EncodedCase c = small_case();
+  Result<BlockStreamer> streamer = BlockStreamer::open(async_memory_source(c.bytes), hasty(1));
+  REQUIRE(streamer.ok());
+  CHECK(streamer->head().file_bytes == c.bytes.size());
+  finish(*streamer, view_of_all());
+  CHECK(streamer->mesh().error().surface == 0);
+  const Result<BlockStreamer> broken =
+      BlockStreamer::open(async_memory_source(std::span(c.bytes).first(40), "cut"), hasty(1));
+  REQUIRE(!broken.ok());
+  CHECK(broken.failure().message.find("cut") != std::string::npos);
+  CHECK(!BlockStreamer::open(std::make_shared<UnsteadySource>(c.bytes, 1, 10), hasty(1)).ok());
+}
+
 TEST_CASE("while the source fails what is shown stays, and says what is wrong") {
   const EncodedCase c = simplified_case(smooth_sphere(40, 60), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);

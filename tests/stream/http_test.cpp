@@ -1,6 +1,7 @@
 // Models over HTTP, from the server of `crease serve`.
 #include "crease/http_source.h"
 
+#include "crease/block_streamer.h"
 #include "crease/file_server.h"
 #include "stream/fault_host.h"
 #include "stream/stream_files.h"
@@ -72,6 +73,23 @@ TEST_CASE("a coarse level reads the first bytes alone") {
   CHECK(decode_model(*file, {.finest_band = coarsest, .part_names = false}).ok());
   CHECK(host.request_count() == 1);
   CHECK((*source)->bytes_read() == 65536);
+}
+
+TEST_CASE("the first picture is in the first 64 KiB") {
+  Host host;
+  host.folder.write("model.crease", city_bytes());
+  Result<BlockStreamer> streamer = BlockStreamer::open(open_async_http(host.url(), hasty()));
+  REQUIRE(streamer.ok());
+  BlockViewParameters nothing;  // but the base
+  nothing.view.max_triangles = 0;
+  while (streamer->mesh().shown().empty()) {
+    streamer->update(nothing);
+    streamer->wait(std::chrono::milliseconds(100));
+  }
+  // With that view complete, the names of parts may be on their way.
+  const std::uint64_t names = streamer->head().parts.range.bytes;
+  CHECK((host.sent_bytes() == 65536 || host.sent_bytes() == 65536 + names));
+  CHECK(host.request_count() <= 2);
 }
 
 TEST_CASE("many small ranges become few requests") {
