@@ -132,6 +132,7 @@ Status App::step() {
     const bool knows_where = !is_fitted_ || frame_.triangles > 0;
     if (!knows_where) wanted.max_triangles = 0;  // the coarsest there is, to fit the camera to
     const std::size_t calls = frame_.draw_calls;
+    const bool was_complete = frame_.is_complete;
     frame_ = mesh->update(wanted, sized(frozen_.value_or(camera_)));
     frame_.draw_calls = calls;
     if (is_fitted_ && (frame_.has_changed || !knows_where)) {
@@ -139,6 +140,7 @@ Status App::step() {
       frame_.has_changed = true;
       frame_.is_complete = false;  // not for this camera
     }
+    if (frame_.is_complete != was_complete) frame_.has_changed = true;
   }
   if (frame_.has_changed || session_.is_busy()) draws_left_ = std::max(draws_left_, 1);
   if (!notice_.empty() && now() > notice_until_) say("");

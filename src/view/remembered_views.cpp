@@ -22,7 +22,8 @@ namespace {
 std::string name_of(const std::string& source) {
   if (is_http_url(source)) return source;
   std::error_code error;
-  const std::filesystem::path path = std::filesystem::weakly_canonical(source, error);
+  const std::filesystem::path path =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(source, error), error);
   return error ? source : path.string();
 }
 

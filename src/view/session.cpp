@@ -74,11 +74,21 @@ std::uint64_t Session::bytes_read() const {
   return blocks_->streamer().statistics().source.bytes_transferred + whole_bytes_;
 }
 
+std::optional<Failure> Session::stream_trouble() const {
+  if (!blocks_ || !blocks_->streamer().trouble()) return std::nullopt;
+  Failure trouble = *blocks_->streamer().trouble();
+  // Sources name themselves, blocks do not.
+  if (trouble.message.find(source_.name) == std::string::npos) {
+    trouble.message = source_.source + ": " + trouble.message;
+  }
+  return trouble;
+}
+
 std::optional<Failure> Session::stream_failure(std::size_t failed_blocks) const {
   if (!blocks_ || blocks_->streamer().statistics().blocks_failed < failed_blocks) {
     return std::nullopt;
   }
-  return blocks_->streamer().trouble();
+  return stream_trouble();
 }
 
 void Session::forget_failures() {
@@ -98,8 +108,8 @@ std::optional<Message> Session::message() const {
                    note.share()};
   }
   if (!trouble_.empty()) return Message{trouble_, true};
-  if (blocks_ && blocks_->streamer().trouble()) {
-    return Message{blocks_->streamer().trouble()->message, true};
+  if (const std::optional<Failure> trouble = stream_trouble()) {
+    return Message{trouble->message, true};
   }
   return std::nullopt;
 }

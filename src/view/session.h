@@ -53,6 +53,7 @@ class Session {
   void forget_failures();
 
  private:
+  std::optional<Failure> stream_trouble() const;
   bool take_opened();
   void take_loaded(ViewSettings& settings, const GlLimits& limits);
 

@@ -42,7 +42,8 @@ FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camer
   blocks_.drop(report.cut.dropped);
   facts.uploaded_bytes = blocks_.upload(mesh.shown(), kUploadPerFrame);
   facts.triangles = mesh.triangle_count();
-  facts.error_pixels = std::max(1.0, double(mesh.view_error())) * settings.pixels;
+  facts.error_pixels = std::min(std::max(1.0, double(mesh.view_error())) * settings.pixels,
+                                double(camera.height_px));
   facts.gpu_bytes = blocks_.bytes();
   facts.resident_bytes = mesh.resident_bytes();
   facts.pending_bytes = streamer_.statistics().pending_bytes;

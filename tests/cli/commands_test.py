@@ -7,7 +7,7 @@ import struct
 
 import tool
 
-COMMANDS = ["build", "info", "extract", "compare", "render", "validate", "generate"]
+COMMANDS = ["build", "info", "extract", "compare", "render", "validate", "generate", "view"]
 
 
 def digest(path):
