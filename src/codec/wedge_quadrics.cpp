@@ -21,7 +21,7 @@ bool is_float(double x) {
   return std::abs(x) <= double(std::numeric_limits<float>::max());
 }
 
-std::uint32_t corner_of(const Corners& corners, std::uint32_t v) {
+std::uint32_t corner_with(const Corners& corners, std::uint32_t v) {
   return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
 }
 
@@ -174,7 +174,7 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
     return static_cast<std::size_t>(found - members_.begin());
   };
   const auto corner_at = [&](std::uint32_t t, std::uint32_t v) {
-    return 3 * std::size_t(t) + corner_of(patch.corners(t), v);
+    return 3 * std::size_t(t) + corner_with(patch.corners(t), v);
   };
   for (const std::uint32_t t : patch.around(first)) {
     const std::uint32_t wedge = layer.wedge_of_corner[corner_at(t, first)];
