@@ -275,7 +275,7 @@ class Arranger {
     });
     PackedContractions& packed = arrays_.contractions;
     for (std::size_t i = 0; i < items_.size();) {
-      BlockGroup group{items_[i].kind, items_[i].stored_layer, 0};
+      PackedGroup group{items_[i].kind, items_[i].stored_layer, 0};
       const std::size_t group_word = packed.blocks.size();
       packed.blocks.push_back(0);
       for (; i < items_.size() && group.count < kMaxGroupCount; ++i) {

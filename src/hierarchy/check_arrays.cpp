@@ -257,7 +257,7 @@ class Follower {
     const std::size_t end = p_.block_ends[block_++];
     std::uint64_t last = 0;  // kind, layer and item ascend, so nothing is there twice
     while (word_ < end) {
-      const BlockGroup group = unpack_group(p_.blocks[word_++]);
+      const PackedGroup group = unpack_group(p_.blocks[word_++]);
       const std::size_t words = group.kind == BlockKind::Indices ? 2 : 1;
       if (group.count > (end - word_) / words) return "its block is cut";
       const std::uint64_t base = (std::uint64_t(group.kind) << 14 | group.layer) << 32;
@@ -271,7 +271,7 @@ class Follower {
     return nullptr;
   }
 
-  const char* check_item(const BlockGroup& group, const SectionCounts& after) {
+  const char* check_item(const PackedGroup& group, const SectionCounts& after) {
     const std::uint32_t item = p_.blocks[word_];
     switch (group.kind) {
       case BlockKind::Indices:

@@ -214,7 +214,7 @@ void LinearState::move_block(std::size_t block, bool forwards, Marks& marks) {
   const PackedContractions& packed = arrays_->contractions;
   std::size_t word = block == 0 ? 0 : packed.block_ends[block - 1];
   while (word < packed.block_ends[block]) {
-    const BlockGroup group = unpack_group(packed.blocks[word++]);
+    const PackedGroup group = unpack_group(packed.blocks[word++]);
     for (std::uint32_t i = 0; i < group.count; ++i) {
       const std::uint32_t item = packed.blocks[word++];
       switch (group.kind) {

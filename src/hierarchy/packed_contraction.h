@@ -62,7 +62,7 @@ enum class BlockKind : std::uint8_t {
   Touched,  // items: corner at the kept slot
 };
 
-struct BlockGroup {
+struct PackedGroup {
   BlockKind kind{};
   std::uint32_t layer = 0;  // 0: normals; l + 1: ProgressiveArrays::layers[l]
   std::uint32_t count = 0;
@@ -70,10 +70,10 @@ struct BlockGroup {
 inline constexpr std::uint32_t kMaxGroupCount = 0xffff;
 inline constexpr std::uint32_t kMaxLayers = 0x3fff;
 
-inline BlockGroup unpack_group(std::uint32_t word) {
+inline PackedGroup unpack_group(std::uint32_t word) {
   return {static_cast<BlockKind>(word & 3), word >> 2 & kMaxLayers, word >> 16};
 }
-inline std::uint32_t pack_group(const BlockGroup& g) {
+inline std::uint32_t pack_group(const PackedGroup& g) {
   return static_cast<std::uint32_t>(g.kind) | g.layer << 2 | g.count << 16;
 }
 
