@@ -17,7 +17,8 @@ namespace {
 
 struct ViewArguments {
   std::string source;
-  std::string size, view, flight, mode = "block", up = "z";
+  std::string size, view, flight, mode = "block", coloring = "shaded", up = "z";
+  bool wireframe = false, outside = false, panels = false;
   std::filesystem::path screenshot;
   std::optional<double> pixels, budget_mb;
   std::optional<std::size_t> triangles;
@@ -28,6 +29,14 @@ ViewMode mode_of(const std::string& name) {
   if (name == "vertex") return ViewMode::Vertices;
   if (name == "linear") return ViewMode::Linear;
   return ViewMode::Blocks;
+}
+
+ViewColoring coloring_named(const std::string& name) {
+  if (name == "kind") return ViewColoring::Kind;
+  if (name == "level") return ViewColoring::Level;
+  if (name == "block") return ViewColoring::Block;
+  if (name == "error") return ViewColoring::Error;
+  return ViewColoring::Shaded;
 }
 
 Result<Flight> read_flight(const std::filesystem::path& path) {
@@ -51,6 +60,10 @@ Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common&
   ViewerOptions viewer;
   viewer.source = options.source;
   viewer.mode = mode_of(options.mode);
+  viewer.coloring = coloring_named(options.coloring);
+  viewer.wireframe = options.wireframe;
+  viewer.outside = options.outside;
+  viewer.panels_on_screenshot = options.panels;
   if (options.up == "y") viewer.up = {0, 1, 0};
   if (!options.view.empty()) {
     const Result<Camera> camera = read_camera(options.view);
@@ -136,11 +149,19 @@ Command add_view(CLI::App& app, const Common& common) {
                    "block: streams, and cuts along blocks | vertex, linear: load all of the model")
       ->check(CLI::IsMember({"block", "vertex", "linear"}))
       ->capture_default_str();
+  command->add_option("--color", options->coloring, "shaded | kind | level | block | error")
+      ->check(CLI::IsMember({"shaded", "kind", "level", "block", "error"}))
+      ->type_name("BY")
+      ->capture_default_str();
+  command->add_flag("--wireframe", options->wireframe, "edges over the surface");
   command
       ->add_option("--view", options->view,
                    "camera to begin with, as crease render has it; its viewport is the size. "
                    "Default: where this file was last seen from, else all of the model")
       ->type_name("CAM.json");
+  command->add_flag("--outside", options->outside,
+                    "once the view is complete it is frozen, and looked at from outside with its "
+                    "frustum: keys O and Z");
   command->add_option("--up", options->up, "axis that points up when no camera says")
       ->check(CLI::IsMember({"y", "z"}))
       ->capture_default_str();
@@ -151,8 +172,9 @@ Command add_view(CLI::App& app, const Common& common) {
   command
       ->add_option("--screenshot", options->screenshot,
                    "shows the model until the view is complete and the flight over, writes the "
-                   "picture without panels, and ends")
+                   "picture, and ends")
       ->type_name("OUT.png");
+  command->add_flag("--panels", options->panels, "the panels are on that picture");
   add_build_options(*command, options->read);
   command->footer(
       "Examples:\n  crease view city.crease\n  crease view https://host/city.crease --budget 256\n"

@@ -30,6 +30,14 @@ enum class ViewMode : std::uint8_t {
   Linear,    // the whole model in memory; one level everywhere
 };
 
+enum class ViewColoring : std::uint8_t {
+  Shaded,  // materials and vertex colours
+  Kind,    // SN, FN and NSN triangles
+  Level,   // by block: bands, fine ones green-blue, the base violet; else by the share of triangles
+  Block,   // a colour for each block; else shaded
+  Error,   // on the screen: what is allowed in the middle of the scale, blue to red
+};
+
 // A camera of a flight, so many seconds after its begin.
 struct TimedCamera {
   double seconds = 0;
@@ -46,16 +54,20 @@ struct ViewerOptions {
   std::string source;                    // path or URL; empty: waits for files to be dropped
   int width_px = 1280, height_px = 800;  // of the window
   ViewMode mode = ViewMode::Blocks;
-  double pixels = 1;  // error allowed on the screen
+  ViewColoring coloring = ViewColoring::Shaded;
+  bool wireframe = false;
+  bool outside = false;  // once the view is complete: frozen, and looked at from outside
+  double pixels = 1;     // error allowed on the screen
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
   std::size_t max_bytes = std::size_t(512) << 20;  // of resident blocks
   // Else the last one that this file was seen from, else all of the model.
   std::optional<Camera> camera{};
   Vec3d up{0, 0, 1};  // where no camera says
   Flight flight{};    // played once the first picture is there
-  // Shows until the view is complete, and the flight over, writes the picture without panels, ends.
+  // Shows until the view is complete, and the flight over, writes the picture, ends.
   std::filesystem::path screenshot{};
-  ImportOptions import{};  // of mesh files; progress is the viewer's
+  bool panels_on_screenshot = false;  // what lies over the picture is on it
+  ImportOptions import{};             // of mesh files; progress is the viewer's
   BuildOptions build{};
   int decode_threads = 1;
   std::function<bool()> stopped{};  // asked every frame; true ends as closing the window does

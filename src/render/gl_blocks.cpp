@@ -39,10 +39,9 @@ const GlScene* GlBlocks::find(const ResidentBlock& block) const {
   return at == scenes_.end() ? nullptr : at->second.get();
 }
 
-std::size_t GlBlocks::upload(std::span<const ShownRange> shown, std::size_t max_bytes) {
+std::size_t GlBlocks::upload(std::span<const ShownRange> shown) {
   std::size_t uploaded = 0;
   for (const ShownRange& range : shown) {
-    if (uploaded >= max_bytes) break;
     std::unique_ptr<GlScene>& scene = scenes_[key_of(range.block->id())];
     if (scene) continue;
     const DrawList list = range.block->draw_list();
@@ -72,6 +71,20 @@ Box GlBlocks::box_of(std::span<const ShownRange> shown) const {
     box.add(scene->box().high);
   }
   return box;
+}
+
+std::vector<Vec3f> GlBlocks::box_corners_of(std::span<const ShownRange> shown,
+                                            const Vec3d& origin) const {
+  std::vector<Vec3f> corners;
+  for (const ShownRange& range : shown) {
+    const GlScene* scene = find(*range.block);
+    if (scene == nullptr || scene->box().empty) continue;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3d corner = corner_of(scene->box(), i) - origin;
+      corners.push_back({float(corner.x), float(corner.y), float(corner.z)});
+    }
+  }
+  return corners;
 }
 
 Result<DrawCount> GlBlocks::draw(ProgramCache& programs, const DrawPass& pass,

@@ -15,10 +15,12 @@
 #include "render/gl_scene.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
 #include <unordered_map>
+#include <vector>
 
 namespace crease {
 
@@ -31,14 +33,15 @@ class GlBlocks {
   // What a block is drawn in, all of it; empty: as the style says.
   using ColorOfBlock = std::function<ColorSrgb(const ResidentBlock&)>;
 
-  // What is shown and not here yet, until `max_bytes` are uploaded; at least one block. Returns
-  // the bytes. What is not here is not drawn.
-  std::size_t upload(std::span<const ShownRange> shown,
-                     std::size_t max_bytes = std::numeric_limits<std::size_t>::max());
+  // What is shown and not here yet: all of it, since there is nothing to draw in its place. Returns
+  // the bytes.
+  std::size_t upload(std::span<const ShownRange> shown);
   void drop(std::span<const BlockId> blocks);
 
   // Around all corners of the blocks of which something is shown.
   Box box_of(std::span<const ShownRange> shown) const;
+  // Of each of their boxes, less `origin`.
+  std::vector<Vec3f> box_corners_of(std::span<const ShownRange> shown, const Vec3d& origin) const;
 
   // Into the bound framebuffer, without what lies beside the view.
   Result<DrawCount> draw(ProgramCache& programs, const DrawPass& pass, const DrawStyle& style,

@@ -106,6 +106,20 @@ Result<Image> GlCanvas::read() {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, storage.id());
   if (const Status composed = compose(framebuffer.id()); !composed.ok()) return composed.failure();
+  Image image = read_bound();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  return image;
+}
+
+Image GlCanvas::read_window() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glReadBuffer(GL_BACK);
+  Image image = read_bound();
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  return image;
+}
+
+Image GlCanvas::read_bound() const {
   Image image;
   image.width = width_;
   image.height = height_;
@@ -113,7 +127,6 @@ Result<Image> GlCanvas::read() {
   std::vector<std::uint8_t> upside_down(row * std::size_t(height_));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, upside_down.data());
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
   image.rgba.resize(upside_down.size());
   for (std::size_t y = 0; y < std::size_t(height_); ++y) {
     std::memcpy(&image.rgba[y * row], &upside_down[(std::size_t(height_) - 1 - y) * row], row);

@@ -27,12 +27,16 @@ class GlCanvas {
   Status show();
   // The same picture as an image.
   Result<Image> read();
+  // What the window's framebuffer has, with all that was drawn over the picture since show(). Where
+  // another window covers ours it may be anything.
+  Image read_window() const;
 
   const GlLimits& limits() const { return limits_; }
   ProgramCache& programs() { return programs_; }
 
  private:
   Status compose(GLuint framebuffer);
+  Image read_bound() const;
 
   GlLimits limits_;
   ProgramCache programs_;

@@ -11,7 +11,10 @@ namespace crease {
 
 namespace {
 
+constexpr int kFitsInARow = 3;
+constexpr double kSameView = 1e-3;  // of the distance
 constexpr double kNoticeSeconds = 4;
+constexpr double kStreamPause = 2;  // times the last frame's time
 constexpr double kBusySeconds = 0.01, kIdleSeconds = 0.1;
 constexpr std::size_t kTries = 3;  // of blocks that fail, before a picture is given up
 
@@ -29,6 +32,8 @@ App::App(const ViewerOptions& options, ViewerWindow& window, GlCanvas canvas)
       gui_(window),
       session_(options) {
   settings_.mode = options.mode;
+  settings_.coloring = options.coloring;
+  settings_.wireframe = options.wireframe;
   settings_.pixels = options.pixels;
   settings_.max_triangles = options.max_triangles;
   settings_.max_bytes = options.max_bytes;
@@ -68,6 +73,7 @@ void App::welcome() {
   if (!camera && options_.screenshot.empty()) camera = remembered_view(session_.source().source);
   is_first_ = false;
   is_fitted_ = !camera.has_value();
+  fits_left_ = kFitsInARow;
   if (camera) {
     camera_ = *camera;
     // A picture of another shape shows at least what the camera's own does.
@@ -94,6 +100,24 @@ void App::fit() {
   if (points.empty()) return;
   const PointSet set{mesh->origin(), points};
   camera_ = fit_camera_to(std::span(&set, 1), options_.up, camera_.width_px, camera_.height_px);
+}
+
+// A cut for another camera has another outline, so this might go on for ever. The outline of a
+// whole model takes its time, so that it waits for the cut's end.
+bool App::fit_again() {
+  if (settings_.mode != ViewMode::Blocks && !frame_.is_complete) return false;
+  if (frame_.uploaded_bytes > 0) fits_left_ = kFitsInARow;
+  if (fits_left_ == 0) return false;
+  --fits_left_;
+  const Camera before = camera_;
+  fit();
+  const double distance = length(camera_.position - camera_.target);
+  if (length(before.position - camera_.position) > kSameView * distance ||
+      length(before.target - camera_.target) > kSameView * distance) {
+    return true;
+  }
+  camera_ = before;
+  return false;
 }
 
 void App::move_camera() {
@@ -132,26 +156,37 @@ Status App::step() {
     const bool knows_where = !is_fitted_ || frame_.triangles > 0;
     if (!knows_where) wanted.max_triangles = 0;  // the coarsest there is, to fit the camera to
     const std::size_t calls = frame_.draw_calls;
+    const std::size_t not_drawn = has_arrived_ ? frame_.uploaded_bytes : 0;
     const bool was_complete = frame_.is_complete;
     frame_ = mesh->update(wanted, sized(frozen_.value_or(camera_)));
     frame_.draw_calls = calls;
-    if (is_fitted_ && (frame_.has_changed || !knows_where)) {
-      fit();
+    frame_.uploaded_bytes += not_drawn;
+    if (is_fitted_ && (frame_.has_changed || !knows_where) && fit_again()) {
       frame_.has_changed = true;
       frame_.is_complete = false;  // not for this camera
     }
     if (frame_.is_complete != was_complete) frame_.has_changed = true;
   }
-  if (frame_.has_changed || session_.is_busy()) draws_left_ = std::max(draws_left_, 1);
-  if (!notice_.empty() && now() > notice_until_) say("");
-  if (draws_left_ == 0) return finish_screenshot();
-  --draws_left_;
+  if (!is_drawing_due()) return finish_screenshot();
   const auto [width, height] = window_.size_px();
   if (width == 0 || height == 0) return Done{};
   if (const Status drawn = draw(); !drawn.ok()) return drawn;
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
   histories_.add(took.count(), frame_);
+  stream_draw_at_ = now() + kStreamPause * took.count() / 1000;
   return finish_screenshot();
+}
+
+bool App::is_drawing_due() {
+  if (!notice_.empty() && now() > notice_until_) say("");
+  has_arrived_ |= frame_.has_changed || session_.is_busy();
+  if (has_arrived_ && (frame_.is_complete || now() >= stream_draw_at_)) {
+    draws_left_ = std::max(draws_left_, 1);
+  }
+  if (draws_left_ == 0) return false;
+  --draws_left_;
+  has_arrived_ = false;
+  return true;
 }
 
 Status App::draw() {
@@ -170,6 +205,7 @@ Status App::draw() {
   for (const Action action : draw_panels(panel_content(), settings_)) act(action);
   if (!(before == settings_)) draws_left_ = kSettlingFrames;
   gui_.draw();
+  if (window_picture_) window_picture_ = canvas_.read_window();
   window_.show();
   return Done{};
 }
@@ -300,17 +336,32 @@ std::optional<Failure> App::cannot_finish() const {
   return session_.stream_failure(kTries);
 }
 
-Status App::finish_screenshot() {
-  if (options_.screenshot.empty() || is_done_) return Done{};
-  if (const std::optional<Failure> failure = cannot_finish()) return *failure;
+bool App::is_all_there() const {
   const bool is_flight_over =
       options_.flight.empty() ||
       (flight_began_ && now() - *flight_began_ > options_.flight.back().seconds + 0.5);
-  if (!frame_.is_complete || frame_.has_changed || session_.is_busy() || !is_flight_over ||
-      draws_left_ > 0 || session_.shown() == nullptr) {
+  return frame_.is_complete && !frame_.has_changed && !session_.is_busy() && is_flight_over &&
+         draws_left_ == 0 && !has_arrived_ && session_.shown() != nullptr;
+}
+
+Result<Image> App::final_picture() {
+  if (!options_.panels_on_screenshot) return canvas_.read();
+  window_picture_.emplace();
+  if (const Status drawn = draw(); !drawn.ok()) return drawn.failure();
+  return *std::exchange(window_picture_, std::nullopt);
+}
+
+Status App::finish_screenshot() {
+  if (is_done_) return Done{};
+  if (options_.outside && !is_outside_ && is_all_there()) {
+    is_outside_ = true;
+    act(Action::Outside);
     return Done{};
   }
-  const Result<Image> image = canvas_.read();
+  if (options_.screenshot.empty()) return Done{};
+  if (const std::optional<Failure> failure = cannot_finish()) return *failure;
+  if (!is_all_there()) return Done{};
+  const Result<Image> image = final_picture();
   if (!image.ok()) return image.failure();
   is_done_ = true;
   window_.close();
@@ -321,6 +372,7 @@ Result<ViewerReport> App::run() {
   while (!window_.is_closed()) {
     if (const Status stepped = step(); !stepped.ok()) return stepped.failure();
   }
+  window_.hide();
   remember();
   if (session_.failure() && session_.facts() == nullptr) return *session_.failure();
   if (!options_.screenshot.empty() && !is_done_) {

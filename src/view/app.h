@@ -1,8 +1,9 @@
 // The viewer's loop: what the user does, what has arrived, a picture, and again.
 //
-// A picture is drawn when something has changed. While nothing does the loop waits for events; it
-// looks ten times a second whether the background has done something, a hundred times while the
-// view is not complete.
+// A picture is drawn when something has changed; while blocks arrive, for a third of the time at
+// most, so that a slow OpenGL does not slow down what it waits for. While nothing changes the loop
+// waits for events; it looks ten times a second whether the background has done something, a
+// hundred times while the view is not complete.
 #pragma once
 
 #include "crease/viewer.h"
@@ -51,6 +52,7 @@ class App {
   void welcome();      // a model that is there now
   void move_camera();  // by the flight, by keys, to fit
   void fit();
+  bool fit_again();  // to what has arrived; false if the camera stays
   void freeze(bool on);
   void look_from_outside();
   void toggle_recording();
@@ -60,11 +62,14 @@ class App {
   std::optional<Hit> hit_at(double x, double y) const;
   Camera sized(Camera camera) const;
 
+  bool is_drawing_due();
   Status draw();
   PanelContent panel_content() const;
   std::vector<Segment> lines() const;
   double wait_seconds() const;
   Status finish_screenshot();  // when all of it is there
+  Result<Image> final_picture();
+  bool is_all_there() const;
   std::optional<Failure> cannot_finish() const;
 
   const ViewerOptions options_;
@@ -80,6 +85,7 @@ class App {
 
   Camera camera_;
   bool is_fitted_ = true;  // nobody has moved the camera: it follows what arrives
+  int fits_left_ = 0;      // before it stays, if nothing arrives
   bool is_first_ = true;   // model
   std::optional<Camera> frozen_;
   std::vector<Segment> frustum_;
@@ -91,7 +97,11 @@ class App {
   Switches switches_;
   std::string notice_;
   double notice_until_ = 0, last_step_ = 0;
+  bool has_arrived_ = false;   // something that is not drawn yet
+  double stream_draw_at_ = 0;  // what arrives before then waits for it
   int draws_left_ = kSettlingFrames;
+  bool is_outside_ = false;              // as the options ask
+  std::optional<Image> window_picture_;  // taken with the next picture if there is one
   bool is_done_ = false;
 };
 

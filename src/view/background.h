@@ -63,11 +63,20 @@ class Background {
           shared->is_done = true;
         }) {}
   Background(Background&&) noexcept = default;
+  // For containers, which assign to what they moved from: work that goes on is never lost.
+  Background& operator=(Background&& other) noexcept {
+    std::swap(shared_, other.shared_);
+    std::swap(thread_, other.thread_);
+    return *this;
+  }
   // Asks the work to stop and waits until it has.
   ~Background() {
     if (shared_) shared_->note.stop();
     if (thread_.joinable()) thread_.join();
   }
+
+  // Asks it to stop, and does not wait.
+  void stop() { shared_->note.stop(); }
 
   const Note& note() const { return shared_->note; }
   bool is_done() const { return shared_->is_done; }

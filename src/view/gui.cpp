@@ -23,7 +23,7 @@ void set_style(float scale) {
   style.FrameBorderSize = 0;
   style.WindowPadding = {12, 10};
   style.ItemSpacing = {8, 6};
-  style.Colors[ImGuiCol_WindowBg] = {1, 1, 1, 0.88f};
+  style.Colors[ImGuiCol_WindowBg] = {1, 1, 1, 0.94f};
   style.Colors[ImGuiCol_Text] = {0.15f, 0.17f, 0.20f, 1};
   style.Colors[ImGuiCol_TextDisabled] = {0.42f, 0.46f, 0.52f, 1};
   style.Colors[ImGuiCol_FrameBg] = {0.90f, 0.92f, 0.95f, 1};

@@ -5,7 +5,7 @@
 namespace crease {
 
 void Session::open(const std::string& source) {
-  opening_.reset();  // the last one named is the one that is wanted
+  leave(opening_, left_openings_);  // the last one named is the one that is wanted
   open_failure_.reset();
   trouble_.clear();
   opening_name_ = source;
@@ -20,7 +20,7 @@ bool Session::take_opened() {
     open_failure_ = opened.failure();
     return false;
   }
-  loading_.reset();
+  leave(loading_, left_loadings_);
   whole_ = {};
   whole_bytes_ = 0;
   source_ = std::move(opened->source);
@@ -43,6 +43,8 @@ void Session::take_loaded(ViewSettings& settings, const GlLimits& limits) {
 }
 
 bool Session::poll(ViewSettings& settings, const GlLimits& limits) {
+  std::erase_if(left_openings_, [](const auto& work) { return work.is_done(); });
+  std::erase_if(left_loadings_, [](const auto& work) { return work.is_done(); });
   const bool is_new = opening_ && opening_->is_done() && take_opened();
   if (loading_ && loading_->is_done()) take_loaded(settings, limits);
   const bool is_there =

@@ -19,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace crease {
 
@@ -57,7 +58,18 @@ class Session {
   bool take_opened();
   void take_loaded(ViewSettings& settings, const GlLimits& limits);
 
+  // What nobody wants any more ends when it notices; no frame waits for it.
+  template <typename T>
+  void leave(std::optional<Background<T>>& work, std::vector<Background<T>>& left) {
+    if (!work) return;
+    work->stop();
+    left.push_back(*std::move(work));
+    work.reset();
+  }
+
   const ViewerOptions options_;
+  std::vector<Background<OpenedModel>> left_openings_;
+  std::vector<Background<WholeModel>> left_loadings_;
   std::optional<Background<OpenedModel>> opening_;
   std::string opening_name_;
   std::optional<Background<WholeModel>> loading_;

@@ -8,7 +8,6 @@
 
 namespace crease {
 
-enum class ViewColoring : std::uint8_t { Shaded, Kind, Level, Block, Error };
 inline constexpr const char* kColoringNames[] = {"shaded", "kind", "level", "block", "error"};
 inline constexpr const char* kModeNames[] = {"by block", "by vertex", "linear"};
 

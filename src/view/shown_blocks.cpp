@@ -7,8 +7,7 @@ namespace crease {
 
 namespace {
 
-// So that a frame in which hundreds of blocks arrive does not take all its time for them.
-constexpr std::size_t kUploadPerFrame = std::size_t(32) << 20;
+constexpr std::size_t kFewBlocks = 32;
 
 // Hues a golden ratio apart, so that blocks next to each other differ.
 ColorSrgb color_of_number(std::uint32_t number) {
@@ -40,7 +39,7 @@ FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camer
   const BlockMesh& mesh = streamer_.mesh();
   FrameFacts facts;
   blocks_.drop(report.cut.dropped);
-  facts.uploaded_bytes = blocks_.upload(mesh.shown(), kUploadPerFrame);
+  facts.uploaded_bytes = blocks_.upload(mesh.shown());
   facts.triangles = mesh.triangle_count();
   facts.error_pixels = std::min(std::max(1.0, double(mesh.view_error())) * settings.pixels,
                                 double(camera.height_px));
@@ -90,9 +89,13 @@ std::optional<Hit> ShownBlocks::pick(const Ray& ray) const {
   return crease::pick(streamer_.mesh().shown(), streamer_.mesh().facts().grid, ray);
 }
 
+// Of few blocks all corners, of many those of their boxes: a camera is fitted again with each block
+// that arrives, between two frames.
 std::vector<Vec3f> ShownBlocks::outline() const {
+  const std::span<const ShownRange> shown = streamer_.mesh().shown();
   std::vector<Vec3f> points;
-  for (const ShownRange& range : streamer_.mesh().shown()) {
+  if (shown.size() > kFewBlocks) return blocks_.box_corners_of(shown, origin());
+  for (const ShownRange& range : shown) {
     const DrawList list = range.block->draw_list();
     points.insert(points.end(), list.positions.begin(), list.positions.end());
   }

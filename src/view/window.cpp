@@ -29,9 +29,7 @@ Result<std::unique_ptr<ViewerWindow>> ViewerWindow::open(const std::string& titl
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   GLFWwindow* made = glfwCreateWindow(width_px, height_px, title.c_str(), nullptr, nullptr);
   if (made == nullptr) {
-    const std::string why = last_error();
-    glfwTerminate();
-    return fail(Error::NotSupported, "no window with OpenGL 3.3: " + why);
+    return fail(Error::NotSupported, "no window with OpenGL 3.3: " + last_error());
   }
   std::unique_ptr<ViewerWindow> window(new ViewerWindow(made));
   glfwMakeContextCurrent(made);
@@ -44,9 +42,10 @@ ViewerWindow::ViewerWindow(GLFWwindow* window) : window_(window) {
   glfwSetWindowUserPointer(window_, this);
 }
 
+// GLFW stays initialized until the process ends: to end it would unload the driver, which keeps
+// memory that leak checkers then cannot tell from ours.
 ViewerWindow::~ViewerWindow() {
   glfwDestroyWindow(window_);
-  glfwTerminate();
 }
 
 ViewerWindow& ViewerWindow::of(GLFWwindow* window) {
@@ -104,6 +103,10 @@ bool ViewerWindow::is_closed() const {
 
 void ViewerWindow::close() {
   glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+void ViewerWindow::hide() {
+  glfwHideWindow(window_);
 }
 
 void ViewerWindow::wait(double seconds) {

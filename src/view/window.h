@@ -42,6 +42,7 @@ class ViewerWindow {
 
   bool is_closed() const;
   void close();
+  void hide();  // while something takes its time to end
   // Until something happens in the window, so many seconds at most; 0: not at all.
   void wait(double seconds);
   std::vector<WindowEvent> take_events() { return std::exchange(events_, {}); }

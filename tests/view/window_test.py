@@ -1,8 +1,10 @@
 """A window of crease view, used as people use it: mouse and keys by xdotool, pictures by key P."""
 
+import ctypes
 import json
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 import time
@@ -94,6 +96,22 @@ class Window(tool.Case):
         out, err = self.viewer.communicate(timeout=PATIENCE)
         self.assertEqual(self.viewer.returncode, exit_status, out + err)
         return json.loads(out)
+
+    def close_by_its_button(self):
+        """What a window manager sends."""
+        x = ctypes.CDLL("libX11.so.6")
+        x.XOpenDisplay.restype = ctypes.c_void_p
+        x.XInternAtom.restype = ctypes.c_ulong
+        display_of_x = ctypes.c_void_p(x.XOpenDisplay(self.screen.environment["DISPLAY"].encode()))
+        atom = [x.XInternAtom(display_of_x, name, 0) for name in (b"WM_PROTOCOLS",
+                                                                  b"WM_DELETE_WINDOW")]
+        event = ctypes.create_string_buffer(struct.pack(
+            "@i4xLiPLLi4xLLLLL", 33, 0, 1, 0, int(self.window), atom[0], 32, atom[1], 0, 0, 0, 0),
+            192)
+        x.XSendEvent(display_of_x, ctypes.c_ulong(int(self.window)), 0, ctypes.c_long(0), event)
+        x.XCloseDisplay(display_of_x)
+        out, err = self.viewer.communicate(timeout=PATIENCE)
+        self.assertEqual(self.viewer.returncode, 0, out + err)
 
     def drag(self, button, right, down):
         self.xdotool("mousemove", "--window", self.window, 450, 300, "mousedown", button)
@@ -208,6 +226,11 @@ class Window(tool.Case):
         self.start("--size", "640x480")
         self.assertEqual(picture.covered(self.settled()), 0)
         self.assertEqual(self.close()["triangles"], 0)
+
+    def test_the_window_closes_by_its_button(self):
+        self.start(self.built(), "--size", "640x480")
+        self.shown()
+        self.close_by_its_button()
 
     def test_the_end_of_a_session_ends_the_viewer(self):
         self.start(self.built(), "--size", "640x480")
