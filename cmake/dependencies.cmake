@@ -20,3 +20,11 @@ macro(crease_find_dependencies)
   pkg_check_modules(CREASE_GL REQUIRED IMPORTED_TARGET GLOBAL epoxy egl)
   pkg_check_modules(CREASE_MHD REQUIRED IMPORTED_TARGET GLOBAL libmicrohttpd>=0.9.73)
 endmacro()
+
+# What the viewer needs besides, which is part of the tool and not of the package.
+#
+#   PkgConfig::CREASE_GLFW, PkgConfig::CREASE_IMGUI   view: windows and panels
+macro(crease_find_viewer_dependencies)
+  pkg_check_modules(CREASE_GLFW REQUIRED IMPORTED_TARGET GLOBAL glfw3>=3.3)
+  pkg_check_modules(CREASE_IMGUI REQUIRED IMPORTED_TARGET GLOBAL imgui)
+endmacro()

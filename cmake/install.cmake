@@ -4,7 +4,8 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/crease)
-install(DIRECTORY include/crease DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+# The viewer comes with the tool, and is no library that others link.
+install(DIRECTORY include/crease DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} PATTERN viewer.h EXCLUDE)
 foreach(library IN ITEMS crease_runtime crease)
   if(TARGET ${library})
     install(TARGETS ${library} EXPORT ${library}-targets

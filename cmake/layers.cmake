@@ -2,7 +2,7 @@
 # belong to those. The test `layers` reads every #include of the tree against these two tables.
 set(CREASE_FOLDERS
   base parallel mesh hierarchy assemble io generate measure simplify codec pipeline
-  stream http serve runtime render)
+  stream http serve runtime render view)
 
 set(CREASE_LAYER_base      )
 set(CREASE_LAYER_parallel  )
@@ -21,6 +21,8 @@ set(CREASE_LAYER_http      base codec stream)
 set(CREASE_LAYER_serve     base)
 set(CREASE_LAYER_runtime   base mesh hierarchy codec stream)
 set(CREASE_LAYER_render    base mesh runtime)
+set(CREASE_LAYER_view      base parallel mesh hierarchy assemble io codec codec_encode pipeline stream
+                           http runtime render)
 
 # Which folder a public header belongs to.
 set(CREASE_HEADERS_base      vec.h ids.h result.h progress.h)
@@ -41,13 +43,14 @@ set(CREASE_HEADERS_pipeline  attribute_precision.h build.h)
 set(CREASE_HEADERS_runtime   camera.h draw_list.h draw_changes.h progressive_mesh.h
                            adaptive_mesh.h block_view.h block_mesh.h block_streamer.h)
 set(CREASE_HEADERS_render    render.h)
+set(CREASE_HEADERS_view      viewer.h)
 
 # What goes into crease_runtime. These are compiled without exceptions and RTTI and need no library.
 set(CREASE_RUNTIME_FOLDERS base mesh hierarchy assemble codec stream runtime)
 
 # Third-party headers that live in one place only: <prefix...> may be included by these folders.
 set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h lzma.h tbb oneapi nlohmann CLI zstd.h
-  curl microhttpd.h)
+  curl microhttpd.h GLFW imgui.h backends)
 set(CREASE_THIRD_PARTY_embree3  measure)
 set(CREASE_THIRD_PARTY_epoxy    render)
 set(CREASE_THIRD_PARTY_EGL      render)
@@ -57,7 +60,10 @@ set(CREASE_THIRD_PARTY_lzma.h   io)
 set(CREASE_THIRD_PARTY_zstd.h   io)
 set(CREASE_THIRD_PARTY_tbb      parallel)
 set(CREASE_THIRD_PARTY_oneapi   parallel)
-set(CREASE_THIRD_PARTY_nlohmann io render serve cli)
+set(CREASE_THIRD_PARTY_nlohmann io render serve view cli)
 set(CREASE_THIRD_PARTY_CLI      cli)
 set(CREASE_THIRD_PARTY_curl     http)
 set(CREASE_THIRD_PARTY_microhttpd.h serve)
+set(CREASE_THIRD_PARTY_GLFW     view)
+set(CREASE_THIRD_PARTY_imgui.h  view)
+set(CREASE_THIRD_PARTY_backends view)  # Dear ImGui's

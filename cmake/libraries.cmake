@@ -1,9 +1,13 @@
 # What others link. crease_runtime: what an engine or a browser needs, without a line of the build
-# side. crease: all of it; it brings crease_runtime along.
+# side. crease: all of it but the viewer; it brings crease_runtime along. crease_view: the viewer, for
+# the tool alone: nobody else is to need a window.
 crease_library(crease_runtime NAME runtime FOLDERS ${CREASE_RUNTIME_FOLDERS})
 if(NOT CREASE_RUNTIME_ONLY)
   set(build_side ${CREASE_FOLDERS})
-  list(REMOVE_ITEM build_side ${CREASE_RUNTIME_FOLDERS})
+  list(REMOVE_ITEM build_side ${CREASE_RUNTIME_FOLDERS} view)
   list(APPEND build_side codec_encode)
   crease_library(crease NAME crease FOLDERS ${build_side} LINKS crease_runtime)
+  if(CREASE_CLI)
+    crease_library(crease_view NAME view FOLDERS view LINKS crease)
+  endif()
 endif()

@@ -47,5 +47,6 @@ Command add_render(CLI::App& app, const Common& common);
 Command add_validate(CLI::App& app, const Common& common);
 Command add_generate(CLI::App& app, const Common& common);
 Command add_serve(CLI::App& app, const Common& common);
+Command add_view(CLI::App& app, const Common& common);
 
 }  // namespace crease::cli

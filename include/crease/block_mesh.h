@@ -50,6 +50,7 @@ class ResidentBlock {
   ~ResidentBlock();
 
   BlockId id() const;
+  const BlockFacts& facts() const;  // what the directory says of it
   // All triangles of the fine end, group by group. All blocks have the same origin, and a vertex
   // that several have has the same floats in all of them. Views into the block.
   DrawList draw_list() const;

@@ -92,9 +92,8 @@ EGLContext try_open(EGLDisplay display, std::string& why) {
     eglDestroyContext(display, context);
     return EGL_NO_CONTEXT;
   }
-  // Three floats a texel: core in 4.0, an extension of 3.3 that every driver at hand has.
-  if (!epoxy_has_gl_extension("GL_ARB_texture_buffer_object_rgb32")) {
-    why = "no GL_ARB_texture_buffer_object_rgb32";
+  if (const Result<GlLimits> limits = read_gl_limits(); !limits.ok()) {
+    why = limits.failure().message;
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
     return EGL_NO_CONTEXT;
@@ -104,6 +103,24 @@ EGLContext try_open(EGLDisplay display, std::string& why) {
 
 }  // namespace
 
+Result<GlLimits> read_gl_limits() {
+  // Three floats a texel: core in 4.0, an extension of 3.3 that every driver at hand has.
+  if (epoxy_gl_version() < 40 && !epoxy_has_gl_extension("GL_ARB_texture_buffer_object_rgb32")) {
+    return fail(Error::NotSupported, "no GL_ARB_texture_buffer_object_rgb32");
+  }
+  GlLimits limits;
+  limits.renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  GLint renderbuffer = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limits.max_texture_size);
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &renderbuffer);
+  limits.max_texture_size = std::min(limits.max_texture_size, int(renderbuffer));
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limits.max_texel_count);
+  glGetIntegerv(GL_MAX_SAMPLES, &limits.max_samples);
+  limits.can_reverse_depth =
+      epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
+  return limits;
+}
+
 GlContext::GlContext(GlContext&& other) noexcept
     : display_(std::exchange(other.display_, nullptr)),
       context_(std::exchange(other.context_, nullptr)),
@@ -111,11 +128,7 @@ GlContext::GlContext(GlContext&& other) noexcept
       previous_context_(other.previous_context_),
       previous_draw_(other.previous_draw_),
       previous_read_(other.previous_read_),
-      renderer_(std::move(other.renderer_)),
-      max_texture_size_(other.max_texture_size_),
-      max_texel_count_(other.max_texel_count_),
-      max_samples_(other.max_samples_),
-      can_reverse_depth_(other.can_reverse_depth_) {}
+      limits_(std::move(other.limits_)) {}
 
 GlContext::~GlContext() {
   if (context_ == nullptr) return;
@@ -152,14 +165,9 @@ Result<GlContext> open_gl() {
                     "); Mesa's software renderer is in the packages libegl-mesa0 and "
                     "libgl1-mesa-dri");
   }
-  gl.renderer_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  GLint renderbuffer = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &gl.max_texture_size_);
-  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &renderbuffer);
-  gl.max_texture_size_ = std::min(gl.max_texture_size_, int(renderbuffer));
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &gl.max_texel_count_);
-  glGetIntegerv(GL_MAX_SAMPLES, &gl.max_samples_);
-  gl.can_reverse_depth_ = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
+  Result<GlLimits> limits = read_gl_limits();
+  if (!limits.ok()) return limits.failure();
+  gl.limits_ = *std::move(limits);
   return gl;
 }
 

@@ -12,19 +12,25 @@
 
 namespace crease {
 
+// What the OpenGL that is current on this thread can do.
+struct GlLimits {
+  std::string renderer;
+  int max_texture_size = 0, max_texel_count = 0, max_samples = 1;
+  // Depth may run from 1 at the viewer to 0 far away, where floats are densest (GL 4.5 or
+  // extension).
+  bool can_reverse_depth = false;
+};
+
+// Fails with NotSupported where it lacks what the shaders need.
+Result<GlLimits> read_gl_limits();
+
 class GlContext {
  public:
   GlContext(GlContext&& other) noexcept;
   GlContext& operator=(GlContext&&) = delete;
   ~GlContext();  // the context that was current before is current again
 
-  const std::string& renderer() const { return renderer_; }
-  int max_texture_size() const { return max_texture_size_; }
-  int max_texel_count() const { return max_texel_count_; }
-  int max_samples() const { return max_samples_; }
-  // Depth may run from 1 at the viewer to 0 far away, where floats are densest (GL 4.5 or
-  // extension).
-  bool can_reverse_depth() const { return can_reverse_depth_; }
+  const GlLimits& limits() const { return limits_; }
 
  private:
   friend Result<GlContext> open_gl();
@@ -37,9 +43,7 @@ class GlContext {
   void* previous_context_ = nullptr;
   void* previous_draw_ = nullptr;
   void* previous_read_ = nullptr;
-  std::string renderer_;
-  int max_texture_size_ = 0, max_texel_count_ = 0, max_samples_ = 1;
-  bool can_reverse_depth_ = false;
+  GlLimits limits_;
 };
 
 // Fails with NotSupported, saying what was tried and how each try ended.

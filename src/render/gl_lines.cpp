@@ -14,6 +14,17 @@ namespace {
 
 using Clip = std::array<double, 4>;
 
+constexpr float kLinePx = 2.5f;  // beside the lines of a wireframe
+
+struct LineView {
+  View view;
+  Vec3d origin;     // what clip_from_list takes points less of
+  double near = 1;  // lines begin there
+  Matrix4f clip_from_list{};
+  float width_px = 1;  // in pixels of the framebuffer
+  bool reversed_depth = false;
+};
+
 constexpr const char* kLineVertexShader = R"(#version 330 core
 layout(location = 0) in vec4 position;
 void main() { gl_Position = position; }
@@ -81,7 +92,7 @@ class Strips {
   std::vector<float> corners_;
 };
 
-struct Pass {
+struct Stroke {
   bool behind;  // the scene, else before it
   float extra_px;
   ColorSrgb color;
@@ -89,7 +100,7 @@ struct Pass {
 };
 
 // A light seam keeps a line apart from dark surfaces and from the lines of a wireframe.
-constexpr Pass kPasses[] = {
+constexpr Stroke kStrokes[] = {
     {true, 0, kFrustumColor, 0.5f}, {false, 4, kPageColor, 0.75f}, {false, 0, kFrustumColor, 1}};
 
 void draw_strips(std::span<const float> corners) {
@@ -105,24 +116,36 @@ void draw_strips(std::span<const float> corners) {
 
 }  // namespace
 
-Status draw_lines(std::span<const Segment> lines, const LineView& view) {
-  const Result<GlProgram> program = link_program(kLineVertexShader, kLineFragmentShader);
-  if (!program.ok()) return program.failure();
+Status draw_lines(ProgramCache& programs, std::span<const Segment> lines, const DrawPass& pass,
+                  const DrawStyle& style) {
+  if (lines.empty()) return Done{};
+  const Vec3d origin = pass.view.eye;  // so that floats suffice
+  const LineView view{.view = pass.view,
+                      .origin = origin,
+                      .near = pass.depth.near,
+                      .clip_from_list = clip_from_list(pass.view, origin, pass.depth, pass.window,
+                                                       style.reversed_depth),
+                      .width_px = kLinePx * style.line_px,
+                      .reversed_depth = style.reversed_depth};
+  const Result<const GlProgram*> got =
+      programs.get("lines", kLineVertexShader, kLineFragmentShader);
+  if (!got.ok()) return got.failure();
+  const GlProgram& program = **got;
   GLint viewport[4];
   glGetIntegerv(GL_VIEWPORT, viewport);
   Strips strips(view, viewport[2], viewport[3]);
 
-  glUseProgram(program->id());
-  const GLint line_color = glGetUniformLocation(program->id(), "line_color");
+  glUseProgram(program.id());
+  const GLint line_color = glGetUniformLocation(program.id(), "line_color");
   // The target's alpha is how much is covered, its colours are times that.
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
-  for (const Pass& pass : kPasses) {
-    glDepthFunc(pass.behind == view.reversed_depth ? GL_LESS : GL_GREATER);
-    const Color c = linear_from_srgb(pass.color);
-    glUniform4f(line_color, c[0], c[1], c[2], pass.opacity);
-    draw_strips(strips.of(lines, view.width_px + pass.extra_px));
+  for (const Stroke& stroke : kStrokes) {
+    glDepthFunc(stroke.behind == view.reversed_depth ? GL_LESS : GL_GREATER);
+    const Color c = linear_from_srgb(stroke.color);
+    glUniform4f(line_color, c[0], c[1], c[2], stroke.opacity);
+    draw_strips(strips.of(lines, view.width_px + stroke.extra_px));
   }
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);

@@ -1,11 +1,14 @@
 #include "render/gl_objects.h"
 
+#include <algorithm>
+
 namespace crease {
 
 GlArray upload(std::span<const std::byte> bytes, std::size_t texel_bytes, GLenum format) {
   GlArray array;
   if (bytes.empty()) return array;
   array.count = bytes.size() / texel_bytes;
+  array.bytes = bytes.size();
   array.buffer = GlBuffer::make();
   glBindBuffer(GL_TEXTURE_BUFFER, array.buffer.id());
   glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(bytes.size()), bytes.data(), GL_STATIC_DRAW);
@@ -13,6 +16,43 @@ GlArray upload(std::span<const std::byte> bytes, std::size_t texel_bytes, GLenum
   glBindTexture(GL_TEXTURE_BUFFER, array.texels.id());
   glTexBuffer(GL_TEXTURE_BUFFER, format, array.buffer.id());
   return array;
+}
+
+namespace {
+
+// Half as much again, so that a mesh that grows frame by frame is not uploaded whole every time.
+void make_room(GlArray& array, std::size_t bytes, std::size_t texel_bytes, GLenum format) {
+  array.bytes = bytes + bytes / 2 / texel_bytes * texel_bytes;
+  if (!array.buffer) array.buffer = GlBuffer::make();
+  if (!array.texels) array.texels = GlTexture::make();
+  glBindBuffer(GL_TEXTURE_BUFFER, array.buffer.id());
+  glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(array.bytes), nullptr, GL_DYNAMIC_DRAW);
+  glBindTexture(GL_TEXTURE_BUFFER, array.texels.id());
+  glTexBuffer(GL_TEXTURE_BUFFER, format, array.buffer.id());
+}
+
+}  // namespace
+
+std::size_t refresh(GlArray& array, std::span<const std::byte> bytes, std::size_t texel_bytes,
+                    GLenum format, std::span<const Range> changes, std::size_t per_element) {
+  array.count = bytes.size() / texel_bytes;
+  if (bytes.empty()) return 0;
+  if (bytes.size() > array.bytes) {
+    make_room(array, bytes.size(), texel_bytes, format);
+    glBufferSubData(GL_TEXTURE_BUFFER, 0, GLsizeiptr(bytes.size()), bytes.data());
+    return bytes.size();
+  }
+  glBindBuffer(GL_TEXTURE_BUFFER, array.buffer.id());
+  std::size_t uploaded = 0;
+  for (const Range& range : changes) {
+    const std::size_t first = range.first * per_element * texel_bytes;
+    if (first >= bytes.size()) break;
+    const std::size_t size =
+        std::min(range.count * per_element * texel_bytes, bytes.size() - first);
+    glBufferSubData(GL_TEXTURE_BUFFER, GLintptr(first), GLsizeiptr(size), bytes.data() + first);
+    uploaded += size;
+  }
+  return uploaded;
 }
 
 void bind_texels(const GlArray& array, int unit) {

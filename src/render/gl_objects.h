@@ -1,6 +1,7 @@
 // OpenGL objects that delete themselves. The context that made them must be current when they do.
 #pragma once
 
+#include "crease/draw_changes.h"
 #include "crease/result.h"
 
 #include <epoxy/gl.h>
@@ -65,6 +66,7 @@ struct GlArray {
   GlBuffer buffer;
   GlTexture texels;       // a buffer texture over all of it
   std::size_t count = 0;  // texels
+  std::size_t bytes = 0;  // that the buffer takes: those of `count` texels or more
 
   explicit operator bool() const { return count != 0; }
 };
@@ -75,6 +77,17 @@ GlArray upload(std::span<const std::byte> bytes, std::size_t texel_bytes, GLenum
 template <typename T>
 GlArray upload(std::span<const T> values, GLenum format) {
   return upload(std::as_bytes(values), sizeof(T), format);
+}
+
+// Makes a copy that was right but for `changes` right again: ranges of elements of `per_element`
+// texels each. What does not fit is uploaded whole, with room to grow. Returns the bytes uploaded.
+std::size_t refresh(GlArray& array, std::span<const std::byte> bytes, std::size_t texel_bytes,
+                    GLenum format, std::span<const Range> changes, std::size_t per_element);
+
+template <typename T>
+std::size_t refresh(GlArray& array, std::span<const T> values, GLenum format,
+                    std::span<const Range> changes, std::size_t per_element = 1) {
+  return refresh(array, std::as_bytes(values), sizeof(T), format, changes, per_element);
 }
 
 void bind_texels(const GlArray& array, int unit);

@@ -1,12 +1,11 @@
 #include "render/gl_scene.h"
 
-#include "render/palette.h"
+#include <tuple>
+#include <utility>
 
 namespace crease {
 
 namespace {
-
-constexpr float kFrustumLinePx = 2.5f;  // beside the lines of a wireframe
 
 Vec3f to_float(const Vec3d& v) {
   return {float(v.x), float(v.y), float(v.z)};
@@ -39,77 +38,120 @@ Box box_of_corners(const DrawList& list) {
   return box;
 }
 
+void add_attribute(GLuint location, const GlArray& array, int components) {
+  if (!array) return;
+  glBindBuffer(GL_ARRAY_BUFFER, array.buffer.id());
+  glEnableVertexAttribArray(location);
+  glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, 0, nullptr);
+}
+
 }  // namespace
 
-GlScene::GlScene(const DrawList& list, std::span<const float> errors, std::vector<Segment> lines)
+GlMaterials upload_materials(std::span<const Material> materials) {
+  const auto colors = material_colors(materials);
+  return std::make_shared<const GlArray>(upload(std::span(colors), GL_RGBA32F));
+}
+
+GlScene::GlScene(const DrawList& list, std::span<const float> errors, GlMaterials materials)
     : origin_(list.origin),
       box_(box_of_corners(list)),
       positions_(upload(list.positions, GL_RGB32F)),
       vertex_normals_(upload(list.vertex_normals, GL_RGB32F)),
       errors_(upload(errors, GL_R32F)),
+      material_colors_(materials ? std::move(materials) : upload_materials(list.materials)),
       no_attributes_(GlVertexArray::make()),
-      lines_(std::move(lines)) {
-  for (const Segment& line : lines_) {
-    box_.add(line.from);
-    box_.add(line.to);
-  }
-  const auto colors = material_colors(list.materials);
-  material_colors_ = upload(std::span(colors), GL_RGBA32F);
-  sn_ = upload_part(list.sn);
-  fn_ = upload_part(list.fn);
-  nsn_ = upload_part(list.nsn);
+      sn_(upload_part(list.sn)),
+      fn_(upload_part(list.fn)),
+      nsn_(upload_part(list.nsn)) {
+  connect_all();
 }
 
 GlScene::Part GlScene::upload_part(const DrawPart& list) {
   Part part;
   part.triangle_count = list.triangle_count();
-  if (part.triangle_count == 0) return part;
   part.indices = upload(list.indices, GL_R32UI);
   part.normals = upload(list.normals, GL_RGB32F);
   part.materials = upload(list.materials, GL_R32UI);
   part.colors = upload(list.colors, GL_RGBA32F);
-
-  part.indexed = GlVertexArray::make();
-  glBindVertexArray(part.indexed.id());
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, part.indices.buffer.id());
-  const auto add = [](GLuint location, const GlArray& array, int components) {
-    if (!array) return;
-    glBindBuffer(GL_ARRAY_BUFFER, array.buffer.id());
-    glEnableVertexAttribArray(location);
-    glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, 0, nullptr);
-  };
-  add(attribute::Position, positions_, 3);
-  // The buffer of SN normals is shorter than that of positions; only SN triangles may read it.
-  if (!part.normals) add(attribute::Normal, vertex_normals_, 3);
-  add(attribute::Error, errors_, 1);
   return part;
 }
 
-Status GlScene::draw(ProgramCache& programs, const View& view, const Vec3d& up,
-                     const Window& window, const DrawStyle& style) const {
-  const DepthRange depth = depth_range(view, box_.low, box_.high);
-  const Matrix4f clip = clip_from_list(view, origin_, depth, window, style.reversed_depth);
-  for (const auto& [part, kind] :
-       {std::pair(&sn_, TriangleKind::SN), std::pair(&fn_, TriangleKind::FN),
-        std::pair(&nsn_, TriangleKind::NSN)}) {
-    if (part->triangle_count == 0) continue;
-    const Status drawn = draw_part(programs, *part, kind, view, up, clip, style);
-    if (!drawn.ok()) return drawn;
-  }
-  if (lines_.empty()) return Done{};
-  return draw_lines(lines_, {.view = view,
-                             .origin = origin_,
-                             .near = depth.near,
-                             .clip_from_list = clip,
-                             .width_px = kFrustumLinePx * style.line_px,
-                             .reversed_depth = style.reversed_depth});
+void GlScene::connect(Part& part, TriangleKind kind) const {
+  if (!part.indices) return;
+  part.indexed = GlVertexArray::make();
+  glBindVertexArray(part.indexed.id());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, part.indices.buffer.id());
+  add_attribute(attribute::Position, positions_, 3);
+  // The buffer of SN normals is shorter than that of positions; only SN triangles may read it.
+  if (kind == TriangleKind::SN) add_attribute(attribute::Normal, vertex_normals_, 3);
+  add_attribute(attribute::Error, errors_, 1);
 }
 
-Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind kind,
-                          const View& view, const Vec3d& up, const Matrix4f& clip_from_list,
-                          const DrawStyle& style) const {
-  const bool own_colors = style.coloring == Coloring::Shaded;
-  const bool has_materials = own_colors && part.materials && material_colors_;
+void GlScene::connect_all() {
+  connect(sn_, TriangleKind::SN);
+  connect(fn_, TriangleKind::FN);
+  connect(nsn_, TriangleKind::NSN);
+}
+
+std::size_t GlScene::update(const DrawList& list, const DrawChanges& changes) {
+  std::size_t bytes = refresh(positions_, list.positions, GL_RGB32F, changes.positions);
+  bytes += refresh(vertex_normals_, list.vertex_normals, GL_RGB32F, changes.vertex_normals);
+  const auto update_part = [&](Part& part, const DrawPart& from, const std::vector<Range>& indices,
+                               const std::vector<Range>& normals, std::size_t normals_each,
+                               const std::vector<Range>& colors) {
+    part.triangle_count = from.triangle_count();
+    bytes += refresh(part.indices, from.indices, GL_R32UI, indices, 3);
+    bytes += refresh(part.materials, from.materials, GL_R32UI, indices);
+    bytes += refresh(part.normals, from.normals, GL_RGB32F, normals, normals_each);
+    bytes += refresh(part.colors, from.colors, GL_RGBA32F, colors, 3);
+  };
+  update_part(sn_, list.sn, changes.sn_indices, {}, 1, changes.sn_colors);
+  update_part(fn_, list.fn, changes.fn_indices, changes.fn_normals, 1, changes.fn_colors);
+  update_part(nsn_, list.nsn, changes.nsn_indices, changes.nsn_normals, 3, changes.nsn_colors);
+  connect_all();  // arrays that were empty have buffers now
+  return bytes;
+}
+
+std::size_t GlScene::set_errors(std::span<const float> errors) {
+  const Range all{0, std::uint32_t(errors.size())};
+  const std::size_t bytes = refresh(errors_, errors, GL_R32F, std::span(&all, 1));
+  connect_all();
+  return bytes;
+}
+
+DrawRanges GlScene::all() const {
+  return {{0, std::uint32_t(sn_.triangle_count)},
+          {0, std::uint32_t(fn_.triangle_count)},
+          {0, std::uint32_t(nsn_.triangle_count)}};
+}
+
+std::size_t GlScene::bytes() const {
+  std::size_t bytes = positions_.bytes + vertex_normals_.bytes + errors_.bytes;
+  for (const Part* part : {&sn_, &fn_, &nsn_}) {
+    bytes += part->indices.bytes + part->normals.bytes + part->materials.bytes + part->colors.bytes;
+  }
+  return bytes;
+}
+
+Status GlScene::draw(ProgramCache& programs, const DrawPass& pass, const DrawStyle& style) const {
+  return draw(programs, pass, style, all());
+}
+
+Status GlScene::draw(ProgramCache& programs, const DrawPass& pass, const DrawStyle& style,
+                     const DrawRanges& ranges) const {
+  for (const auto& [part, kind, range] : {std::tuple(&sn_, TriangleKind::SN, ranges.sn),
+                                          std::tuple(&fn_, TriangleKind::FN, ranges.fn),
+                                          std::tuple(&nsn_, TriangleKind::NSN, ranges.nsn)}) {
+    if (range.count == 0) continue;
+    const Status drawn = draw_part(programs, *part, kind, pass, style, range);
+    if (!drawn.ok()) return drawn;
+  }
+  return Done{};
+}
+
+ProgramKey GlScene::key_for(const Part& part, TriangleKind kind, const DrawStyle& style) const {
+  const bool own_colors = style.coloring == Coloring::Shaded && !style.surface;
+  const bool has_materials = own_colors && part.materials && *material_colors_;
   ProgramKey key;
   key.normals = normal_source(kind);
   key.wireframe = style.wireframe;
@@ -118,7 +160,7 @@ Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind
     key.materials = has_materials;
   } else if (has_materials) {
     key.albedo = AlbedoSource::Materials;
-  } else if (style.coloring == Coloring::Error && errors_) {
+  } else if (style.coloring == Coloring::Error && !style.surface && errors_) {
     key.albedo = AlbedoSource::Errors;
   }
   // 2 M FN triangles on llvmpipe, seconds of both cores at 100 x 100 and at 1080 x 1080 pixels:
@@ -126,41 +168,57 @@ Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind
   //   indexed, the normal fetched for each fragment by gl_PrimitiveID         1.17   3.35
   //   pulled, the normal fetched for each fragment                            1.20   3.64
   key.pulled = kind != TriangleKind::SN || key.wireframe || key.albedo == AlbedoSource::Corners;
+  return key;
+}
 
-  const Result<const Program*> got = programs.get(key);
-  if (!got.ok()) return got.failure();
-  const Program& program = **got;
-  glUseProgram(program.program.id());
-  glUniformMatrix4fv(program.clip_from_list, 1, GL_FALSE, clip_from_list.data());
+void GlScene::set_uniforms(const Program& program, TriangleKind kind, const DrawPass& pass,
+                           const DrawStyle& style) const {
+  const View& view = pass.view;
+  const Matrix4f clip =
+      clip_from_list(view, origin_, pass.depth, pass.window, style.reversed_depth);
+  glUniformMatrix4fv(program.clip_from_list, 1, GL_FALSE, clip.data());
   set(program.eye_in_list, to_float(view.eye - origin_));
   set(program.head_light, to_float(view.back));
   // Over the viewer's left shoulder, so that the sides of a box differ.
   const Vec3d key_light = view.back * 0.62 + view.above * 0.62 - view.right * 0.48;
   set(program.key_light, to_float(normalized(key_light)));
-  set(program.up, to_float(normalized(up)));
+  set(program.up, to_float(normalized(pass.up)));
   ColorSrgb albedo = kDefaultSurface;
   if (style.coloring == Coloring::Kind) albedo = kind_color(kind);
   if (style.coloring == Coloring::Level) albedo = level_color(style.level_share);
-  const Color linear = linear_from_srgb(albedo);
+  const Color linear = linear_from_srgb(style.surface.value_or(albedo));
   set(program.albedo, {linear[0], linear[1], linear[2]});
   if (program.error_scale >= 0) glUniform1f(program.error_scale, 1 / style.error_full);
   if (program.line_px >= 0) glUniform1f(program.line_px, style.line_px);
+}
+
+Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind kind,
+                          const DrawPass& pass, const DrawStyle& style, const Range& range) const {
+  const ProgramKey key = key_for(part, kind, style);
+  const Result<const Program*> got = programs.get(key);
+  if (!got.ok()) return got.failure();
+  const Program& program = **got;
+  glUseProgram(program.program.id());
+  set_uniforms(program, kind, pass, style);
+  if (program.first_triangle >= 0) glUniform1i(program.first_triangle, GLint(range.first));
 
   bind_texels(positions_, unit::Positions);
   bind_texels(part.indices, unit::Indices);
   bind_texels(kind == TriangleKind::SN ? vertex_normals_ : part.normals, unit::Normals);
   bind_texels(part.materials, unit::Materials);
-  bind_texels(material_colors_, unit::MaterialColors);
+  bind_texels(*material_colors_, unit::MaterialColors);
   bind_texels(part.colors, unit::CornerColors);
   bind_texels(errors_, unit::Errors);
 
-  const GLsizei corner_count = GLsizei(3 * part.triangle_count);
+  const GLsizei corner_count = GLsizei(3 * range.count);
   if (key.pulled) {
     glBindVertexArray(no_attributes_.id());
-    glDrawArrays(GL_TRIANGLES, 0, corner_count);
+    glDrawArrays(GL_TRIANGLES, GLint(3 * range.first), corner_count);
   } else {
+    const std::size_t skipped = std::size_t(3) * range.first * sizeof(std::uint32_t);
     glBindVertexArray(part.indexed.id());
-    glDrawElements(GL_TRIANGLES, corner_count, GL_UNSIGNED_INT, nullptr);
+    glDrawElements(GL_TRIANGLES, corner_count, GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(skipped));
   }
   return Done{};
 }

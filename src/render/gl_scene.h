@@ -1,34 +1,50 @@
-// A draw list on the GPU, in the three parts of DB03: uploaded once, drawn from any number of
-// cameras.
+// A draw list on the GPU, in the three parts of DB03: uploaded once, or kept up with a mesh that
+// changes, and drawn from any number of cameras.
+//
+//   GlScene scene(mesh.draw_list(), {});
+//   ... mesh.update(view); scene.update(mesh.draw_list(), mesh.changes());
+//   scene.draw(programs, pass, style);
 #pragma once
 
+#include "crease/draw_changes.h"
 #include "crease/draw_list.h"
 #include "crease/shading.h"
-#include "render/gl_lines.h"
 #include "render/gl_objects.h"
+#include "render/gl_pass.h"
 #include "render/gl_shaders.h"
-#include "render/transform.h"
+
+#include <memory>
 
 namespace crease {
 
-// What is the same for everything in one picture.
-struct DrawStyle {
-  Coloring coloring = Coloring::Shaded;
-  bool wireframe = false;
-  float line_px = 1;            // width of wireframe lines, in pixels of the framebuffer
-  float level_share = 0;        // Coloring::Level
-  float error_full = 1;         // Coloring::Error: the error at the scale's red end
-  bool reversed_depth = false;  // as the target has it
+// Triangles of the three parts.
+struct DrawRanges {
+  Range sn, fn, nsn;
+  std::size_t triangle_count() const { return std::size_t(sn.count) + fn.count + nsn.count; }
 };
+
+// What to draw a model's materials in.
+using GlMaterials = std::shared_ptr<const GlArray>;
+GlMaterials upload_materials(std::span<const Material> materials);
 
 class GlScene {
  public:
-  // `errors` has one value per position, or none. `lines` are drawn over the triangles.
-  GlScene(const DrawList& list, std::span<const float> errors, std::vector<Segment> lines);
+  // `errors` has one value per position, or none. `materials`: those of the list, if they are on
+  // the GPU already.
+  GlScene(const DrawList& list, std::span<const float> errors, GlMaterials materials = nullptr);
 
-  // Into the bound framebuffer. `window` is the part of the picture that its viewport shows.
-  Status draw(ProgramCache& programs, const View& view, const Vec3d& up, const Window& window,
-              const DrawStyle& style) const;
+  // `list` is the one of the constructor after `changes`. Returns the bytes uploaded.
+  std::size_t update(const DrawList& list, const DrawChanges& changes);
+  std::size_t set_errors(std::span<const float> errors);  // the same
+
+  // Into the bound framebuffer: all of it, or some triangles.
+  Status draw(ProgramCache& programs, const DrawPass& pass, const DrawStyle& style) const;
+  Status draw(ProgramCache& programs, const DrawPass& pass, const DrawStyle& style,
+              const DrawRanges& ranges) const;
+
+  DrawRanges all() const;
+  const Box& box() const { return box_; }  // of the triangles' corners when it was made
+  std::size_t bytes() const;               // that it takes on the GPU
 
  private:
   struct Part {
@@ -36,16 +52,21 @@ class GlScene {
     GlVertexArray indexed;  // positions, SN normals and errors as attributes
     std::size_t triangle_count = 0;
   };
-  Part upload_part(const DrawPart& part);
-  Status draw_part(ProgramCache& programs, const Part& part, TriangleKind kind, const View& view,
-                   const Vec3d& up, const Matrix4f& clip_from_list, const DrawStyle& style) const;
+  static Part upload_part(const DrawPart& part);
+  void connect(Part& part, TriangleKind kind) const;
+  void connect_all();
+  ProgramKey key_for(const Part& part, TriangleKind kind, const DrawStyle& style) const;
+  void set_uniforms(const Program& program, TriangleKind kind, const DrawPass& pass,
+                    const DrawStyle& style) const;
+  Status draw_part(ProgramCache& programs, const Part& part, TriangleKind kind,
+                   const DrawPass& pass, const DrawStyle& style, const Range& range) const;
 
   Vec3d origin_;
-  Box box_;  // of the triangles' corners and the lines, in model units
-  GlArray positions_, vertex_normals_, errors_, material_colors_;
+  Box box_;
+  GlArray positions_, vertex_normals_, errors_;
+  GlMaterials material_colors_;
   GlVertexArray no_attributes_;
   Part sn_, fn_, nsn_;
-  std::vector<Segment> lines_;
 };
 
 }  // namespace crease

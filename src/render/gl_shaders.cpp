@@ -123,6 +123,7 @@ flat in vec3 v_material;
 #elif MATERIALS
 uniform usamplerBuffer materials;
 uniform samplerBuffer material_colors;
+uniform int first_triangle;
 #endif
 
 #if WIREFRAME
@@ -151,7 +152,7 @@ vec3 surface_color() {
 #if MATERIALS && PULLED
   c = v_material;
 #elif MATERIALS
-  c = texelFetch(material_colors, int(texelFetch(materials, gl_PrimitiveID).r)).rgb;
+  c = texelFetch(material_colors, int(texelFetch(materials, first_triangle + gl_PrimitiveID).r)).rgb;
 #endif
 #if ALBEDO == CORNERS
   c *= v_color;
@@ -245,6 +246,7 @@ Result<Program> build_program(const ProgramKey& key) {
   p.eye_in_list = glGetUniformLocation(id, "eye_in_list");
   p.albedo = glGetUniformLocation(id, "albedo");
   p.error_scale = glGetUniformLocation(id, "error_scale");
+  p.first_triangle = glGetUniformLocation(id, "first_triangle");
   p.key_light = glGetUniformLocation(id, "key_light");
   p.head_light = glGetUniformLocation(id, "head_light");
   p.up = glGetUniformLocation(id, "up");
@@ -260,6 +262,15 @@ Result<const Program*> ProgramCache::get(const ProgramKey& key) {
   Result<Program> built = build_program(key);
   if (!built.ok()) return built.failure();
   return &programs_.emplace(key, std::move(*built)).first->second;
+}
+
+Result<const GlProgram*> ProgramCache::get(const char* name, const char* vertex_source,
+                                           const char* fragment_source) {
+  const auto known = others_.find(name);
+  if (known != others_.end()) return &known->second;
+  Result<GlProgram> linked = link_program(vertex_source, fragment_source);
+  if (!linked.ok()) return linked.failure();
+  return &others_.emplace(name, std::move(*linked)).first->second;
 }
 
 }  // namespace crease

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
 
 namespace crease {
 
@@ -47,16 +48,21 @@ struct Program {
   GlProgram program;
   // Uniform locations, -1 where the program has no use for one.
   GLint clip_from_list = -1, eye_in_list = -1, albedo = -1, error_scale = -1;
+  GLint first_triangle = -1;  // of the range that is drawn
   GLint key_light = -1, head_light = -1, up = -1, line_px = -1;
 };
 
 class ProgramCache {
  public:
-  // Compiled on first use. Null and a failure kept in `failure` when the driver refuses.
+  // Compiled on first use. Fails when the driver refuses.
   Result<const Program*> get(const ProgramKey& key);
+  // One that is not of the three-part drawing. A name stands for the same sources every time.
+  Result<const GlProgram*> get(const char* name, const char* vertex_source,
+                               const char* fragment_source);
 
  private:
   std::map<ProgramKey, Program> programs_;
+  std::map<std::string, GlProgram> others_;
 };
 
 }  // namespace crease

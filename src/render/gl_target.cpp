@@ -15,28 +15,47 @@ GlRenderbuffer make_storage(int samples, GLenum format, int width, int height) {
   return storage;
 }
 
-bool attach(GlFramebuffer& framebuffer, const GlRenderbuffer& color, const GlRenderbuffer* depth) {
+GlTexture make_texture(int width, int height) {
+  GlTexture texture = GlTexture::make();
+  glBindTexture(GL_TEXTURE_2D, texture.id());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return texture;
+}
+
+bool is_complete() {
+  return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+bool attach(GlFramebuffer& framebuffer, const GlRenderbuffer& color, const GlRenderbuffer& depth) {
   framebuffer = GlFramebuffer::make();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color.id());
-  if (depth != nullptr) {
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth->id());
-  }
-  return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth.id());
+  return is_complete();
+}
+
+bool attach(GlFramebuffer& framebuffer, const GlTexture& color) {
+  framebuffer = GlFramebuffer::make();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color.id(), 0);
+  return is_complete();
 }
 
 }  // namespace
 
-Result<GlTarget> GlTarget::make(const GlContext& gl, int width, int height) {
+Result<GlTarget> GlTarget::make(const GlLimits& gl, int width, int height) {
   GlTarget target;
-  target.reversed_depth_ = gl.can_reverse_depth();
-  const int samples = std::min(kSamples, gl.max_samples());
+  target.reversed_depth_ = gl.can_reverse_depth;
+  const int samples = std::min(kSamples, gl.max_samples);
   target.color_ = make_storage(samples, GL_SRGB8_ALPHA8, width, height);
   target.depth_ = make_storage(samples, GL_DEPTH_COMPONENT32F, width, height);
-  target.resolved_color_ = make_storage(0, GL_SRGB8_ALPHA8, width, height);
-  if (!attach(target.multisampled_, target.color_, &target.depth_) ||
-      !attach(target.resolved_, target.resolved_color_, nullptr)) {
-    return fail(Error::NotSupported, "OpenGL (" + gl.renderer() + ") has no framebuffer of " +
+  target.resolved_color_ = make_texture(width, height);
+  if (!attach(target.multisampled_, target.color_, target.depth_) ||
+      !attach(target.resolved_, target.resolved_color_)) {
+    return fail(Error::NotSupported, "OpenGL (" + gl.renderer + ") has no framebuffer of " +
                                          std::to_string(width) + " x " + std::to_string(height) +
                                          " pixels with " + std::to_string(samples) + " samples");
   }
@@ -61,10 +80,15 @@ void GlTarget::begin(int width, int height) {
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void GlTarget::read(int width, int height, std::span<std::uint8_t> rgba) {
+const GlTexture& GlTarget::resolve(int width, int height) {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, multisampled_.id());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.id());
   glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  return resolved_color_;
+}
+
+void GlTarget::read(int width, int height, std::span<std::uint8_t> rgba) {
+  resolve(width, height);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.id());
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());

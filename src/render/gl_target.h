@@ -12,19 +12,22 @@ namespace crease {
 
 class GlTarget {
  public:
-  static Result<GlTarget> make(const GlContext& gl, int width, int height);
+  static Result<GlTarget> make(const GlLimits& gl, int width, int height);
 
   // Binds and clears to transparent black, so that alpha becomes the share of a pixel that is
   // covered.
   void begin(int width, int height);
-  // Averages the samples and copies width x height pixels, bottom row first, sRGB-encoded colours
+  // Averages the samples. The texture's colours are times coverage.
+  const GlTexture& resolve(int width, int height);
+  // The same, and copies width x height pixels, bottom row first, sRGB-encoded colours
   // times coverage and coverage.
   void read(int width, int height, std::span<std::uint8_t> rgba);
 
  private:
   bool reversed_depth_ = false;
   GlFramebuffer multisampled_, resolved_;
-  GlRenderbuffer color_, depth_, resolved_color_;
+  GlRenderbuffer color_, depth_;
+  GlTexture resolved_color_;
 };
 
 }  // namespace crease

@@ -2,6 +2,7 @@
 #include "render/fit_camera.h"
 #include "render/frustum.h"
 #include "render/gl_context.h"
+#include "render/gl_lines.h"
 #include "render/gl_scene.h"
 #include "render/gl_target.h"
 #include "render/layout.h"
@@ -176,23 +177,31 @@ void lay_over(Image& image, const PixelRect& at, std::span<const std::uint8_t> t
 
 // Draws one panel's view tile by tile.
 Status draw_view(Image& image, const PixelRect& view_rect, const GlScene& scene,
-                 const Camera& camera, const DrawStyle& style, GlTarget& target, int tile_px,
-                 ProgramCache& programs) {
-  const View view = make_view(camera, double(view_rect.width) / view_rect.height);
+                 std::span<const Segment> lines, const Camera& camera, const DrawStyle& style,
+                 GlTarget& target, int tile_px, ProgramCache& programs) {
+  DrawPass pass{.view = make_view(camera, double(view_rect.width) / view_rect.height),
+                .up = camera.up};
+  Box box = scene.box();
+  for (const Segment& line : lines) {
+    box.add(line.from);
+    box.add(line.to);
+  }
+  pass.depth = depth_range(pass.view, box.low, box.high);
   std::vector<std::uint8_t> pixels;
   for (int y = 0; y < view_rect.height; y += tile_px) {
     for (int x = 0; x < view_rect.width; x += tile_px) {
       const int width = std::min(tile_px, view_rect.width - x);
       const int height = std::min(tile_px, view_rect.height - y);
-      Window window;
-      window.left = double(x) / view_rect.width;
-      window.right = double(x + width) / view_rect.width;
-      window.top = 1 - double(y) / view_rect.height;
-      window.bottom = 1 - double(y + height) / view_rect.height;
+      pass.window.left = double(x) / view_rect.width;
+      pass.window.right = double(x + width) / view_rect.width;
+      pass.window.top = 1 - double(y) / view_rect.height;
+      pass.window.bottom = 1 - double(y + height) / view_rect.height;
       const int draw_width = width * kSupersampling, draw_height = height * kSupersampling;
       target.begin(draw_width, draw_height);
-      const Status drawn = scene.draw(programs, view, camera.up, window, style);
-      if (!drawn.ok()) return drawn;
+      for (const Status& drawn :
+           {scene.draw(programs, pass, style), draw_lines(programs, lines, pass, style)}) {
+        if (!drawn.ok()) return drawn;
+      }
       pixels.resize(4 * std::size_t(draw_width) * std::size_t(draw_height));
       target.read(draw_width, draw_height, pixels);
       lay_over(image, {view_rect.x + x, view_rect.y + y, width, height}, pixels);
@@ -275,9 +284,10 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
 
   Result<GlContext> gl = open_gl();
   if (!gl.ok()) return gl.failure();
-  const int tile_px = std::min(kMaxTile, gl->max_texture_size()) / kSupersampling;
-  Result<GlTarget> target = GlTarget::make(*gl, std::min(tile_px, size.width) * kSupersampling,
-                                           std::min(tile_px, size.height) * kSupersampling);
+  const int tile_px = std::min(kMaxTile, gl->limits().max_texture_size) / kSupersampling;
+  Result<GlTarget> target =
+      GlTarget::make(gl->limits(), std::min(tile_px, size.width) * kSupersampling,
+                     std::min(tile_px, size.height) * kSupersampling);
   if (!target.ok()) return target.failure();
 
   Image image;
@@ -288,7 +298,7 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
   const ErrorScale scale = error_scale(panels, options);
   ProgramCache programs;
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const Status sound = check_panel(panels[i], gl->max_texel_count());
+    const Status sound = check_panel(panels[i], gl->limits().max_texel_count);
     if (!sound.ok()) {
       return fail(sound.failure().error, panel_name(i, panels[i]) + ": " + sound.failure().message);
     }
@@ -300,10 +310,10 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
                           .line_px = kSupersampling * std::max(1.0f, float(size.height) / 1080),
                           .level_share = panels[i].level_share,
                           .error_full = float(scale.full),
-                          .reversed_depth = gl->can_reverse_depth()};
-    const GlScene on_gpu(panels[i].list, panels[i].error_of_position, lines);
+                          .reversed_depth = gl->limits().can_reverse_depth};
+    const GlScene on_gpu(panels[i].list, panels[i].error_of_position);
     const Status drawn =
-        draw_view(image, layout.views[i], on_gpu, camera, style, *target, tile_px, programs);
+        draw_view(image, layout.views[i], on_gpu, lines, camera, style, *target, tile_px, programs);
     if (!drawn.ok()) return drawn.failure();
   }
   for (const PixelRect& separator : layout.separators) {

@@ -66,6 +66,10 @@ void blend(std::uint8_t& under, std::uint8_t over, float cover) {
 
 }  // namespace
 
+std::span<const unsigned char> font_bytes() {
+  return kFontBytes;
+}
+
 void fill_rect(Image& image, const PixelRect& rect, const ColorSrgb& color) {
   const int x0 = std::max(0, rect.x), x1 = std::min(image.width, rect.x + rect.width);
   for (int y = std::max(0, rect.y); y < std::min(image.height, rect.y + rect.height); ++y) {

@@ -5,9 +5,13 @@
 #include "render/layout.h"
 #include "render/palette.h"
 
+#include <span>
 #include <string_view>
 
 namespace crease {
+
+// The bytes of the font, a TrueType file.
+std::span<const unsigned char> font_bytes();
 
 void fill_rect(Image& image, const PixelRect& rect, const ColorSrgb& color);
 

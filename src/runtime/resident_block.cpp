@@ -71,6 +71,10 @@ BlockId ResidentBlock::id() const {
   return data_->entry.id;
 }
 
+const BlockFacts& ResidentBlock::facts() const {
+  return data_->entry.facts;
+}
+
 std::span<const BlockGroup> ResidentBlock::groups() const {
   return data_->groups;
 }

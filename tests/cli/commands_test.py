@@ -7,7 +7,8 @@ import struct
 
 import tool
 
-COMMANDS = ["build", "info", "extract", "compare", "render", "validate", "generate", "serve"]
+COMMANDS = ["build", "info", "extract", "compare", "render", "validate", "generate", "serve",
+            "view"]
 
 
 def digest(path):

@@ -1,0 +1,186 @@
+// crease view: the native viewer.
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/model.h"
+#include "cli/text.h"
+#include "cli/view.h"
+#include "crease/viewer.h"
+
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+
+namespace crease::cli {
+
+namespace {
+
+struct ViewArguments {
+  std::string source;
+  std::string size, view, flight, mode = "block", coloring = "shaded", up = "z";
+  bool wireframe = false, outside = false, panels = false;
+  std::filesystem::path screenshot;
+  std::optional<double> pixels, budget_mb;
+  std::optional<std::size_t> triangles;
+  ReadOptions read;
+};
+
+ViewMode mode_of(const std::string& name) {
+  if (name == "vertex") return ViewMode::Vertices;
+  if (name == "linear") return ViewMode::Linear;
+  return ViewMode::Blocks;
+}
+
+ViewColoring coloring_named(const std::string& name) {
+  if (name == "kind") return ViewColoring::Kind;
+  if (name == "level") return ViewColoring::Level;
+  if (name == "block") return ViewColoring::Block;
+  if (name == "error") return ViewColoring::Error;
+  return ViewColoring::Shaded;
+}
+
+Result<Flight> read_flight(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return fail(Error::NotFound, path.string() + ": no such flight");
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  Result<Flight> flight = parse_flight(text);
+  if (flight.ok()) return flight;
+  return fail(flight.failure().error, path.string() + ": " + flight.failure().message);
+}
+
+Status set_size(const std::string& text, ViewerOptions& viewer) {
+  const Result<std::pair<int, int>> size = parse_size(text);
+  if (!size.ok()) return size.failure();
+  viewer.width_px = size->first;
+  viewer.height_px = size->second;
+  return Done{};
+}
+
+Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common& common) {
+  ViewerOptions viewer;
+  viewer.source = options.source;
+  viewer.mode = mode_of(options.mode);
+  viewer.coloring = coloring_named(options.coloring);
+  viewer.wireframe = options.wireframe;
+  viewer.outside = options.outside;
+  viewer.panels_on_screenshot = options.panels;
+  if (options.up == "y") viewer.up = {0, 1, 0};
+  if (!options.view.empty()) {
+    const Result<Camera> camera = read_camera(options.view);
+    if (!camera.ok()) return camera.failure();
+    viewer.camera = *camera;
+    viewer.pixels = camera->pixels;
+    viewer.width_px = camera->width_px;
+    viewer.height_px = camera->height_px;
+  }
+  if (!options.size.empty()) {
+    if (const Status set = set_size(options.size, viewer); !set.ok()) return set.failure();
+  }
+  if (!options.flight.empty()) {
+    Result<Flight> flight = read_flight(options.flight);
+    if (!flight.ok()) return flight.failure();
+    viewer.flight = *std::move(flight);
+  }
+  if (options.pixels) viewer.pixels = *options.pixels;
+  if (options.triangles) viewer.max_triangles = *options.triangles;
+  if (options.budget_mb) viewer.max_bytes = std::size_t(*options.budget_mb * 1e6);
+  Result<ImportOptions> import = import_options(options.read, common);
+  if (!import.ok()) return import.failure();
+  viewer.import = *std::move(import);
+  Result<BuildOptions> build = build_options(options.read, common);
+  if (!build.ok()) return build.failure();
+  viewer.build = *std::move(build);
+  viewer.decode_threads = common.threads == 0 ? 2 : common.threads;
+  viewer.screenshot = options.screenshot;
+  viewer.stopped = interrupted;
+  return viewer;
+}
+
+Result<Report> run_view(const ViewArguments& options, const Common& common) {
+  const Stopwatch watch;
+  if (!options.screenshot.empty() && options.screenshot.extension() != ".png") {
+    return fail(Error::NotSupported,
+                options.screenshot.string() + ": pictures are written as .png");
+  }
+  if (!options.screenshot.empty() && options.source.empty()) {
+    return fail(Error::CommandLine, "--screenshot needs a FILE");
+  }
+  const Result<ViewerOptions> viewer = viewer_options(options, common);
+  if (!viewer.ok()) return viewer.failure();
+  const Result<ViewerReport> done = run_viewer(*viewer);
+  if (!done.ok()) return done.failure();
+  if (interrupted()) return interrupted_failure();
+  Report report;
+  report.json = {{"source", options.source},
+                 {"frames", done->frames},
+                 {"median_frame_ms", done->median_frame_ms},
+                 {"bytes_read", done->bytes_read},
+                 {"triangles", done->triangles},
+                 {"error_pixels", done->error_pixels},
+                 {"seconds", watch.seconds()}};
+  if (!options.screenshot.empty()) {
+    report.json["output"] = options.screenshot.string();
+    report.text = options.screenshot.string() + ": " + std::to_string(viewer->width_px) + " x " +
+                  std::to_string(viewer->height_px) + ", " + grouped(done->triangles) +
+                  " triangles, " + in_seconds(watch.seconds());
+  }
+  return report;
+}
+
+}  // namespace
+
+Command add_view(CLI::App& app, const Common& common) {
+  auto options = std::make_shared<ViewArguments>();
+  CLI::App* command = app.add_subcommand("view", "a window: look at a model while it streams");
+  command->add_option("FILE", options->source,
+                      ".crease file or http(s) URL, which stream; or a mesh file, which is built "
+                      "first. Without one, drop a file on the window");
+  command->add_option("--size", options->size, "of the window; default 1280x800")->type_name("WxH");
+  command->add_option("--pixels", options->pixels, "error allowed on the screen; default 1")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->type_name("N");
+  command->add_option("--triangles", options->triangles, "at most so many; default: no limit")
+      ->type_name("N");
+  command->add_option("--budget", options->budget_mb, "memory of blocks, MB; default 537")
+      ->check(CLI::Range(1.0, 1e6))
+      ->type_name("MB");
+  command
+      ->add_option("--mode", options->mode,
+                   "block: streams, and cuts along blocks | vertex, linear: load all of the model")
+      ->check(CLI::IsMember({"block", "vertex", "linear"}))
+      ->capture_default_str();
+  command->add_option("--color", options->coloring, "shaded | kind | level | block | error")
+      ->check(CLI::IsMember({"shaded", "kind", "level", "block", "error"}))
+      ->type_name("BY")
+      ->capture_default_str();
+  command->add_flag("--wireframe", options->wireframe, "edges over the surface");
+  command
+      ->add_option("--view", options->view,
+                   "camera to begin with, as crease render has it; its viewport is the size. "
+                   "Default: where this file was last seen from, else all of the model")
+      ->type_name("CAM.json");
+  command->add_flag("--outside", options->outside,
+                    "once the view is complete it is frozen, and looked at from outside with its "
+                    "frustum: keys O and Z");
+  command->add_option("--up", options->up, "axis that points up when no camera says")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
+  command
+      ->add_option("--path", options->flight,
+                   "plays a flight, as key R records it: [{\"seconds\":0,\"camera\":{...}}, ...]")
+      ->type_name("FLIGHT.json");
+  command
+      ->add_option("--screenshot", options->screenshot,
+                   "shows the model until the view is complete and the flight over, writes the "
+                   "picture, and ends")
+      ->type_name("OUT.png");
+  command->add_flag("--panels", options->panels, "the panels are on that picture");
+  add_build_options(*command, options->read);
+  command->footer(
+      "Examples:\n  crease view city.crease\n  crease view https://host/city.crease --budget 256\n"
+      "  crease view bunny.ply --up y --screenshot bunny.png\n"
+      "Keys: F1 shows them.");
+  return {command, [options, &common] { return run_view(*options, common); }};
+}
+
+}  // namespace crease::cli

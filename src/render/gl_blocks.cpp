@@ -1,0 +1,108 @@
+#include "render/gl_blocks.h"
+
+namespace crease {
+
+namespace {
+
+std::uint32_t key_of(BlockId id) {
+  return static_cast<std::uint32_t>(index_of(id));
+}
+
+Vec3d corner_of(const Box& box, int i) {
+  return {(i & 1) ? box.high.x : box.low.x, (i & 2) ? box.high.y : box.low.y,
+          (i & 4) ? box.high.z : box.low.z};
+}
+
+// Whether the box lies beyond one of the four sides of the view, or behind the eye.
+bool is_beside(const View& view, const Box& box) {
+  int beyond[5] = {};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3d to = corner_of(box, i) - view.eye;
+    const double depth = -dot(to, view.back);
+    const double x = dot(to, view.right), y = dot(to, view.above);
+    beyond[0] += x > view.tan_half_width * depth;
+    beyond[1] += -x > view.tan_half_width * depth;
+    beyond[2] += y > view.tan_half_height * depth;
+    beyond[3] += -y > view.tan_half_height * depth;
+    beyond[4] += depth < 0;
+  }
+  for (const int count : beyond) {
+    if (count == 8) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+const GlScene* GlBlocks::find(const ResidentBlock& block) const {
+  const auto at = scenes_.find(key_of(block.id()));
+  return at == scenes_.end() ? nullptr : at->second.get();
+}
+
+std::size_t GlBlocks::upload(std::span<const ShownRange> shown) {
+  std::size_t uploaded = 0;
+  for (const ShownRange& range : shown) {
+    std::unique_ptr<GlScene>& scene = scenes_[key_of(range.block->id())];
+    if (scene) continue;
+    const DrawList list = range.block->draw_list();
+    if (!materials_) materials_ = upload_materials(list.materials);
+    scene = std::make_unique<GlScene>(list, std::span<const float>{}, materials_);
+    uploaded += scene->bytes();
+  }
+  bytes_ += uploaded;
+  return uploaded;
+}
+
+void GlBlocks::drop(std::span<const BlockId> blocks) {
+  for (const BlockId id : blocks) {
+    const auto at = scenes_.find(key_of(id));
+    if (at == scenes_.end()) continue;
+    bytes_ -= at->second->bytes();
+    scenes_.erase(at);
+  }
+}
+
+Box GlBlocks::box_of(std::span<const ShownRange> shown) const {
+  Box box;
+  for (const ShownRange& range : shown) {
+    const GlScene* scene = find(*range.block);
+    if (scene == nullptr || scene->box().empty) continue;
+    box.add(scene->box().low);
+    box.add(scene->box().high);
+  }
+  return box;
+}
+
+std::vector<Vec3f> GlBlocks::box_corners_of(std::span<const ShownRange> shown,
+                                            const Vec3d& origin) const {
+  std::vector<Vec3f> corners;
+  for (const ShownRange& range : shown) {
+    const GlScene* scene = find(*range.block);
+    if (scene == nullptr || scene->box().empty) continue;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3d corner = corner_of(scene->box(), i) - origin;
+      corners.push_back({float(corner.x), float(corner.y), float(corner.z)});
+    }
+  }
+  return corners;
+}
+
+Result<DrawCount> GlBlocks::draw(ProgramCache& programs, const DrawPass& pass,
+                                 const DrawStyle& style, std::span<const ShownRange> shown,
+                                 const ColorOfBlock& color_of_block) const {
+  DrawCount count;
+  DrawStyle of_block = style;
+  for (const ShownRange& range : shown) {
+    const GlScene* scene = find(*range.block);
+    if (scene == nullptr || scene->box().empty || is_beside(pass.view, scene->box())) continue;
+    if (color_of_block) of_block.surface = color_of_block(*range.block);
+    const DrawRanges ranges{range.sn, range.fn, range.nsn};
+    const Status drawn = scene->draw(programs, pass, of_block, ranges);
+    if (!drawn.ok()) return drawn.failure();
+    count.calls += (range.sn.count > 0) + (range.fn.count > 0) + (range.nsn.count > 0);
+    count.triangles += range.triangle_count();
+  }
+  return count;
+}
+
+}  // namespace crease

@@ -1,0 +1,30 @@
+// What is the same for everything in one picture.
+#pragma once
+
+#include "crease/render.h"
+#include "render/palette.h"
+#include "render/transform.h"
+
+#include <optional>
+
+namespace crease {
+
+// From where everything is drawn, with which depths.
+struct DrawPass {
+  View view;
+  Vec3d up{0, 0, 1};
+  DepthRange depth{};
+  Window window{};  // the part of the picture that the viewport shows
+};
+
+struct DrawStyle {
+  Coloring coloring = Coloring::Shaded;
+  bool wireframe = false;
+  float line_px = 1;                   // width of wireframe lines, in pixels of the framebuffer
+  float level_share = 0;               // Coloring::Level
+  float error_full = 1;                // Coloring::Error: the error at the scale's red end
+  bool reversed_depth = false;         // as the target has it
+  std::optional<ColorSrgb> surface{};  // all of it in this one
+};
+
+}  // namespace crease

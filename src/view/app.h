@@ -1,0 +1,108 @@
+// The viewer's loop: what the user does, what has arrived, a picture, and again.
+//
+// A picture is drawn when something has changed; while blocks arrive, for a third of the time at
+// most, so that a slow OpenGL does not slow down what it waits for. While nothing changes the loop
+// waits for events; it looks ten times a second whether the background has done something, a
+// hundred times while the view is not complete.
+#pragma once
+
+#include "crease/viewer.h"
+#include "view/camera_input.h"
+#include "view/flight.h"
+#include "view/gui.h"
+#include "view/histories.h"
+#include "view/painter.h"
+#include "view/panels.h"
+#include "view/session.h"
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+inline constexpr int kSettlingFrames = 3;  // until panels look as they will
+
+class App {
+ public:
+  // The window's OpenGL is current and stays so.
+  App(const ViewerOptions& options, ViewerWindow& window, GlCanvas canvas);
+
+  // Until the window is closed, or the picture that the options ask for is written.
+  Result<ViewerReport> run();
+
+  // The loop's body; for tests as well.
+  Status step();
+  void act(Action action);
+
+  const ViewSettings& settings() const { return settings_; }
+  const Camera& camera() const { return camera_; }
+  const Session& session() const { return session_; }
+  const FrameFacts& frame() const { return frame_; }
+  bool is_frozen() const { return frozen_.has_value(); }
+
+ private:
+  double now() const;
+  void take_events();
+  void take_event(const WindowEvent& event);
+  void take_click(const Click& click);
+  void open(const std::string& source);
+  void welcome();      // a model that is there now
+  void move_camera();  // by the flight, by keys, to fit
+  void fit();
+  bool fit_again();  // to what has arrived; false if the camera stays
+  void freeze(bool on);
+  void look_from_outside();
+  void toggle_recording();
+  void write_picture();
+  void say(std::string notice);
+  void remember();
+  std::optional<Hit> hit_at(double x, double y) const;
+  Camera sized(Camera camera) const;
+
+  bool is_drawing_due();
+  Status draw();
+  PanelContent panel_content() const;
+  std::vector<Segment> lines() const;
+  double wait_seconds() const;
+  Status finish_screenshot();  // when all of it is there
+  Result<Image> final_picture();
+  bool is_all_there() const;
+  std::optional<Failure> cannot_finish() const;
+
+  const ViewerOptions options_;
+  ViewerWindow& window_;
+  GlCanvas canvas_;
+  Gui gui_;
+  Session session_;
+  ViewSettings settings_;
+  CameraInput input_;
+  Histories histories_;
+  FlightRecorder recorder_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+
+  Camera camera_;
+  bool is_fitted_ = true;  // nobody has moved the camera: it follows what arrives
+  int fits_left_ = 0;      // before it stays, if nothing arrives
+  bool is_first_ = true;   // model
+  std::optional<Camera> frozen_;
+  std::vector<Segment> frustum_;
+  std::optional<Hit> picked_;
+  Lines picked_lines_;
+  std::optional<double> flight_began_;  // when the flight did that is played
+
+  FrameFacts frame_;
+  Switches switches_;
+  std::string notice_;
+  double notice_until_ = 0, last_step_ = 0;
+  bool has_arrived_ = false;   // something that is not drawn yet
+  double stream_draw_at_ = 0;  // what arrives before then waits for it
+  int draws_left_ = kSettlingFrames;
+  bool is_outside_ = false;              // as the options ask
+  std::optional<Image> window_picture_;  // taken with the next picture if there is one
+  bool is_done_ = false;
+};
+
+}  // namespace crease

@@ -1,0 +1,30 @@
+#include "view/histories.h"
+
+#include <algorithm>
+
+namespace crease {
+
+void Histories::add(double frame_ms, const FrameFacts& facts) {
+  const std::array<double, kSeriesCount> values{
+      frame_ms, double(facts.uploaded_bytes) / 1e3, double(facts.resident_bytes) / 1e6,
+      double(facts.pending_bytes) / 1e3, facts.error_pixels};
+  for (std::size_t i = 0; i < kSeriesCount; ++i) rings_[i][next_] = float(values[i]);
+  next_ = (next_ + 1) % kHistoryLength;
+  frame_ms_.push_back(float(frame_ms));
+}
+
+Histories::View Histories::of(Series series) const {
+  const auto& ring = rings_[std::size_t(series)];
+  return {ring, next_, ring[(next_ + kHistoryLength - 1) % kHistoryLength],
+          *std::max_element(ring.begin(), ring.end())};
+}
+
+double Histories::median_frame_ms() const {
+  if (frame_ms_.empty()) return 0;
+  std::vector<float> sorted = frame_ms_;
+  const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return double(*middle);
+}
+
+}  // namespace crease

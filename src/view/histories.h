@@ -1,0 +1,38 @@
+// The last frames' numbers, for graphs.
+#pragma once
+
+#include "view/settings.h"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace crease {
+
+inline constexpr std::size_t kHistoryLength = 240;
+
+enum class Series { FrameMs, UploadKb, ResidentMb, PendingKb, ErrorPixels };
+inline constexpr std::size_t kSeriesCount = 5;
+
+class Histories {
+ public:
+  void add(double frame_ms, const FrameFacts& facts);
+
+  struct View {
+    std::span<const float> values;  // a ring
+    std::size_t oldest = 0;
+    float last = 0, largest = 0;
+  };
+  View of(Series series) const;
+
+  std::size_t frame_count() const { return frame_ms_.size(); }
+  double median_frame_ms() const;  // of all frames; 0 without any
+
+ private:
+  std::array<std::array<float, kHistoryLength>, kSeriesCount> rings_{};
+  std::size_t next_ = 0;
+  std::vector<float> frame_ms_;  // of all frames
+};
+
+}  // namespace crease

@@ -1,0 +1,29 @@
+#include "view/painter.h"
+
+#include "render/gl_lines.h"
+
+namespace crease {
+
+Result<DrawCount> paint(GlCanvas& canvas, ShownMesh& mesh, const Picture& picture,
+                        const ViewSettings& settings, std::span<const Segment> lines) {
+  const Camera& camera = picture.camera;
+  DrawPass pass{.view = make_view(camera, double(camera.width_px) / camera.height_px),
+                .up = camera.up};
+  Box box = mesh.box();
+  for (const Segment& line : lines) {
+    box.add(line.from);
+    box.add(line.to);
+  }
+  pass.depth = depth_range(pass.view, box.low, box.high);
+  const DrawStyle style{.wireframe = settings.wireframe,
+                        .line_px = float(picture.scale),
+                        .reversed_depth = canvas.limits().can_reverse_depth};
+  const Result<DrawCount> count =
+      mesh.draw(canvas.programs(), pass, style, settings, picture.cut_camera);
+  if (!count.ok()) return count;
+  const Status drawn = draw_lines(canvas.programs(), lines, pass, style);
+  if (!drawn.ok()) return drawn.failure();
+  return count;
+}
+
+}  // namespace crease

@@ -1,0 +1,152 @@
+#include "view/pick.h"
+
+#include "runtime/resident_block.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crease {
+
+namespace {
+
+Vec3d to_double(const Vec3f& v) {
+  return {v.x, v.y, v.z};
+}
+
+struct Crossing {
+  double along, u, v;
+};
+
+// Moeller and Trumbore's test, of both sides.
+std::optional<Crossing> cross_triangle(const Ray& ray, const std::array<Vec3d, 3>& p) {
+  const Vec3d first = p[1] - p[0], second = p[2] - p[0];
+  const Vec3d across = cross(ray.direction, second);
+  const double volume = dot(first, across);
+  if (volume == 0) return std::nullopt;
+  const Vec3d from = ray.origin - p[0];
+  const double u = dot(from, across) / volume;
+  if (u < 0 || u > 1) return std::nullopt;
+  const Vec3d around = cross(from, first);
+  const double v = dot(ray.direction, around) / volume;
+  if (v < 0 || u + v > 1) return std::nullopt;
+  const double along = dot(second, around) / volume;
+  if (!(along > 0)) return std::nullopt;
+  return Crossing{along, u, v};
+}
+
+struct Nearest {
+  Crossing crossing{HUGE_VAL, 0, 0};
+  TriangleKind kind{};
+  std::uint32_t triangle = 0;
+  bool is_found = false;
+};
+
+void find_in(const DrawList& list, const DrawPart& part, TriangleKind kind, const Range& range,
+             const Ray& ray, Nearest& nearest) {
+  for (std::uint32_t t = range.first; t < range.first + range.count; ++t) {
+    std::array<Vec3d, 3> p;
+    for (std::size_t c = 0; c < 3; ++c) {
+      p[c] = to_double(list.positions[part.indices[3 * std::size_t(t) + c]]);
+    }
+    const std::optional<Crossing> crossing = cross_triangle(ray, p);
+    if (!crossing || crossing->along >= nearest.crossing.along) continue;
+    nearest = {*crossing, kind, t, true};
+  }
+}
+
+const DrawPart& part_of_kind(const DrawList& list, TriangleKind kind) {
+  return kind == TriangleKind::SN ? list.sn : kind == TriangleKind::FN ? list.fn : list.nsn;
+}
+
+Vec3f normal_at(const DrawList& list, const DrawPart& part, const Nearest& at) {
+  const std::size_t first = 3 * std::size_t(at.triangle);
+  if (at.kind == TriangleKind::FN) return part.normals[at.triangle];
+  const auto corner = [&](std::size_t c) {
+    return at.kind == TriangleKind::NSN ? part.normals[first + c]
+                                        : list.vertex_normals[part.indices[first + c]];
+  };
+  const float u = float(at.crossing.u), v = float(at.crossing.v);
+  return normalized(corner(0) * (1 - u - v) + corner(1) * u + corner(2) * v);
+}
+
+Hit describe(const DrawList& list, const Nearest& at, const Ray& ray) {
+  const DrawPart& part = part_of_kind(list, at.kind);
+  Hit hit;
+  hit.along = at.crossing.along;
+  hit.position = ray.origin + ray.direction * hit.along;
+  hit.kind = at.kind;
+  hit.triangle = at.triangle;
+  for (std::size_t c = 0; c < 3; ++c) {
+    hit.corners[c] =
+        list.origin + to_double(list.positions[part.indices[3 * std::size_t(at.triangle) + c]]);
+  }
+  hit.normal = normal_at(list, part, at);
+  if (!part.materials.empty() && part.materials[at.triangle] < list.materials.size()) {
+    hit.material = list.materials[part.materials[at.triangle]].name;
+  }
+  return hit;
+}
+
+bool passes_sphere(const Ray& ray, const Vec3d& center, double radius) {
+  const Vec3d direction = normalized(ray.direction);
+  const Vec3d to = center - ray.origin;
+  const double ahead = dot(to, direction);
+  if (ahead < -radius) return true;
+  return length(to - direction * ahead) > radius;
+}
+
+}  // namespace
+
+std::optional<Hit> pick(const DrawList& list, const DrawRanges& ranges, const Ray& ray) {
+  const Ray near{ray.origin - list.origin, ray.direction};
+  Nearest nearest;
+  find_in(list, list.sn, TriangleKind::SN, ranges.sn, near, nearest);
+  find_in(list, list.fn, TriangleKind::FN, ranges.fn, near, nearest);
+  find_in(list, list.nsn, TriangleKind::NSN, ranges.nsn, near, nearest);
+  if (!nearest.is_found) return std::nullopt;
+  return describe(list, nearest, ray);
+}
+
+std::optional<Hit> pick(const DrawList& list, const Ray& ray) {
+  const auto all = [](const DrawPart& part) {
+    return Range{0, std::uint32_t(part.triangle_count())};
+  };
+  return pick(list, {all(list.sn), all(list.fn), all(list.nsn)}, ray);
+}
+
+std::optional<Hit> pick(std::span<const ShownRange> shown, const Grid& grid, const Ray& ray) {
+  std::optional<Hit> nearest;
+  for (const ShownRange& range : shown) {
+    const BlockFacts& facts = range.block->facts();
+    // A grid unit more, for what rounding takes.
+    if (passes_sphere(ray, grid.position(facts.center), (facts.radius + 1.0) * grid.step)) continue;
+    std::optional<Hit> hit = pick(range.block->draw_list(), {range.sn, range.fn, range.nsn}, ray);
+    if (!hit || (nearest && hit->along >= nearest->along)) continue;
+    nearest = std::move(hit);
+    nearest->block = range.block;
+  }
+  return nearest;
+}
+
+// Draw lists have no parts: the triangle is looked for by its corners.
+std::string part_of(const Hit& hit) {
+  if (hit.block == nullptr) return {};
+  const ResidentBlock::Data& data = hit.block->data();
+  const BlockPart& part = hit.kind == TriangleKind::SN   ? data.sn
+                          : hit.kind == TriangleKind::FN ? data.fn
+                                                         : data.nsn;
+  const codec::PatchMesh& mesh = data.end.mesh;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    bool same = true;
+    for (std::size_t c = 0; c < 3; ++c) {
+      same &= data.position_of_vertex[mesh.triangles[t][c]] ==
+              part.indices[3 * std::size_t(hit.triangle) + c];
+    }
+    if (!same) continue;
+    const std::uint32_t number = mesh.category[t] / data.schema->coding.material_count;
+    return number < data.schema->parts.size() ? data.schema->parts[number] : std::string();
+  }
+  return {};
+}
+
+}  // namespace crease

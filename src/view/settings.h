@@ -1,0 +1,39 @@
+// What the user can set, and what a frame says of itself.
+#pragma once
+
+#include "crease/viewer.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace crease {
+
+inline constexpr const char* kColoringNames[] = {"shaded", "kind", "level", "block", "error"};
+inline constexpr const char* kModeNames[] = {"by block", "by vertex", "linear"};
+
+struct ViewSettings {
+  ViewMode mode = ViewMode::Blocks;
+  ViewColoring coloring = ViewColoring::Shaded;
+  bool wireframe = false;
+  double pixels = 1;   // error on the screen
+  double degrees = 0;  // of shading; 0: any
+  std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
+  std::size_t max_bytes = std::size_t(512) << 20;  // of resident blocks
+
+  bool operator==(const ViewSettings&) const = default;
+};
+
+struct FrameFacts {
+  std::size_t triangles = 0;
+  double error_pixels = 0;         // of what is shown, at its worst
+  std::size_t uploaded_bytes = 0;  // to the GPU, for this frame
+  std::size_t gpu_bytes = 0;
+  std::size_t resident_bytes = 0;
+  std::size_t pending_bytes = 0;  // asked for, not decoded yet
+  std::size_t blocks = 0;         // resident; 0 where there are none
+  std::size_t draw_calls = 0;
+  bool has_changed = false;  // since the last frame
+  bool is_complete = false;  // all that the view wants is shown
+};
+
+}  // namespace crease

@@ -1,0 +1,105 @@
+#include "view/shown_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crease {
+
+namespace {
+
+constexpr std::size_t kFewBlocks = 32;
+
+// Hues a golden ratio apart, so that blocks next to each other differ.
+ColorSrgb color_of_number(std::uint32_t number) {
+  const double hue = 6 * (number * 0.618033988749895 - std::floor(number * 0.618033988749895));
+  ColorSrgb color{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double at = std::fmod(hue + 6 - 2 * double(i), 6.0);
+    const double full = std::clamp(std::abs(at - 3) - 1, 0.0, 1.0);
+    color[i] = std::uint8_t(std::lround(96 + 136 * full));
+  }
+  return color;
+}
+
+double distance_to(const BlockFacts& facts, const Grid& grid, const Vec3d& eye) {
+  const double radius = grid.step * facts.radius;
+  return std::max(length(grid.position(facts.center) - eye) - radius, 1e-6 * radius + 1e-12);
+}
+
+}  // namespace
+
+FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camera) {
+  BlockViewParameters parameters;
+  parameters.view.camera = camera;
+  parameters.view.camera.pixels = settings.pixels;
+  parameters.view.degrees = settings.degrees;
+  parameters.view.max_triangles = settings.max_triangles;
+  parameters.max_bytes = settings.max_bytes;
+  const StreamReport report = streamer_.update(parameters);
+  const BlockMesh& mesh = streamer_.mesh();
+  FrameFacts facts;
+  blocks_.drop(report.cut.dropped);
+  facts.uploaded_bytes = blocks_.upload(mesh.shown());
+  facts.triangles = mesh.triangle_count();
+  facts.error_pixels = std::min(std::max(1.0, double(mesh.view_error())) * settings.pixels,
+                                double(camera.height_px));
+  facts.gpu_bytes = blocks_.bytes();
+  facts.resident_bytes = mesh.resident_bytes();
+  facts.pending_bytes = streamer_.statistics().pending_bytes;
+  facts.blocks = mesh.resident_count();
+  facts.has_changed =
+      report.cut.refined + report.cut.coarsened + report.inserted + facts.uploaded_bytes > 0;
+  facts.is_complete = report.is_complete && facts.uploaded_bytes == 0 && !mesh.shown().empty();
+  return facts;
+}
+
+Result<DrawCount> ShownBlocks::draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
+                                    const ViewSettings& settings, const Camera& cut_camera) {
+  const ModelFacts& model = streamer_.mesh().facts();
+  GlBlocks::ColorOfBlock color_of_block;
+  switch (settings.coloring) {
+    case ViewColoring::Shaded:
+      break;
+    case ViewColoring::Kind:
+      style.coloring = Coloring::Kind;
+      break;
+    case ViewColoring::Level:
+      color_of_block = [&](const ResidentBlock& block) {
+        const std::size_t bands = std::max<std::size_t>(model.bands.size(), 1);
+        return level_color(float(block.facts().band) / float(bands));
+      };
+      break;
+    case ViewColoring::Block:
+      color_of_block = [](const ResidentBlock& block) {
+        return color_of_number(std::uint32_t(index_of(block.id())));
+      };
+      break;
+    case ViewColoring::Error:
+      color_of_block = [&](const ResidentBlock& block) {
+        const double distance = distance_to(block.facts(), model.grid, cut_camera.position);
+        const double pixels = in_pixels(block.facts().fine, cut_camera, distance);
+        return error_color(float(std::min(1.0, pixels / (2 * settings.pixels))));
+      };
+      break;
+  }
+  return blocks_.draw(programs, pass, style, streamer_.mesh().shown(), color_of_block);
+}
+
+std::optional<Hit> ShownBlocks::pick(const Ray& ray) const {
+  return crease::pick(streamer_.mesh().shown(), streamer_.mesh().facts().grid, ray);
+}
+
+// Of few blocks all corners, of many those of their boxes: a camera is fitted again with each block
+// that arrives, between two frames.
+std::vector<Vec3f> ShownBlocks::outline() const {
+  const std::span<const ShownRange> shown = streamer_.mesh().shown();
+  std::vector<Vec3f> points;
+  if (shown.size() > kFewBlocks) return blocks_.box_corners_of(shown, origin());
+  for (const ShownRange& range : shown) {
+    const DrawList list = range.block->draw_list();
+    points.insert(points.end(), list.positions.begin(), list.positions.end());
+  }
+  return points;
+}
+
+}  // namespace crease

@@ -1,0 +1,264 @@
+#include "view/shown_whole.h"
+
+#include "crease/build_hierarchy.h"
+#include "crease/build_progressive_arrays.h"
+#include "crease/decode_model.h"
+#include "crease/threads.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace crease {
+
+namespace {
+
+// Of a frame, for moving the cut; what is left is done by the next ones.
+constexpr double kUpdateSeconds = 0.012;
+
+double seconds_now(void*) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double distance_to(const Box& box, const Vec3d& eye) {
+  double square = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double off = std::max({box.low[i] - eye[i], eye[i] - box.high[i], 0.0});
+    square += off * off;
+  }
+  return std::sqrt(square);
+}
+
+float share_of(std::size_t full, std::size_t base, std::size_t shown) {
+  if (full <= base || base == 0) return 0;
+  const double share = std::log(double(full) / double(std::max(shown, base))) /
+                       std::log(double(full) / double(base));
+  return float(std::clamp(share, 0.0, 1.0));
+}
+
+std::vector<Vec3f> used_positions(const DrawList& list) {
+  std::vector<Vec3f> used;
+  for (const DrawPart* part : {&list.sn, &list.fn, &list.nsn}) {
+    for (const std::uint32_t i : part->indices) used.push_back(list.positions[i]);
+  }
+  return used;
+}
+
+DrawStyle styled(DrawStyle style, ViewColoring coloring, float level_share) {
+  if (coloring == ViewColoring::Kind) style.coloring = Coloring::Kind;
+  if (coloring == ViewColoring::Level) style.coloring = Coloring::Level;
+  if (coloring == ViewColoring::Error) style.coloring = Coloring::Error;
+  style.level_share = level_share;
+  return style;
+}
+
+// What both have.
+class ShownWhole : public ShownMesh {
+ public:
+  ShownWhole(const DrawList& list, const Box& box)
+      : scene_(list, {}), box_(box), origin_(list.origin) {}
+
+  Vec3d origin() const override { return origin_; }
+  Box box() const override { return box_; }
+
+ protected:
+  Result<DrawCount> draw_scene(ProgramCache& programs, const DrawPass& pass,
+                               const DrawStyle& style) const {
+    if (const Status drawn = scene_.draw(programs, pass, style); !drawn.ok()) {
+      return drawn.failure();
+    }
+    const DrawRanges all = scene_.all();
+    const auto calls = (all.sn.count > 0) + (all.fn.count > 0) + (all.nsn.count > 0);
+    return DrawCount{std::size_t(calls), all.triangle_count()};
+  }
+
+  GlScene scene_;
+  const Box box_;
+
+ private:
+  const Vec3d origin_;
+};
+
+class ShownVertices final : public ShownWhole {
+ public:
+  ShownVertices(std::unique_ptr<AdaptiveMesh> mesh, const Box& box)
+      : ShownWhole(mesh->draw_list(), box),
+        mesh_(std::move(mesh)),
+        hierarchy_bytes_(hierarchy_bytes(mesh_->hierarchy()).total()) {}
+
+  FrameFacts update(const ViewSettings& settings, const Camera& camera) override {
+    ViewParameters view;
+    view.camera = camera;
+    view.camera.pixels = settings.pixels;
+    view.degrees = settings.degrees;
+    view.max_triangles = settings.max_triangles;
+    view.max_seconds = kUpdateSeconds;
+    view.clock = seconds_now;
+    const UpdateReport report = mesh_->update(view);
+    FrameFacts facts;
+    facts.has_changed = report.splits + report.merges > 0;
+    if (facts.has_changed) {
+      facts.uploaded_bytes = scene_.update(mesh_->draw_list(), mesh_->changes());
+      has_errors_ = false;
+    }
+    facts.triangles = mesh_->triangle_count();
+    facts.error_pixels = worst_error(camera, settings);
+    facts.gpu_bytes = scene_.bytes();
+    facts.resident_bytes = mesh_->active_bytes() + hierarchy_bytes_;
+    facts.is_complete = report.complete;
+    return facts;
+  }
+
+  Result<DrawCount> draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
+                         const ViewSettings& settings, const Camera& cut_camera) override {
+    const VertexHierarchy& vertices = mesh_->hierarchy().vertices;
+    style = styled(style, settings.coloring,
+                   share_of(vertices.triangles.size(), vertices.coarse_triangles().size(),
+                            mesh_->triangle_count()));
+    if (settings.coloring == ViewColoring::Error) set_errors(cut_camera);
+    style.error_full = float(2 * settings.pixels);
+    return draw_scene(programs, pass, style);
+  }
+
+  std::optional<Hit> pick(const Ray& ray) const override {
+    return crease::pick(mesh_->draw_list(), ray);
+  }
+  std::vector<Vec3f> outline() const override { return used_positions(mesh_->draw_list()); }
+
+ private:
+  // Bounds of what the cut allows: an update that is complete leaves no more.
+  double worst_error(const Camera& camera, const ViewSettings& settings) {
+    if (settings.max_triangles == std::numeric_limits<std::size_t>::max()) return settings.pixels;
+    return in_pixels(mesh_->error(), camera, std::max(distance_to(box_, camera.position), 1e-9));
+  }
+
+  void set_errors(const Camera& camera) {
+    if (has_errors_ && camera == errors_camera_) return;
+    const DrawList list = mesh_->draw_list();
+    std::vector<float> errors = mesh_->error_of_position();
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      const Vec3f& p = list.positions[i];
+      const Vec3d to = list.origin + Vec3d{p.x, p.y, p.z} - camera.position;
+      errors[i] = float(double(errors[i]) / pixel_size(camera, std::max(length(to), 1e-12)));
+    }
+    scene_.set_errors(errors);
+    errors_camera_ = camera;
+    has_errors_ = true;
+  }
+
+  std::unique_ptr<AdaptiveMesh> mesh_;
+  const std::size_t hierarchy_bytes_;
+  bool has_errors_ = false;
+  Camera errors_camera_;
+};
+
+class ShownLinear final : public ShownWhole {
+ public:
+  ShownLinear(std::unique_ptr<ProgressiveMesh> mesh, const Box& box)
+      : ShownWhole(mesh->draw_list(), box), mesh_(std::move(mesh)) {}
+
+  // One level everywhere: as fine as the nearest point of the model's box needs it.
+  FrameFacts update(const ViewSettings& settings, const Camera& camera) override {
+    const double distance = distance_to(box_, camera.position);
+    const double wanted = settings.pixels * pixel_size(camera, distance);
+    FrameFacts facts;
+    if (wanted != error_ || settings.max_triangles != max_triangles_) {
+      const std::size_t before = mesh_->applied();
+      move_to(wanted, settings.max_triangles, facts);
+      facts.has_changed = mesh_->applied() != before;
+    }
+    facts.triangles = mesh_->triangle_count();
+    facts.error_pixels = in_pixels(mesh_->error(), camera, std::max(distance, 1e-9));
+    facts.gpu_bytes = facts.resident_bytes = scene_.bytes();
+    facts.is_complete = true;
+    return facts;
+  }
+
+  Result<DrawCount> draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
+                         const ViewSettings& settings, const Camera& cut_camera) override {
+    style = styled(style, settings.coloring,
+                   share_of(mesh_->full_triangle_count(), mesh_->base_triangle_count(),
+                            mesh_->triangle_count()));
+    if (settings.coloring == ViewColoring::Error) {
+      const double distance = std::max(distance_to(box_, cut_camera.position), 1e-9);
+      const double pixels = in_pixels(mesh_->error(), cut_camera, distance);
+      style.surface = error_color(float(std::min(1.0, pixels / (2 * settings.pixels))));
+    }
+    return draw_scene(programs, pass, style);
+  }
+
+  std::optional<Hit> pick(const Ray& ray) const override {
+    return crease::pick(mesh_->draw_list(), ray);
+  }
+  std::vector<Vec3f> outline() const override { return used_positions(mesh_->draw_list()); }
+
+ private:
+  void move_to(double error, std::size_t max_triangles, FrameFacts& facts) {
+    error_ = error;
+    max_triangles_ = max_triangles;
+    mesh_->set_error(float(error));
+    take_changes(facts);
+    if (mesh_->triangle_count() <= max_triangles) return;
+    mesh_->set_triangle_count(max_triangles);
+    take_changes(facts);
+  }
+
+  void take_changes(FrameFacts& facts) {
+    facts.uploaded_bytes += scene_.update(mesh_->draw_list(), mesh_->changes());
+  }
+
+  std::unique_ptr<ProgressiveMesh> mesh_;
+  double error_ = -1;  // of the last update
+  std::size_t max_triangles_ = 0;
+};
+
+std::size_t largest_array(const DrawList& list) {
+  return std::max({list.positions.size(), list.sn.indices.size(), list.fn.indices.size(),
+                   list.nsn.indices.size()});
+}
+
+}  // namespace
+
+Result<WholeModel> load_whole(const ModelSource& model, ViewMode mode, Note& note) {
+  note.say("loading the whole model", 0);
+  const Result<BlockFile> file = open_again(model, note);
+  if (!file.ok()) return file.failure();
+  Result<DecodedModel> decoded = decode_model(*file, {.for_each = loop_on_threads(1)});
+  if (!decoded.ok()) return decoded.failure();
+  if (note.is_stopped()) return fail(Error::Interrupted, "interrupted");
+  WholeModel whole;
+  whole.bytes_read = file->source().bytes_read();
+  for (const Vec3d& p : decoded->mesh.positions) whole.box.add(p);
+  if (mode == ViewMode::Linear) {
+    note.say("sorting the levels");
+    whole.linear = std::make_unique<ProgressiveMesh>(
+        build_progressive_arrays(decoded->mesh, decoded->sequence));
+    return whole;
+  }
+  note.say("building the hierarchy");
+  Result<MeshHierarchy> hierarchy = build_hierarchy(decoded->mesh, decoded->sequence, {});
+  if (!hierarchy.ok()) return hierarchy.failure();
+  whole.vertices =
+      std::make_unique<AdaptiveMesh>(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
+  return whole;
+}
+
+Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& limits) {
+  const std::size_t largest = model.linear
+                                  ? largest_array(model.linear->draw_list())
+                                  : 3 * model.vertices->hierarchy().vertices.triangles.size();
+  if (largest > std::size_t(limits.max_texel_count)) {
+    return fail(Error::OverLimit, "the whole model has arrays of " + std::to_string(largest) +
+                                      " elements, this device draws " +
+                                      std::to_string(limits.max_texel_count));
+  }
+  if (model.linear) {
+    return std::unique_ptr<ShownMesh>(
+        std::make_unique<ShownLinear>(std::move(model.linear), model.box));
+  }
+  return std::unique_ptr<ShownMesh>(
+      std::make_unique<ShownVertices>(std::move(model.vertices), model.box));
+}
+
+}  // namespace crease

@@ -1,0 +1,199 @@
+// The viewer's loop, step by step, on a display.
+#include "view/app.h"
+
+#include "crease/export.h"
+#include "crease/file.h"
+#include "support/mesh_zoo.h"
+#include "view/streamed_model.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+
+namespace crease {
+
+namespace {
+
+// A folder for a test's files, also for what the viewer remembers.
+class Folder {
+ public:
+  Folder()
+      : path_(std::filesystem::temp_directory_path() / ("crease_app_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path_);
+    setenv("XDG_STATE_HOME", path_.c_str(), 1);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+
+  std::string crease_file(const char* name, const Mesh& mesh) const {
+    const std::string path = path_ / name;
+    REQUIRE(write_crease(path, streamed_model(mesh, 400).bytes).ok());
+    return path;
+  }
+  std::string mesh_file(const char* name, const Mesh& mesh) const {
+    const std::string path = path_ / name;
+    REQUIRE(export_mesh(mesh, path).ok());
+    return path;
+  }
+  std::string text_file(const char* name, const char* text) const {
+    std::ofstream(path_ / name) << text;
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct Running {
+  std::unique_ptr<ViewerWindow> window;
+  std::unique_ptr<App> app;
+
+  explicit Running(const ViewerOptions& options) {
+    Result<std::unique_ptr<ViewerWindow>> opened =
+        ViewerWindow::open("test", options.width_px, options.height_px);
+    if (!opened.ok()) FAIL(opened.failure().message);
+    window = *std::move(opened);
+    Result<GlCanvas> canvas = GlCanvas::make();
+    REQUIRE(canvas.ok());
+    app = std::make_unique<App>(options, *window, *std::move(canvas));
+  }
+
+  template <typename Holds>
+  void until(Holds holds) {
+    for (int i = 0; !holds(); ++i) {
+      REQUIRE(i < 100'000);
+      REQUIRE(app->step().ok());
+    }
+  }
+  void until_complete() {
+    until([&] { return app->frame().is_complete && !app->session().is_busy(); });
+  }
+  void drop(const std::string& path) {
+    const char* paths[] = {path.c_str()};
+    ViewerWindow::on_drop(window->handle(), 1, paths);
+    REQUIRE(app->step().ok());
+  }
+};
+
+ViewerOptions small_window(std::string source) {
+  ViewerOptions options;
+  options.source = std::move(source);
+  options.width_px = 320;
+  options.height_px = 240;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("a file that is dropped replaces the model, one that is broken leaves it") {
+  const Folder folder;
+  Running viewer(small_window(folder.crease_file("sphere.crease", smooth_sphere(24, 48))));
+  viewer.until_complete();
+  const App& app = *viewer.app;
+  CHECK(app.session().source().name == "sphere.crease");
+  CHECK(app.frame().triangles > 100);
+  CHECK_FALSE(app.session().message());
+
+  viewer.drop(folder.text_file("broken.crease", "nothing of the kind"));
+  viewer.until([&] { return app.session().failure().has_value(); });
+  REQUIRE(app.session().message());
+  CHECK(app.session().message()->is_failure);
+  CHECK(app.session().message()->text.find("broken.crease") != std::string::npos);
+  CHECK(app.session().source().name == "sphere.crease");
+  REQUIRE(app.session().shown() != nullptr);
+  for (int i = 0; i < 3; ++i) REQUIRE(viewer.app->step().ok());
+  CHECK(app.frame().triangles > 100);
+  viewer.app->act(Action::Leave);
+  CHECK_FALSE(app.session().message());
+
+  // A mesh file is built in the background, and says so meanwhile.
+  viewer.drop(folder.mesh_file("box.ply", hard_box(8)));
+  CHECK(app.session().is_busy());
+  viewer.until([&] { return app.session().source().name == "box.ply"; });
+  CHECK(app.session().source().built != nullptr);
+  viewer.until_complete();
+  CHECK(app.session().facts()->triangle_count == 768);
+}
+
+TEST_CASE("every mode shows the model, and comes back without loading it again") {
+  const Folder folder;
+  Running viewer(small_window(folder.crease_file("sphere.crease", smooth_sphere(24, 48))));
+  viewer.until_complete();
+  const App& app = *viewer.app;
+  for (const ViewMode mode : {ViewMode::Vertices, ViewMode::Linear, ViewMode::Blocks}) {
+    viewer.app->act(Action::NextMode);
+    CHECK(app.settings().mode == mode);
+    REQUIRE(viewer.app->step().ok());
+    CHECK(app.session().is_busy() == (mode != ViewMode::Blocks));
+    viewer.until_complete();
+    CHECK(app.frame().triangles > 100);
+    CHECK_FALSE(app.session().message());
+  }
+  const std::uint64_t bytes = app.session().bytes_read();
+  viewer.app->act(Action::NextMode);
+  REQUIRE(viewer.app->step().ok());
+  CHECK_FALSE(app.session().is_busy());
+  CHECK(app.session().bytes_read() == bytes);
+}
+
+TEST_CASE("what is frozen stays while the camera moves") {
+  const Folder folder;
+  ViewerOptions options = small_window(folder.crease_file("sphere.crease", smooth_sphere(48, 96)));
+  options.pixels = 0.2;
+  for (const ViewMode mode : {ViewMode::Blocks, ViewMode::Vertices, ViewMode::Linear}) {
+    options.mode = mode;
+    Running viewer(options);
+    viewer.until_complete();
+    viewer.until([&, i = 0]() mutable { return ++i > 5; });
+    const std::size_t triangles = viewer.app->frame().triangles;
+    const Camera camera = viewer.app->camera();
+    viewer.app->act(Action::Outside);
+    CHECK(viewer.app->is_frozen());
+    CHECK_FALSE(viewer.app->camera() == camera);
+    for (int i = 0; i < 5; ++i) REQUIRE(viewer.app->step().ok());
+    CHECK(viewer.app->frame().triangles == triangles);
+    viewer.app->act(Action::Freeze);
+    CHECK_FALSE(viewer.app->is_frozen());
+  }
+}
+
+TEST_CASE("the error asked for and the triangles allowed decide what is shown") {
+  const Folder folder;
+  ViewerOptions options = small_window(folder.crease_file("sphere.crease", smooth_sphere(48, 96)));
+  {
+    Running viewer(options);
+    viewer.until_complete();
+    const std::size_t at_one = viewer.app->frame().triangles;
+    for (int i = 0; i < 4; ++i) viewer.app->act(Action::Coarser);
+    CHECK(viewer.app->settings().pixels == 16);
+    REQUIRE(viewer.app->step().ok());
+    viewer.until_complete();
+    CHECK(viewer.app->frame().triangles < at_one);
+    for (int i = 0; i < 6; ++i) viewer.app->act(Action::Finer);
+    REQUIRE(viewer.app->step().ok());
+    viewer.until_complete();
+    CHECK(viewer.app->frame().triangles > at_one);
+  }
+
+  options.max_triangles = 1500;
+  options.pixels = 0.01;
+  for (const ViewMode mode : {ViewMode::Blocks, ViewMode::Vertices, ViewMode::Linear}) {
+    options.mode = mode;
+    Running limited(options);
+    limited.until_complete();
+    CHECK(limited.app->frame().triangles <= 1500);
+    CHECK(limited.app->frame().triangles > 100);
+  }
+}
+
+TEST_CASE("a window that is closed while a model is built ends the build") {
+  const Folder folder;
+  const std::string path = folder.mesh_file("sphere.ply", smooth_sphere(200, 400));
+  Running viewer(small_window(path));
+  for (int i = 0; i < 3; ++i) REQUIRE(viewer.app->step().ok());
+  CHECK(viewer.app->session().is_busy());
+  viewer.app.reset();  // returns
+}
+
+}  // namespace crease
