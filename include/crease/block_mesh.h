@@ -118,6 +118,7 @@ class BlockMesh {
   // Those of the file's parts, which lie at its end; without them extract() has no parts. As many
   // as the head says.
   void set_part_names(std::vector<std::string> names);
+  std::span<const std::string> part_names() const;  // empty while they are not known
 
   // Moves the cut to what the view wants, as far as blocks are resident, and says what is missing
   // for the rest. Drops what was not wanted for longest while more than max_bytes are resident;

@@ -195,6 +195,10 @@ void BlockMesh::set_part_names(std::vector<std::string> names) {
   impl_->part_names = std::move(names);
 }
 
+std::span<const std::string> BlockMesh::part_names() const {
+  return impl_->part_names;
+}
+
 BlockUpdate BlockMesh::update(const BlockViewParameters& parameters) {
   return impl_->update(parameters);
 }

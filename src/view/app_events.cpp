@@ -83,7 +83,7 @@ void App::take_event(const WindowEvent& event) {
 void App::take_click(const Click& click) {
   picked_ = hit_at(click.x, click.y);
   if (!picked_) return;
-  picked_lines_ = lines_of(*picked_, part_of(*picked_), *session_.facts());
+  picked_lines_ = lines_of(*picked_, part_of(*picked_, session_.part_names()), *session_.facts());
   picked_->block = nullptr;  // it may go while the lines stay
   if (click.is_double) camera_ = retargeted(camera_, picked_->position);
 }

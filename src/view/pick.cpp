@@ -129,7 +129,7 @@ std::optional<Hit> pick(std::span<const ShownRange> shown, const Grid& grid, con
 }
 
 // Draw lists have no parts: the triangle is looked for by its corners.
-std::string part_of(const Hit& hit) {
+std::string part_of(const Hit& hit, std::span<const std::string> names) {
   if (hit.block == nullptr) return {};
   const ResidentBlock::Data& data = hit.block->data();
   const BlockPart& part = hit.kind == TriangleKind::SN   ? data.sn
@@ -144,7 +144,7 @@ std::string part_of(const Hit& hit) {
     }
     if (!same) continue;
     const std::uint32_t number = mesh.category[t] / data.schema->coding.material_count;
-    return number < data.schema->parts.size() ? data.schema->parts[number] : std::string();
+    return number < names.size() ? names[number] : std::string();
   }
   return {};
 }

@@ -33,7 +33,7 @@ std::optional<Hit> pick(const DrawList& list, const DrawRanges& ranges, const Ra
 // Of blocks, those that the ray passes by are not looked into.
 std::optional<Hit> pick(std::span<const ShownRange> shown, const Grid& grid, const Ray& ray);
 
-// The name of the part that a triangle of a block belongs to, or empty.
-std::string part_of(const Hit& hit);
+// The name of the part that a triangle of a block belongs to, or empty. `names`: of the mesh.
+std::string part_of(const Hit& hit, std::span<const std::string> names);
 
 }  // namespace crease

@@ -71,6 +71,11 @@ const ModelFacts* Session::facts() const {
   return blocks_ ? &blocks_->streamer().mesh().facts() : nullptr;
 }
 
+std::span<const std::string> Session::part_names() const {
+  if (!blocks_) return {};
+  return blocks_->streamer().mesh().part_names();
+}
+
 std::uint64_t Session::bytes_read() const {
   if (!blocks_) return 0;
   return blocks_->streamer().statistics().source.bytes_transferred + whole_bytes_;

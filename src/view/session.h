@@ -18,6 +18,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ class Session {
   ShownMesh* shown() const;
   const ModelSource& source() const { return source_; }
   const ModelFacts* facts() const;
+  std::span<const std::string> part_names() const;  // empty while they are not known
   std::uint64_t bytes_read() const;
 
   // What goes on, else what went wrong last.

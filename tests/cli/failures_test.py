@@ -32,7 +32,7 @@ class Failures(tool.Case):
                           ["extract", city, "-o", "x.ply", "--lod-glb"],
                           ["compare", city], ["render", city, "-o", "x.png", "--color", "pink"],
                           ["generate", "castle", "-o", "x.ply"], ["info", city, "--threads", "-1"],
-                          ["view", city], ["serve"]):
+                          ["view", city, "--mode", "magic"], ["serve"]):
             self.run_tool(*arguments, exit_status=1)
         for arguments in (["build", city, "-o", "x.crease", "--precision", "fine"],
                           ["build", city, "-o", "x.crease", "--precision", "31bits"],
