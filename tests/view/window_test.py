@@ -64,10 +64,19 @@ class Window(tool.Case):
         return sorted(self.folder.glob("*.png"), key=lambda p: int(p.stem.split("-")[-1]))
 
     def shot(self):
-        """What the window shows, by key P."""
-        before = len(self.pictures())
-        self.key("p")
-        self.until(lambda: len(self.pictures()) > before, "a picture")
+        """What the window shows, by key P: again if nothing comes, as a window that has just been
+        mapped may not have the keyboard yet."""
+        before, pressed = len(self.pictures()), float("-inf")
+
+        def is_taken():
+            nonlocal pressed
+            if len(self.pictures()) > before:
+                return True
+            if time.monotonic() - pressed > 5:
+                pressed = time.monotonic()
+                self.key("p")
+            return False
+        self.until(is_taken, "a picture")
         return picture.Picture(self.pictures()[-1])
 
     def settled(self):
