@@ -100,7 +100,8 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
   asked.ratio = std::nullopt;
   const bool is_full =
       !asked.error && asked.triangles.value_or(file.triangle_count()) >= file.triangle_count();
-  Result<Model> model = file.load({.triangles = asked.triangles, .is_mesh_only = is_full});
+  Result<Model> model =
+      file.load({.triangles = asked.triangles, .is_one_level = true, .is_mesh_only = is_full});
   if (!model.ok()) return model.failure();
   ExtractedLevel level;
   if (is_full) {

@@ -187,7 +187,7 @@ Result<Model> ModelFile::load(const Detail& detail) const {
   const ModelFacts& facts = blocks_.facts();
   if (detail.triangles) {
     options.finest_band = finest_band_for(facts, *detail.triangles);
-    options.contracted_bands = 1;
+    if (detail.is_one_level) options.contracted_bands = 1;
   }
   if (detail.is_mesh_only) options.contracted_bands = 0;
   ViewParameters view;

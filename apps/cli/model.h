@@ -41,7 +41,8 @@ Result<BuildOptions> build_options(const ReadOptions& options, const Common& com
 
 // What to decode of a file.
 struct Detail {
-  std::optional<std::size_t> triangles{};  // the finest level of at most so many; none: all levels
+  std::optional<std::size_t> triangles{};  // levels of so many and fewer; none: all
+  bool is_one_level = false;               // the finest of those alone
   std::optional<Camera> view{};            // the blocks that it needs
   bool is_mesh_only = false;               // the finest mesh of these blocks, and no level of it
 };

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 import pathlib
 import struct
 
@@ -308,6 +309,9 @@ class Commands(tool.Case):
         picture = self.json("render", self.built(), "-o", out, "--levels", "1,0.2,0.02",
                             "--control", "--size", "330x200", "--view", view)
         self.assertEqual(len(picture["panels"]), 6)
+        counts = [p["triangles"] for p in picture["panels"][:3]]
+        for count, share in zip(counts, (1, 0.2, 0.02)):
+            self.assertLessEqual(count, math.ceil(share * counts[0]))
         self.assertEqual([p["control"] for p in picture["panels"]], [False] * 3 + [True] * 3)
         self.assertEqual(png_size(out), (330, 200))
         for color in ("kind", "level", "error"):
