@@ -33,6 +33,20 @@ class Window(tool.Case):
         self.addCleanup(self.end)
         self.until(lambda: self.xdotool("search", "--name", "crease", check=False), "a window")
         self.window = self.xdotool("search", "--name", "crease").split()[0]
+        before = len(self.pictures())
+        self.until(lambda: self.listens(before), "an answer to a key")
+
+    def listens(self, before):
+        """A window that has just appeared may have no keyboard yet."""
+        self.key("p")
+        time.sleep(1)
+        if len(self.pictures()) == before:
+            return False
+        count = -1
+        while count != len(self.pictures()):  # it may take several keys late
+            count = len(self.pictures())
+            time.sleep(1)
+        return True
 
     def end(self):
         if self.viewer.poll() is None:
