@@ -64,6 +64,11 @@ struct Frame {
   float error = 0;
 };
 
+int failed(const Failure& failure) {
+  std::fprintf(stderr, "%s\n", failure.message.c_str());
+  return 2;
+}
+
 Result<BlockStreamer> open(const Options& options) {
   Result<AsyncSourcePtr> source = is_http_url(options.file)
                                       ? Result<AsyncSourcePtr>(open_async_http(options.file))
@@ -155,10 +160,7 @@ void report(const Options& options, const BlockStreamer& streamer,
 int fly(const Options& options) {
   const Clock::time_point start = Clock::now();
   Result<BlockStreamer> opened = open(options);
-  if (!opened.ok()) {
-    std::fprintf(stderr, "%s\n", opened.failure().message.c_str());
-    return 2;
-  }
+  if (!opened.ok()) return failed(opened.failure());
   BlockStreamer& streamer = *opened;
   const Box box = box_of_start(streamer);
   const StreamStatistics at_start = streamer.statistics();
@@ -187,10 +189,7 @@ int fly(const Options& options) {
 int stand_still(const Options& options) {
   const Clock::time_point start = Clock::now();
   Result<BlockStreamer> opened = open(options);
-  if (!opened.ok()) {
-    std::fprintf(stderr, "%s\n", opened.failure().message.c_str());
-    return 2;
-  }
+  if (!opened.ok()) return failed(opened.failure());
   BlockStreamer& streamer = *opened;
   const std::uint64_t file_bytes = streamer.head().file_bytes;
   const auto report = [&](const char* what) {
@@ -222,13 +221,14 @@ int stand_still(const Options& options) {
 int compare_granularities(const Options& options) {
   Result<BlockStreamer> opened = open(options);
   const Result<BlockFile> file = open_crease(options.file);
-  if (!opened.ok() || !file.ok()) return 2;
+  if (!opened.ok()) return failed(opened.failure());
+  if (!file.ok()) return failed(file.failure());
   BlockStreamer& streamer = *opened;
   const Box box = box_of_start(streamer);
   const Result<DecodedModel> model = decode_model(*file);
-  if (!model.ok()) return 2;
+  if (!model.ok()) return failed(model.failure());
   Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
-  if (!hierarchy.ok()) return 2;
+  if (!hierarchy.ok()) return failed(hierarchy.failure());
   AdaptiveMesh by_vertex(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
   BlockViewParameters parameters;
   parameters.max_bytes = std::size_t(8) << 30;

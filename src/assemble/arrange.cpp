@@ -48,11 +48,6 @@ void add_lost_triangle(SectionCounts& lost, TriangleKind kind) {
                              : ++lost.nsn_triangles;
 }
 
-LevelError worst(const LevelError& a, const LevelError& b) {
-  return {std::max(a.surface, b.surface), std::max(a.line, b.line), std::max(a.degrees, b.degrees),
-          std::max(a.texture, b.texture)};
-}
-
 class Arranger {
  public:
   Arranger(const Mesh& snapped, const ContractionSequence& sequence, Restructured parts)
@@ -191,7 +186,7 @@ class Arranger {
     packed.kept.push_back(kept);  // renumbered at the end
     packed.headers.push_back(pack_header(header));
     if (header.is_wide) packed.wide.push_back({header.lost, header.corner_changes});
-    const LevelError error = worst(error_, c.error);
+    const LevelError error = larger(error_, c.error);
     if (error.surface != error_.surface || error.line != error_.line ||
         error.degrees != error_.degrees || error.texture != error_.texture) {
       error_ = error;

@@ -122,11 +122,7 @@ class Planner {
 
   LevelError largest_error(const std::vector<std::uint32_t>& vertices) const {
     LevelError all;
-    for (const std::uint32_t v : vertices) {
-      const LevelError& e = error_[v];
-      all = {std::max(all.surface, e.surface), std::max(all.line, e.line),
-             std::max(all.degrees, e.degrees), std::max(all.texture, e.texture)};
-    }
+    for (const std::uint32_t v : vertices) all = larger(all, error_[v]);
     return all;
   }
 

@@ -116,6 +116,16 @@ void draw_strips(std::span<const float> corners) {
 
 }  // namespace
 
+DrawPass pass_over(const Camera& camera, double aspect, Box box, std::span<const Segment> lines) {
+  DrawPass pass{.view = make_view(camera, aspect), .up = camera.up};
+  for (const Segment& line : lines) {
+    box.add(line.from);
+    box.add(line.to);
+  }
+  pass.depth = depth_range(pass.view, box.low, box.high);
+  return pass;
+}
+
 Status draw_lines(ProgramCache& programs, std::span<const Segment> lines, const DrawPass& pass,
                   const DrawStyle& style) {
   if (lines.empty()) return Done{};

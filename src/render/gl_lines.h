@@ -10,6 +10,9 @@
 
 namespace crease {
 
+// From the camera, with depths that hold the box and the lines. `aspect`: width by height.
+DrawPass pass_over(const Camera& camera, double aspect, Box box, std::span<const Segment> lines);
+
 // In model units. Into the bound framebuffer and its viewport, with its depths.
 Status draw_lines(ProgramCache& programs, std::span<const Segment> lines, const DrawPass& pass,
                   const DrawStyle& style);

@@ -179,14 +179,7 @@ void lay_over(Image& image, const PixelRect& at, std::span<const std::uint8_t> t
 Status draw_view(Image& image, const PixelRect& view_rect, const GlScene& scene,
                  std::span<const Segment> lines, const Camera& camera, const DrawStyle& style,
                  GlTarget& target, int tile_px, ProgramCache& programs) {
-  DrawPass pass{.view = make_view(camera, double(view_rect.width) / view_rect.height),
-                .up = camera.up};
-  Box box = scene.box();
-  for (const Segment& line : lines) {
-    box.add(line.from);
-    box.add(line.to);
-  }
-  pass.depth = depth_range(pass.view, box.low, box.high);
+  DrawPass pass = pass_over(camera, double(view_rect.width) / view_rect.height, scene.box(), lines);
   std::vector<std::uint8_t> pixels;
   for (int y = 0; y < view_rect.height; y += tile_px) {
     for (int x = 0; x < view_rect.width; x += tile_px) {

@@ -37,7 +37,7 @@ Status BlockGraph::add_page(const DirectoryPage& page) {
     }
     Node node;
     node.entry = entry;
-    node.own = node.all = bounds_of(facts);
+    node.own = node.all = bounds_of(facts, grid_);
     for (const BlockId id : page.dependencies_of(entry.id)) {
       const auto needed = static_cast<std::uint32_t>(index_of(id));
       if (needed >= block || nodes_[needed].entry.facts.band <= facts.band) {
@@ -52,19 +52,6 @@ Status BlockGraph::add_page(const DirectoryPage& page) {
   ++pages_;
   grow_bounds();
   return Done{};
-}
-
-BlockBounds BlockGraph::bounds_of(const BlockFacts& facts) const {
-  BlockBounds result;
-  result.bounds.surface = RoundedUp::from(facts.coarse.surface);
-  result.bounds.line = RoundedUp::from(facts.coarse.line);
-  result.bounds.degrees = RoundedUp::from(facts.coarse.degrees);
-  result.bounds.texture = RoundedUp::from(facts.coarse.texture);
-  result.bounds.radius = RoundedUp::from(static_cast<float>(grid_.step * facts.radius));
-  result.center = {static_cast<float>(grid_.step * facts.center.x),
-                   static_cast<float>(grid_.step * facts.center.y),
-                   static_cast<float>(grid_.step * facts.center.z)};
-  return result;
 }
 
 namespace {

@@ -2,20 +2,13 @@
 // the coarse ones on.
 #pragma once
 
-#include "crease/block_file.h"
-#include "crease/split_bounds.h"
+#include "runtime/block_bounds.h"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace crease {
-
-// What a view needs to know: a sphere and how far what is in it may be off.
-struct BlockBounds {
-  SplitBounds bounds;
-  Vec3f center;  // from the grid's origin, model units
-};
 
 class BlockGraph {
  public:
@@ -51,7 +44,6 @@ class BlockGraph {
     BlockBounds own, all;
   };
 
-  BlockBounds bounds_of(const BlockFacts& facts) const;
   void grow_bounds();
 
   Grid grid_;

@@ -29,11 +29,6 @@ float raised(float base, double own) {
   return static_cast<float>(double(base) + own);
 }
 
-LevelError worst(const LevelError& a, const LevelError& b) {
-  return {std::max(a.surface, b.surface), std::max(a.line, b.line), std::max(a.degrees, b.degrees),
-          std::max(a.texture, b.texture)};
-}
-
 }  // namespace
 
 std::vector<double> PatchSimplifier::initial_costs() {
@@ -196,7 +191,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
 
   // Errors: the bands before, and this band's quadrics on top.
   Errors& errors = errors_[kept];
-  errors.base = worst(errors.base, errors_[removed].base);
+  errors.base = larger(errors.base, errors_[removed].base);
   LevelError error = errors.base;
   surface_[kept].add(surface_[removed]);
   if (!turn_.empty()) turn_[kept].add(turn_[removed]);
@@ -226,7 +221,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
 
   // Wedges are joined while the vanishing triangles still stand.
   for (std::size_t l = 0; l < layer_count(); ++l) contract_layer(l, kept, removed, target, error);
-  errors.now = worst(worst(errors.now, errors_[removed].now), error);
+  errors.now = larger(larger(errors.now, errors_[removed].now), error);
 
   // Triangles: vanish, or change hands.
   if (!represented_.empty()) hand_over_represented();

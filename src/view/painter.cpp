@@ -7,14 +7,8 @@ namespace crease {
 Result<DrawCount> paint(GlCanvas& canvas, ShownMesh& mesh, const Picture& picture,
                         const ViewSettings& settings, std::span<const Segment> lines) {
   const Camera& camera = picture.camera;
-  DrawPass pass{.view = make_view(camera, double(camera.width_px) / camera.height_px),
-                .up = camera.up};
-  Box box = mesh.box();
-  for (const Segment& line : lines) {
-    box.add(line.from);
-    box.add(line.to);
-  }
-  pass.depth = depth_range(pass.view, box.low, box.high);
+  const DrawPass pass =
+      pass_over(camera, double(camera.width_px) / camera.height_px, mesh.box(), lines);
   const DrawStyle style{.wireframe = settings.wireframe,
                         .line_px = float(picture.scale),
                         .reversed_depth = canvas.limits().can_reverse_depth};
