@@ -46,6 +46,10 @@ std::string shown(double x) {
   return text;
 }
 
+bool is_axis(std::string_view name) {
+  return name == "x" || name == "y" || name == "z";
+}
+
 double color_scale(PlyType type) {
   if (!is_integer(type)) return 1;
   return type == PlyType::Int16 || type == PlyType::Uint16 ? 1.0 / 65535 : 1.0 / 255;
@@ -200,8 +204,7 @@ class PlyReader {
       if (target.kind == PlyTarget::Kind::Layer) continue;
       if (property.is_list) {
         target.kind = list_target(property, is_face);
-      } else if (!is_face &&
-                 (property.name == "x" || property.name == "y" || property.name == "z")) {
+      } else if (!is_face && is_axis(property.name) && find_property(element, property.name) == p) {
         target = {PlyTarget::Kind::Position, 0, static_cast<std::size_t>(property.name[0] - 'x'),
                   1};
       } else {

@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <string>
+#include <string_view>
 
 namespace crease {
 
@@ -96,21 +99,44 @@ bool has_role_before(const std::vector<PlyLayer>& plans, const AttributeLayer& l
                      [&](const PlyLayer& plan) { return plan.layer->role == layer.role; });
 }
 
+// Names that a reader gives a meaning of their own.
+bool is_meaningful(std::string_view name) {
+  constexpr std::string_view kNames[] = {
+      "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "alpha", "s", "t", "material_index"};
+  return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+}
+
+// So that no layer is taken for something else: a linear `x` of the faces, written at the vertices,
+// would be a second `x` there, of which readers take either. `is_meant`: the layer has the role
+// that its names say.
+void make_unique(PlyLayer& plan, bool is_meant, std::set<std::string>& taken) {
+  for (std::string& property : plan.properties) {
+    if (is_meant && is_meaningful(property)) continue;
+    const std::string name = property;
+    for (std::size_t k = 2; is_meaningful(property) || !taken.insert(property).second; ++k) {
+      property = numbered(name, k);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::byte> write_ply(const Mesh& mesh) {
   std::vector<PlyLayer> of_vertex, of_face;
   std::vector<const AttributeLayer*> splitting;
+  std::set<std::string> taken;
   for (const AttributeLayer& layer : mesh.layers) {
     const bool is_face =
         layer.interpolation == Interpolation::Categorical && is_per_triangle(layer);
     PlyLayer plan = plan_layer(layer);
-    if (has_role_before(of_vertex, layer)) {  // a second set of texture coordinates or colours
+    const bool is_second = has_role_before(of_vertex, layer);
+    if (is_second) {  // a second set of texture coordinates or colours
       for (std::size_t k = 0; k < plan.properties.size(); ++k) {
         plan.properties[k] = numbered(word_of(layer.name), k);
       }
       plan.as_bytes = false;
     }
+    make_unique(plan, layer.role != AttributeRole::Other && !is_second, taken);
     if (!is_face) splitting.push_back(&layer);
     (is_face ? of_face : of_vertex).push_back(std::move(plan));
   }

@@ -97,6 +97,24 @@ TEST_CASE("unknown properties are kept: linear per vertex, categorical per face 
   CHECK(layer_named(mesh, "wear")->interpolation == Interpolation::Linear);
 }
 
+TEST_CASE("properties that share a name stay apart, read and written") {
+  // The first x is the place; the faces have an x and an nx of their own, which are neither.
+  const std::string faces =
+      "property float x\nproperty float nx\nproperty int heat\nproperty int heat\n";
+  const std::string rows = "0 0 0 7\n1 0 0 8\n0 1 0 9\n3 0 1 2 5 6 3 4\n";
+  const Mesh mesh = import_text(header("property float x\n", faces) + rows, "a.ply").mesh;
+  REQUIRE(mesh.triangle_count() == 1);
+  CHECK(mesh.positions[1][0] == 1);
+  const auto written = export_bytes(mesh, ".ply");
+  REQUIRE(written.ok());
+  const auto back = import_bytes(*written, "back.ply", {});
+  REQUIRE(back.ok());
+  CHECK(back->mesh.positions == mesh.positions);
+  std::vector<std::string> names;
+  for (const AttributeLayer& layer : back->mesh.layers) names.push_back(layer.name);
+  CHECK(names == std::vector<std::string>{"normal", "x_2", "x_3", "nx_2", "heat", "heat_2"});
+}
+
 TEST_CASE("texture coordinates under every usual name") {
   for (const char* names : {"s t", "u v", "texture_u texture_v", "texture_s texture_t"}) {
     CAPTURE(names);
