@@ -14,6 +14,7 @@
 //   category(t), derived(t), label(t), value(layer, t, c)    at the fine end
 #pragma once
 
+#include "codec/between_model.h"
 #include "codec/block_end.h"
 #include "codec/coded_numbers.h"
 #include "codec/direction_mixture.h"
@@ -28,8 +29,11 @@
 #include "crease/ids.h"
 
 #include <algorithm>
+#include "hierarchy/between.h"
+
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -153,7 +157,12 @@ class BlockCoder {
   Miss expected_miss(std::uint32_t v, const Surroundings& around) const;
   ChildRing child_ring(bool second, const Vec3i& s, const Vec3i& sibling);
   Vec3i code_position(std::uint32_t v, bool second, const Vec3i& position,
-                      const Surroundings& around, Leaving leaving, const Vec3i& sibling);
+                      const Surroundings& around, Leaving leaving, const ChildRing& ring);
+  void note_miss(std::uint32_t v, const PlaceMixture& mixture, const Step& place);
+  bool code_between(std::uint32_t t, std::uint32_t u, Vec3i& at_t, Vec3i& at_u,
+                    const Surroundings& around);
+  Vec3i code_other_end(std::uint32_t t, const Vec3i& at_t, const Vec3i& at_u,
+                       const Surroundings& around, const Between& between);
 
   // What triangles and corners have at the fine end.
   static constexpr std::size_t kBends = 4;
@@ -162,7 +171,7 @@ class BlockCoder {
     std::array<std::array<std::array<AdaptiveBit, kBends>, 2>, 4> same_as;
     std::array<SignedModel, 4> residual;
     std::array<std::array<AdaptiveBit, 2>, 2> is_kept;  // by whether the vertex stays, is new
-    DirectionModel direction, corner_direction;         // of whole vertices, of single corners
+    DirectionModel direction{false}, corner_direction{true};
   };
   struct Directions {  // at a layer of directions, per vertex; zero where there is none
     std::vector<Vec3d> geometric, stored;
@@ -259,9 +268,12 @@ class BlockCoder {
     MixingWeights<3> weights;
   };
   std::array<StaysModels, 3> stays_;  // the first child; the second by whether the first does
-  std::array<PlaceModel, 3> place_models_{PlaceModel(Leaving::One),
-                                          PlaceModel(Leaving::SecondOfBoth),
-                                          PlaceModel(Leaving::FirstOfBoth)};
+  std::array<PlaceModel, 5> place_models_{
+      PlaceModel(Leaving::One), PlaceModel(Leaving::SecondOfBoth), PlaceModel(Leaving::FirstOfBoth),
+      PlaceModel(Leaving::SecondBetween), PlaceModel(Leaving::FirstBetween)};
+  AdaptiveBit is_between_{0.75, 10};
+  EighthsModel eighths_;
+  StepAxisModel step_axes_;
   std::array<AdaptiveBit, 2> same_part_;
   std::array<std::array<AdaptiveBit, 4>, 8> same_material_;
   TreeModel<6> other_material_;
@@ -275,5 +287,6 @@ class BlockCoder {
 }  // namespace crease::codec
 
 #include "codec/block_attributes.h"
+#include "codec/block_places.h"
 #include "codec/block_splits.h"
 #include "codec/block_values.h"

@@ -252,7 +252,7 @@ DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t
                                                                    const Vec3d& had,
                                                                    Sizes& sizes) const {
   const Vec3d& geometric = directions_.geometric[v];
-  Vec3d even{}, max{}, off{}, beside{};
+  Vec3d even{}, angles{}, off{}, beside{};
   double known = 0, spread = 0, count = 0;
   const std::size_t triangles = std::min(around_[v].size(), kLargestRing);
   for (const std::uint32_t t : around_[v].first(triangles)) {
@@ -267,7 +267,7 @@ DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t
     const double lengths = dot(sa, sa) * dot(sb, sb);
     if (lengths > 0) {
       even += n * (1 / std::sqrt(lengths));
-      max += n * (1 / lengths);
+      angles += normalized(n) * rough_angle(length(n), dot(sa, sb));
     }
     count += 1;
     spread += dot(directions_.geometric[a], geometric);
@@ -289,7 +289,7 @@ DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t
                    : geometric + had - coarse_normals_[origin],
                known > 0 ? geometric + mean_off : Vec3d{},
                normalized(beside),
-               normalized(max),
+               normalized(angles),
                had == Vec3d{} ? Vec3d{} : had + geometric};
   sizes = {rough_log2(length(mean_off) + 0.002),
            rough_log2(std::sqrt(std::max(0.0, 1 - (count > 0 ? spread / count : 1))) + 0.002),

@@ -59,7 +59,8 @@ OctahedralCode code_direction(Coder& coder, const OctahedralCoding& coding,
 
 class DirectionModel {
  public:
-  DirectionModel();
+  // Of single corners, or of whole vertices.
+  explicit DirectionModel(bool of_corners);
 
   // The first candidate is where residuals start.
   DirectionMixture mixture(const OctahedralCoding& coding, const DirectionCandidates& candidates,

@@ -213,4 +213,34 @@ std::array<std::int32_t, 3> code_place(Coder& coder, PlaceMixture& mixture,
   return result;
 }
 
+// Where along `axis` (of the mixture's three) a child is whose other two coordinates are known, as
+// a number of steps: `offset` + `per_unit` * coordinate, rounded. Leaves in `mixture` what
+// code_place() does, as far as that can be told.
+template <class Coder>
+std::int32_t code_steps(Coder& coder, PlaceMixture& mixture, std::size_t axis,
+                        const std::array<std::int32_t, 3>& place, double offset, double per_unit,
+                        std::int32_t steps) {
+  constexpr double kLeast = 0.2, kLeastOfAxis = 0.1;
+  const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
+  const auto& n = mixture.direction;
+  double along = n[axis];
+  if (std::abs(along) < kLeastOfAxis) along = along < 0 ? -kLeastOfAxis : kLeastOfAxis;
+  const double plane = -(n[i] * place[i] + n[j] * place[j]) / along;
+  AxisMixture of;
+  of.weight = mixture.weight;
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double center = plane + mixture.center[2][k] * n[2] / along;
+    of.center[k] = offset + per_unit * center;
+    of.inverse_scale[k] = 1 / (std::abs(per_unit) * mixture.normal[k] / std::abs(along) + kLeast);
+  }
+  steps = code_axis(coder, of, rounded(of.center[0]), 1 / of.inverse_scale[0], steps);
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double z = (steps - of.center[k]) * of.inverse_scale[k];
+    mixture.tangent_excess[k] = 0;
+    mixture.normal_excess[k] = excess(z * z) * (1 - kLeast * of.inverse_scale[k]);
+  }
+  mixture.weight = of.weight;
+  return steps;
+}
+
 }  // namespace crease::codec

@@ -19,6 +19,8 @@ constexpr Weights kWeights[] = {
     {0.785, -0.109, -0.253, 0, -0.488, 0.123, 0.045, 0},  // by Leaving
     {0.400, -0.146, -0.045, 0, -0.124, 0.234, -0.206, 0},
     {0.339, -0.111, -0.026, -0.150, -0.094, 0.337, -0.303, -0.170},
+    {0.649, -0.545, -0.027, 0, -0.050, 0.675, -0.470, 0},  // for the whole way between the two
+    {0.339, -0.111, -0.026, -0.150, -0.094, 0.337, -0.303, -0.170},
 };
 
 // What a block starts from, learned over scans, CAD and city models: how likely components are, by
@@ -61,6 +63,26 @@ constexpr Start kStart[] = {
      {-1.480, 0.022, -2.505, -1.659, -1.974, -1.694, -1.505, -3.905},
      {{{0.380, 0.073, 0.346, 0.098}, {0.090, 0.119, 0.758, -0.174}}},
      {{{-0.335, 0.759, -0.373, 0.913}, {-0.202, 0.332, 0.144, 0.582}}}},
+    {{{{0.600, 0.169, 0.004, 0.001, 0.001, 0.005, 0.005, 0.225},
+       {0.778, 0.084, 0.058, 0.001, 0.001, 0.001, 0.002, 0.077},
+       {0.900, 0.034, 0.015, 0.001, 0.001, 0.001, 0.001, 0.050},
+       {0.895, 0.012, 0.054, 0.001, 0.001, 0.001, 0.001, 0.039},
+       {0.856, 0.050, 0.007, 0.001, 0.001, 0.001, 0.001, 0.088},
+       {0.611, 0.084, 0.008, 0.001, 0.001, 0.001, 0.001, 0.298}}},
+     {-1.189, -0.681, -3.822, -1.903, -2.256, -2.647, -2.259, -2.468},
+     {-1.552, -0.022, -2.562, -1.663, -1.650, -1.567, -1.565, -3.406},
+     {{{0.329, 0.073, 0.375, 0.112}, {0.145, 0.081, 0.746, -0.208}}},
+     {{{-0.295, 0.669, -0.275, 0.845}, {-0.158, 0.306, 0.192, 0.454}}}},
+    {{{{0.208, 0.471, 0.004, 0.001, 0.001, 0.006, 0.004, 0.313},
+       {0.586, 0.207, 0.058, 0.001, 0.001, 0.002, 0.001, 0.146},
+       {0.813, 0.095, 0.011, 0.001, 0.001, 0.001, 0.001, 0.079},
+       {0.879, 0.026, 0.016, 0.001, 0.001, 0.001, 0.001, 0.079},
+       {0.777, 0.042, 0.003, 0.001, 0.001, 0.001, 0.001, 0.178},
+       {0.537, 0.051, 0.003, 0.001, 0.001, 0.001, 0.001, 0.410}}},
+     {-1.111, -0.577, -3.939, -2.098, -1.841, -1.997, -2.808, -2.437},
+     {-1.480, 0.022, -2.505, -1.659, -1.974, -1.694, -1.505, -3.905},
+     {{{0.380, 0.073, 0.346, 0.098}, {0.090, 0.119, 0.758, -0.174}}},
+     {{{-0.335, 0.759, -0.373, 0.913}, {-0.202, 0.332, 0.144, 0.582}}}},
 };
 
 }  // namespace
@@ -88,8 +110,17 @@ PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::s
   const double along = w.normal_own * dot(own, n) + w.normal_other * dot(other, n) +
                        w.normal_thirds * dot(around.thirds, n) +
                        w.normal_sibling * dot(ring.sibling, n);
-  const Vec3d mean = own * w.own + other * w.other + around.thirds * w.thirds +
-                     ring.sibling * w.sibling + n * along;
+  Vec3d mean = own * w.own + other * w.other + around.thirds * w.thirds + ring.sibling * w.sibling +
+               n * along;
+  Vec3d sibling = ring.sibling, second_guess = own * 0.6;
+  const double away = 1 - ring.share;  // of the way between the two: to this one
+  if (leaving_ == Leaving::SecondBetween) {
+    mean = mean * away;
+    sibling = mean * (-ring.share / away);
+    second_guess = own * (1.2 * away);
+  } else if (leaving_ == Leaving::FirstOfBoth || leaving_ == Leaving::FirstBetween) {
+    second_guess = ring.sibling * (-away / ring.share);
+  }
 
   PlaceMixture result;
   result.weight = weights_[triangles_class(triangles)].of;
@@ -101,16 +132,16 @@ PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::s
     result.center[2][k] = place[axis[2]] - rise(result.direction, place[axis[0]], place[axis[1]]);
   };
   expect(0, mean);
-  expect(1, leaving_ == Leaving::FirstOfBoth ? ring.sibling * -1.0 : own * 0.6);
+  expect(1, second_guess);
   expect(7, {});
   const std::size_t arc = ring.arc.size(), all = arc + 1;
   if (arc > 0) {
     // Round the ring from the sibling on: halfway between vertices that are opposite, and
     // parallelograms over the triangles at the sibling.
-    const auto at = [&](std::size_t i) { return i == 0 ? ring.sibling : ring.arc[i - 1]; };
+    const auto at = [&](std::size_t i) { return i == 0 ? sibling : ring.arc[i - 1]; };
     expect(2, (at(0) + at(all / 2)) * 0.5);
-    expect(3, ring.arc[arc - 1] + ring.sibling - ring.beyond[1]);
-    expect(4, ring.arc[0] + ring.sibling - ring.beyond[0]);
+    expect(3, ring.arc[arc - 1] + sibling - ring.beyond[1]);
+    expect(4, ring.arc[0] + sibling - ring.beyond[0]);
     expect(5, (at(1) + at((1 + all / 2) % all)) * 0.5);
     expect(6, (at(all - 1) + at(all - 1 - all / 2)) * 0.5);
   } else {
@@ -119,6 +150,12 @@ PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::s
 
   result.tangent = tangent_.at(sizes);
   result.normal = normal_.at(sizes);
+  if (leaving_ == Leaving::SecondBetween) {
+    for (std::size_t k = 0; k < kComponents; ++k) {
+      result.tangent[k] *= 2 * away;
+      result.normal[k] *= 2 * away;
+    }
+  }
   return result;
 }
 

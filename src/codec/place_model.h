@@ -24,13 +24,14 @@ namespace crease::codec {
 
 // Whose place is coded: a child whose sibling stays where the parent was; of two that leave the
 // second, which comes first; then the first.
-enum class Leaving : std::uint8_t { One, SecondOfBoth, FirstOfBoth };
+enum class Leaving : std::uint8_t { One, SecondOfBoth, FirstOfBoth, SecondBetween, FirstBetween };
 
 // A child's neighbours, where they are one closed fan, from the parent's place.
 struct ChildRing {
   std::span<const Vec3d> arc;     // without the sibling, in order; empty: they are no such fan
   std::array<Vec3d, 2> beyond{};  // what precedes and follows them at the sibling
   Vec3d sibling{};                // or zero where its place is not known
+  double share = 0.5;  // of the way between the two from the sibling to the parent, if it is known
 };
 
 // Of what the neighbours' misses, the edges and the bend lead to expect.

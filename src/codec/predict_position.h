@@ -18,6 +18,9 @@ inline std::int32_t wrapped_difference(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
 }
 
+// From a parent along the axes of its surroundings.
+using Step = std::array<std::int32_t, 3>;
+
 // How far from where its neighbours had it a vertex was found, in its tangent plane and along the
 // normal; below zero: it was not looked for.
 struct Miss {
@@ -34,6 +37,21 @@ struct Surroundings {
   double bend = 0;                   // how far that leads from one child's plane to the other's
   std::array<int, 3> axis{0, 1, 2};  // the last one nearest to the normal
 };
+
+inline Step from_parent(const Surroundings& around, const Vec3i& place) {
+  Step step;
+  for (std::size_t i = 0; i < 3; ++i) {
+    step[i] = wrapped_difference(place[around.axis[i]], around.parent[around.axis[i]]);
+  }
+  return step;
+}
+inline Vec3i beside_parent(const Surroundings& around, const Step& step) {
+  Vec3i place;
+  for (std::size_t i = 0; i < 3; ++i) {
+    place[around.axis[i]] = wrapped_sum(around.parent[around.axis[i]], step[i]);
+  }
+  return place;
+}
 
 // Of the children t and u; neither place is read.
 Surroundings surroundings(const PatchMesh& mesh, std::span<const std::uint32_t> around_t,

@@ -24,6 +24,10 @@ inline std::int32_t sum_of(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
 }
 
+inline std::int32_t less(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
+}
+
 struct Vector {
   double x = 0, y = 0, z = 0;
 
@@ -80,6 +84,16 @@ inline double power_of_2(double x) {
   const double cut = std::clamp(x, -60.0, 60.0) + 64;
   const double w = std::floor(cut), t = cut - w;
   return std::ldexp(1.0, static_cast<int>(w) - 64) * (1 + t - 0.34 * t * (1 - t));
+}
+
+inline double angle_of(double y, double x) {
+  const double m = std::max(y, std::abs(x));
+  if (!(m > 0)) return 0;
+  const double t = std::min(y, std::abs(x)) / m, s = t * t;
+  const double inner = 0.180141 + s * (-0.085133 + s * 0.0208351);
+  double result = t * (0.999866 + s * (-0.3302995 + s * inner));
+  if (y > std::abs(x)) result = 1.5707963267948966 - result;
+  return x < 0 ? 3.141592653589793 - result : result;
 }
 
 }  // namespace plain

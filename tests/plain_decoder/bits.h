@@ -31,6 +31,10 @@ class RangeDecoder {
 
 class AdaptiveBit {
  public:
+  AdaptiveBit() = default;
+  // "Starts at q as after m".
+  AdaptiveBit(double q, int m) : p_(static_cast<std::int32_t>(48 + q * 65'439)), n_(m) {}
+
   bool read(RangeDecoder& in);
   std::int32_t p() const { return p_; }
   void learn(bool bit);

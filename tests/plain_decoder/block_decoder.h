@@ -1,6 +1,7 @@
 // What the parts of a payload share: the mesh so far.
 #pragma once
 
+#include "plain_decoder/between.h"
 #include "plain_decoder/block.h"
 #include "plain_decoder/pair_odds.h"
 #include "plain_decoder/places.h"

@@ -1,12 +1,10 @@
 #include "plain_decoder/directions.h"
 
-#include "plain_decoder/tables.h"
-
 namespace plain {
 
-DirectionModel::DirectionModel() {
-  weights_.of = kDirectionWeights;
-  scales_.slope = kDirectionSlopes;
+DirectionModel::DirectionModel(const DirectionStart& start) {
+  weights_.of = start.weights;
+  scales_ = {start.logarithms, start.slopes};
 }
 
 Code DirectionModel::read(RangeDecoder& in, const Octahedral& coding, const Candidates& candidates,
@@ -88,7 +86,7 @@ Code DirectionReader::read_of_vertex(std::uint32_t v, const std::optional<Code>&
     const double l = dot(p, p) * dot(q, q);
     if (l > 0) {
       E = E + n * (1 / std::sqrt(l));
-      F = F + n * (1 / l);
+      F = F + unit(n) * angle_of(length(n), dot(p, q));
     }
     triangles += 1;
     spread += dot(geometric_[a], g);

@@ -3,6 +3,7 @@
 
 #include "plain_decoder/block_decoder.h"
 #include "plain_decoder/mixture.h"
+#include "plain_decoder/tables.h"
 
 #include <optional>
 #include <vector>
@@ -13,7 +14,7 @@ using Candidates = std::array<Vector, kComponents>;
 
 class DirectionModel {
  public:
-  DirectionModel();
+  explicit DirectionModel(const DirectionStart& start);
   Code read(RangeDecoder& in, const Octahedral& coding, const Candidates& candidates,
             const Sizes& sizes);
 
@@ -55,7 +56,7 @@ class DirectionReader {
   const std::vector<Code>& codes_;
   const std::vector<bool>& is_known_;
   std::vector<Vector> geometric_, stored_;  // per vertex
-  DirectionModel of_vertex_, of_corner_;
+  DirectionModel of_vertex_{kOfVertices}, of_corner_{kOfCorners};
 };
 
 // The sum of twice the areas of each vertex' triangles, by number, of unit length.

@@ -84,9 +84,17 @@ std::array<std::optional<Vector>, kComponents> expected_places(const Surrounding
                    k[6] * dot(around.thirds, normal) + k[7] * dot(sibling, normal);
   std::array<std::optional<Vector>, kComponents> places;
   places[0] = own * k[0] + other * k[1] + around.thirds * k[2] + sibling * k[3] + normal * q;
-  places[1] = child.who == Who::FirstOfBoth ? sibling * -1 : own * 0.6;
-  if (!child.ring.empty()) {
-    const std::vector<Vector>& r = child.ring;
+  const double rest = 1 - child.share;
+  places[1] = own * 0.6;
+  if (child.who == Who::FirstOfBoth) places[1] = sibling * -1;
+  if (child.who == Who::FirstBetween) places[1] = sibling * (-rest / child.share);
+  std::vector<Vector> r = child.ring;
+  if (child.who == Who::SecondBetween) {
+    places[0] = *places[0] * rest;
+    places[1] = own * (1.2 * rest);
+    if (!r.empty()) r[0] = *places[0] * (-child.share / rest);
+  }
+  if (!r.empty()) {
     const std::size_t c = r.size(), h = c / 2;
     places[2] = (r[0] + r[h]) * 0.5;
     places[3] = r[c - 1] + r[0] - child.after;
@@ -107,83 +115,134 @@ PlaceModel::PlaceModel(Who who) {
   normal_ = {start.normal, start.normal_slopes};
 }
 
-// Positions: coding.
-std::array<std::int32_t, 3> PlaceModel::read(RangeDecoder& in, const Surroundings& around,
-                                             const Child& child, const Sizes& sizes, Miss& miss) {
-  ComponentWeights& weights = weights_[std::clamp<std::size_t>(child.triangles, 3, 8) - 3];
+std::size_t PlaceModel::weights_of(const Child& child) {
+  return std::clamp<std::size_t>(child.triangles, 3, 8) - 3;
+}
+
+PlaceModel::Expected PlaceModel::expect(const Surroundings& around, const Child& child,
+                                        const Sizes& sizes) const {
   const std::array<std::size_t, 3>& axis = around.axis;
-  Direction D{0, 0, 1};
+  Expected result;
   if (around.normal.along(axis[2]) != 0) {
-    D = {around.normal.along(axis[0]), around.normal.along(axis[1]), around.normal.along(axis[2])};
+    for (std::size_t i = 0; i < 3; ++i) result.D[i] = around.normal.along(axis[i]);
   }
-  Axis now;
-  now.weight = weights.of;
-  std::array<PerComponent, 3> centre{};
+  result.weight = weights_[weights_of(child)].of;
   const auto places = expected_places(around, child);
   for (std::size_t k = 0; k < kComponents; ++k) {
     if (!places[k]) {
-      now.weight[k] = 0;
+      result.weight[k] = 0;
       continue;
     }
     const double x = places[k]->along(axis[0]), y = places[k]->along(axis[1]);
-    centre[0][k] = x;
-    centre[1][k] = y;
-    centre[2][k] = places[k]->along(axis[2]) - rise(D, x, y);
+    result.centre[0][k] = x;
+    result.centre[1][k] = y;
+    result.centre[2][k] = places[k]->along(axis[2]) - rise(result.D, x, y);
   }
-  const PerComponent T = tangent_.at(sizes), N = normal_.at(sizes);
-  PerComponent tangent_excess{}, normal_excess{};
+  result.T = tangent_.at(sizes);
+  result.N = normal_.at(sizes);
+  if (child.who == Who::SecondBetween) {
+    for (PerComponent* scales : {&result.T, &result.N}) {
+      for (double& scale : *scales) scale *= 2 * (1 - child.share);
+    }
+  }
+  return result;
+}
+
+void PlaceModel::learn(const Child& child, const Expected& expected, const Sizes& sizes) {
+  PerComponent shares = expected.weight;
+  if (!make_shares(shares)) return;
+  weights_[weights_of(child)].learn(shares);
+  mean_.learn(sizes);
+  tangent_.learn(shares, expected.tangent_excess, sizes, mean_.of);
+  normal_.learn(shares, expected.normal_excess, sizes, mean_.of);
+}
+
+Miss PlaceModel::miss_of(const Expected& expected, const Along& place) {
+  const float x = static_cast<float>(std::abs(place[0] - expected.centre[0][0]));
+  const float y = static_cast<float>(std::abs(place[1] - expected.centre[1][0]));
+  const double above = place[2] - rise(expected.D, place[0], place[1]);
+  return {std::max(x, y), static_cast<float>(std::abs(above - expected.centre[2][0]))};
+}
+
+// Positions: coding.
+Along PlaceModel::read(RangeDecoder& in, const Surroundings& around, const Child& child,
+                       const Sizes& sizes, Miss& miss) {
+  Expected expected = expect(around, child, sizes);
+  const Direction& D = expected.D;
+  Axis now;
+  now.weight = expected.weight;
+  Along place{};
 
   // 1.
   const double across = std::sqrt(std::max(1 - D[0] * D[0], 0.0));
   PerComponent scale;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    scale[k] = T[k] * across + 0.2;
-    now.centre[k] = centre[0][k];
+    scale[k] = expected.T[k] * across + 0.2;
+    now.centre[k] = expected.centre[0][k];
     now.inverse_scale[k] = 1 / scale[k];
   }
-  const std::int32_t x = read_axis(in, now, round_of(now.centre[0]), scale[0]);
+  place[0] = read_axis(in, now, round_of(now.centre[0]), scale[0]);
 
   // 2.
   const double along = D[0] * D[1] / (across * across), rest = std::abs(D[2]) / across;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double off = x - now.centre[k], i = now.inverse_scale[k], z = off * i;
-    tangent_excess[k] = excess(z * z) * (1 - 0.2 * i);
-    scale[k] = T[k] * rest * std::sqrt(0.5 + 0.5 * z * z) + 0.2;
-    now.centre[k] = centre[1][k] - along * off;
+    const double off = place[0] - now.centre[k], i = now.inverse_scale[k], z = off * i;
+    expected.tangent_excess[k] = excess(z * z) * (1 - 0.2 * i);
+    scale[k] = expected.T[k] * rest * std::sqrt(0.5 + 0.5 * z * z) + 0.2;
+    now.centre[k] = expected.centre[1][k] - along * off;
     now.inverse_scale[k] = 1 / scale[k];
   }
-  const std::int32_t y = read_axis(in, now, round_of(now.centre[0]), scale[0]);
+  place[1] = read_axis(in, now, round_of(now.centre[0]), scale[0]);
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double i = now.inverse_scale[k], z = (y - now.centre[k]) * i;
-    tangent_excess[k] += excess(z * z) * (1 - 0.2 * i);
+    const double i = now.inverse_scale[k], z = (place[1] - now.centre[k]) * i;
+    expected.tangent_excess[k] += excess(z * z) * (1 - 0.2 * i);
   }
 
   // 3.
   for (std::size_t k = 0; k < kComponents; ++k) {
-    scale[k] = N[k] / std::abs(D[2]) + 0.2;
-    now.centre[k] = centre[2][k];
+    scale[k] = expected.N[k] / std::abs(D[2]) + 0.2;
+    now.centre[k] = expected.centre[2][k];
     now.inverse_scale[k] = 1 / scale[k];
   }
-  const std::int32_t plane = round_of(rise(D, x, y));
+  const std::int32_t plane = round_of(rise(D, place[0], place[1]));
   const std::int32_t above = read_axis(in, now, round_of(now.centre[0]), scale[0]);
   for (std::size_t k = 0; k < kComponents; ++k) {
     const double i = now.inverse_scale[k], z = (above - now.centre[k]) * i;
-    normal_excess[k] = excess(z * z) * (1 - 0.2 * i);
+    expected.normal_excess[k] = excess(z * z) * (1 - 0.2 * i);
   }
-  const std::int32_t third = sum_of(above, plane);
+  place[2] = sum_of(above, plane);
 
-  PerComponent shares = now.weight;
-  if (make_shares(shares)) {
-    weights.learn(shares);
-    mean_.learn(sizes);
-    tangent_.learn(shares, tangent_excess, sizes, mean_.of);
-    normal_.learn(shares, normal_excess, sizes, mean_.of);
+  expected.weight = now.weight;
+  learn(child, expected, sizes);
+  miss = miss_of(expected, place);
+  return place;
+}
+
+// Positions: between.
+std::int32_t PlaceModel::read_count(RangeDecoder& in, Expected& expected, const Steps& steps,
+                                    const Along& place) {
+  const std::size_t i = (steps.axis + 1) % 3, j = (steps.axis + 2) % 3;
+  const Direction& D = expected.D;
+  double along = D[steps.axis];
+  if (std::abs(along) < 0.1) along = along < 0 ? -0.1 : 0.1;
+  const double plane = -(D[i] * place[i] + D[j] * place[j]) / along;
+  Axis now;
+  now.weight = expected.weight;
+  PerComponent scale;
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double above = plane + expected.centre[2][k] * D[2] / along;
+    now.centre[k] = steps.offset + steps.unit * above;
+    scale[k] = std::abs(steps.unit) * expected.N[k] / std::abs(along) + 0.2;
+    now.inverse_scale[k] = 1 / scale[k];
   }
-  const float miss_x = static_cast<float>(std::abs(x - centre[0][0]));
-  const float miss_y = static_cast<float>(std::abs(y - centre[1][0]));
-  miss = {std::max(miss_x, miss_y),
-          static_cast<float>(std::abs(third - rise(D, x, y) - centre[2][0]))};
-  return {x, y, third};
+  const std::int32_t count = read_axis(in, now, round_of(now.centre[0]), 1 / now.inverse_scale[0]);
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const double inverse = now.inverse_scale[k], z = (count - now.centre[k]) * inverse;
+    expected.tangent_excess[k] = 0;
+    expected.normal_excess[k] = excess(z * z) * (1 - 0.2 * inverse);
+  }
+  expected.weight = now.weight;
+  return count;
 }
 
 }  // namespace plain

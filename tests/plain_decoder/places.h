@@ -27,7 +27,13 @@ struct Miss {
 
 Sizes sizes_of_place(const Surroundings& around, const Miss& expected);
 
-enum class Who : std::size_t { One, SecondOfBoth, FirstOfBoth };  // moves
+enum class Who : std::size_t {  // moves
+  One,
+  SecondOfBoth,
+  FirstOfBoth,
+  SecondBetween,
+  FirstBetween
+};
 
 // A child, as the components see it; places are from where the parent stood.
 struct Child {
@@ -37,17 +43,53 @@ struct Child {
   Vector sibling;
   std::vector<Vector> ring;  // r_0, the sibling, r_1, ...; empty if no closed fan was split
   Vector before, after;
+  double share = 0;  // of a second or first between
+};
+
+// Along the three axes, from where the parent stood.
+using Along = std::array<std::int32_t, 3>;
+
+// The steps of a first between: which axis they go along, "unit" and "offset".
+struct Steps {
+  std::size_t axis = 2;
+  double unit = 0, offset = 0;
 };
 
 class PlaceModel {
  public:
   explicit PlaceModel(Who who);
 
-  // The place along the three axes, less where the parent stood. Sets the child's new miss.
-  std::array<std::int32_t, 3> read(RangeDecoder& in, const Surroundings& around, const Child& child,
-                                   const Sizes& sizes, Miss& miss);
+  // The child's place. Sets its new miss.
+  Along read(RangeDecoder& in, const Surroundings& around, const Child& child, const Sizes& sizes,
+             Miss& miss);
+  // Of a first between: how many steps, when `place` is known along the other two axes. `finish`
+  // makes it known along the third, given the steps.
+  template <class Finish>
+  Along read_steps(RangeDecoder& in, const Surroundings& around, const Child& child,
+                   const Sizes& sizes, const Steps& steps, Along place, Finish finish, Miss& miss) {
+    Expected expected = expect(around, child, sizes);
+    const std::int32_t count = read_count(in, expected, steps, place);
+    place[steps.axis] = finish(count);
+    learn(child, expected, sizes);
+    miss = miss_of(expected, place);
+    return place;
+  }
 
  private:
+  // What the components expect, and afterwards what they learn from.
+  struct Expected {
+    std::array<double, 3> D{0, 0, 1};  // the normal along the three axes
+    PerComponent weight{}, T{}, N{};
+    std::array<PerComponent, 3> centre{};
+    PerComponent tangent_excess{}, normal_excess{};
+  };
+  Expected expect(const Surroundings& around, const Child& child, const Sizes& sizes) const;
+  static std::int32_t read_count(RangeDecoder& in, Expected& expected, const Steps& steps,
+                                 const Along& place);
+  void learn(const Child& child, const Expected& expected, const Sizes& sizes);
+  static Miss miss_of(const Expected& expected, const Along& place);
+  static std::size_t weights_of(const Child& child);
+
   std::array<ComponentWeights, 6> weights_;  // of 3 to 8 triangles
   ComponentScales tangent_, normal_;
   MeanSizes mean_;

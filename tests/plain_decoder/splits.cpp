@@ -43,6 +43,8 @@ class SplitReader {
   Child child(bool second, Who who, std::uint32_t v, const Point& s, const Point& sibling,
               const Shape& shape) const;
   Point read_place(std::uint32_t v, const Point& s, const Surroundings& around, const Child& child);
+  void read_between(std::uint32_t v, std::uint32_t u, const Point& s, const Surroundings& around,
+                    const Shape& shape, Point& at_v, Point& at_u);
 
   RangeDecoder& in_;
   BlockState& block_;
@@ -64,8 +66,10 @@ class SplitReader {
     Weights weights;
   };
   std::array<StaysModels, 3> stays_;
-  std::array<PlaceModel, 3> places_{PlaceModel(Who::One), PlaceModel(Who::SecondOfBoth),
-                                    PlaceModel(Who::FirstOfBoth)};
+  BetweenModel between_;
+  std::array<PlaceModel, 5> places_{PlaceModel(Who::One), PlaceModel(Who::SecondOfBoth),
+                                    PlaceModel(Who::FirstOfBoth), PlaceModel(Who::SecondBetween),
+                                    PlaceModel(Who::FirstBetween)};
 };
 
 void SplitReader::read() {
@@ -239,13 +243,17 @@ void SplitReader::read_positions(std::uint32_t v, std::uint32_t u, const Point& 
   const bool second_stays = read_stays(first_stays ? 2 : 1, around, v, u);
   const bool both = !first_stays && !second_stays;
   Point at_v = s, at_u = s;
-  if (!second_stays) {
-    const Who who = both ? Who::SecondOfBoth : Who::One;
-    at_u = read_place(u, s, around, child(true, who, u, s, s, shape));
-  }
-  if (!first_stays) {
-    const Who who = both ? Who::FirstOfBoth : Who::One;
-    at_v = read_place(v, s, around, child(false, who, v, s, at_u, shape));
+  if (both && between_.read_is_between(in_)) {
+    read_between(v, u, s, around, shape, at_v, at_u);
+  } else {
+    if (!second_stays) {
+      const Who who = both ? Who::SecondOfBoth : Who::One;
+      at_u = read_place(u, s, around, child(true, who, u, s, s, shape));
+    }
+    if (!first_stays) {
+      const Who who = both ? Who::FirstOfBoth : Who::One;
+      at_v = read_place(v, s, around, child(false, who, v, s, at_u, shape));
+    }
   }
   surface_.places[v] = at_v;
   surface_.places[u] = at_u;
@@ -317,6 +325,41 @@ Point SplitReader::read_place(std::uint32_t v, const Point& s, const Surrounding
     place.along(around.axis[k]) = sum_of(s.along(around.axis[k]), steps[k]);
   }
   return place;
+}
+
+// Between.
+void SplitReader::read_between(std::uint32_t v, std::uint32_t u, const Point& s,
+                               const Surroundings& around, const Shape& shape, Point& at_v,
+                               Point& at_u) {
+  const Vector& n = around.normal;
+  const std::array<std::size_t, 3>& axis = around.axis;
+  const Between between = between_.read(in_, length(around.middle[0]), length(around.middle[1]),
+                                        {n.along(axis[0]), n.along(axis[1]), n.along(axis[2])});
+  const double eighths = double(between.eighths);
+  Child second = child(true, Who::SecondBetween, u, s, s, shape);
+  second.share = eighths / 8;
+  at_u = read_place(u, s, around, second);
+
+  Along b;
+  for (std::size_t k = 0; k < 3; ++k) b[k] = less(at_u.along(axis[k]), s.along(axis[k]));
+  const std::size_t i = (between.axis + 1) % 3, j = (between.axis + 2) % 3;
+  Along a{};
+  a[i] = read_other(in_, b[i], 0, between.eighths);
+  a[j] = read_other(in_, b[j], 0, between.eighths);
+  const std::int64_t step = step_of(std::int64_t(a[i]) - b[i], std::int64_t(a[j]) - b[j]);
+  const double eighths_of_step = 8 * double(step);
+  const Steps steps{between.axis, -(8 - eighths) / eighths_of_step,
+                    -(eighths * b[between.axis] + 0.5) / eighths_of_step};
+  Child first = child(false, Who::FirstBetween, v, s, at_u, shape);
+  first.share = (8 - eighths) / 8;
+  const auto finish = [&](std::int32_t count) {
+    return read_other(in_, b[between.axis], -std::int64_t(count) * step, between.eighths);
+  };
+  Miss miss;
+  const Sizes sizes = sizes_of_place(around, expected_miss(v, around));
+  a = places_[std::size_t(first.who)].read_steps(in_, around, first, sizes, steps, a, finish, miss);
+  block_.vertices[v].miss = miss;
+  for (std::size_t k = 0; k < 3; ++k) at_v.along(axis[k]) = sum_of(s.along(axis[k]), a[k]);
 }
 
 }  // namespace

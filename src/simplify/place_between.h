@@ -1,0 +1,17 @@
+// The best of the places between two ends that a file keeps for few bits: see hierarchy/between.h.
+#pragma once
+
+#include "crease/vec.h"
+#include "hierarchy/quadric.h"
+
+namespace crease::simplification {
+
+struct PlaceBetween {
+  Vec3d position;
+  double cost = 0;  // by `sum`
+};
+
+// Ends on the grid, at least one of its units apart. `pull`: see Quadric::minimum.
+PlaceBetween place_between(const Quadric& sum, const Vec3d& a, const Vec3d& b, double pull);
+
+}  // namespace crease::simplification
