@@ -253,10 +253,7 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
     return vertices_[v].flat_around && line_of_vertex_[v] != kNone;
   };
   const double share = is_corner(a) && is_corner(b) ? kLeavesPlanes : 1;
-  const PlaceBetween between = place_between(sum, pa, pb, steering_.pull);
-  if (between.cost < kLeavesEnds * share * best.cost - tie - grid_noise) {
-    best = {between.cost, between.position};
-  }
+  const double noise = tie + grid_noise;
   const Vec3d middle = (pa + pb) * 0.5;
   Vec3d x = sum.minimum(middle, steering_.pull);
   const Vec3d away = x - middle;
@@ -264,7 +261,12 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
   if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
   x = rounded(x);
   const double cost_x = sum.at(x);
-  if (cost_x < kLeavesPair * share * best.cost - tie - grid_noise) best = {cost_x, x};
+  const double most = kLeavesEnds * share * best.cost - noise;
+  if (cost_x < most) {  // or nothing is cheap enough
+    const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
+    if (between.cost < most) best = {between.cost, between.position};
+    if (cost_x < kLeavesPair * share * best.cost - noise) best = {cost_x, x};
+  }
   best.cost += tie;
   return best;
 }

@@ -11,7 +11,8 @@ struct PlaceBetween {
   double cost = 0;  // by `sum`
 };
 
-// Ends on the grid, at least one of its units apart. `pull`: see Quadric::minimum.
-PlaceBetween place_between(const Quadric& sum, const Vec3d& a, const Vec3d& b, double pull);
+// Ends on the grid. `cost_at_a`: sum.at(a). `pull`: see Quadric::minimum.
+PlaceBetween place_between(const Quadric& sum, const Vec3d& a, const Vec3d& b, double cost_at_a,
+                           double pull);
 
 }  // namespace crease::simplification
