@@ -3,7 +3,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/model.h"
-#include "cli/report.h"
+#include "cli/fields.h"
 #include "cli/text.h"
 
 #include <cstdio>

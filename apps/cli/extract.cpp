@@ -4,7 +4,7 @@
 #include "cli/level.h"
 #include "cli/lod_chain.h"
 #include "cli/model.h"
-#include "cli/report.h"
+#include "cli/fields.h"
 #include "cli/text.h"
 #include "cli/view.h"
 #include "crease/export.h"

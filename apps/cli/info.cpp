@@ -2,7 +2,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/model.h"
-#include "cli/report.h"
+#include "cli/fields.h"
 #include "cli/text.h"
 #include "crease/build_progressive_arrays.h"
 #include "crease/shading.h"

@@ -3,7 +3,7 @@
 #include "cli/console.h"
 #include "cli/glb.h"
 #include "cli/level.h"
-#include "cli/report.h"
+#include "cli/fields.h"
 #include "cli/text.h"
 #include "cli/write_file.h"
 #include "crease/export.h"

@@ -1,7 +1,7 @@
 #include "cli/model.h"
 
 #include "cli/console.h"
-#include "cli/report.h"
+#include "cli/fields.h"
 #include "cli/text.h"
 #include "crease/block_view.h"
 #include "crease/build_progressive_arrays.h"

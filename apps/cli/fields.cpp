@@ -1,4 +1,4 @@
-#include "cli/report.h"
+#include "cli/fields.h"
 
 #include "cli/text.h"
 
