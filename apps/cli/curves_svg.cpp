@@ -13,7 +13,7 @@ namespace {
 
 // Of the drawing, in units of its viewBox.
 constexpr double kWidth = 480, kHeight = 300;
-constexpr double kLeft = 64, kRight = 14, kTop = 12, kBottom = 46;
+constexpr double kLeft = 64, kRight = 34, kTop = 12, kBottom = 46;
 
 std::string svg_number(double value) {
   char text[32];

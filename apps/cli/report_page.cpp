@@ -177,7 +177,10 @@ Curve measured_curve(const char* name, int color, const ReportLevels& all, bool 
 Curve recorded_curve(const PageContent& page, bool by_bytes, const char* error) {
   Curve curve{"stored in the file", 2, true, {}};
   const Json& bands = page.facts["bands"];
+  const double coarsest = static_cast<double>(page.levels.levels.back().triangles);
   for (std::size_t b = 0; b < bands.size(); ++b) {
+    // The measured part alone, and little more.
+    if (b > 0 && bands[b]["triangles_after"].get<double>() < coarsest / 3) break;
     const double x = by_bytes ? static_cast<double>(page.levels.bytes_of_band[b])
                               : bands[b]["triangles_after"].get<double>();
     curve.points.emplace_back(x, bands[b]["error"][error].get<double>());
@@ -219,7 +222,7 @@ std::string streams_table(const Json& f) {
     const char* key;
     const char* holds;
   };
-  static constexpr Stream kStreams[] = {{"roots", "the base's vertices and triangles"},
+  static constexpr Stream kStreams[] = {{"roots", "vertices and triangles that no split makes"},
                                         {"flags", "which vertices are split"},
                                         {"shapes", "triangles that a split adds and moves"},
                                         {"positions", "positions"},
@@ -333,7 +336,8 @@ std::string report_page(const PageContent& page) {
               "stores. Bytes are those from the start of the file to the last that a level needs.",
               plots_html(page));
   html += "<p></p>\n" + levels_table(page.levels);
-  html += section("Where the bytes go", "", streams_table(page.facts));
+  html += section("Where the bytes go", "",
+                  "<div class=\"words\">" + streams_table(page.facts) + "</div>\n");
   html += section("Bands",
                   "From fine to coarse; what each adds to the next coarser one, and the errors "
                   "stored at its coarse end.",
