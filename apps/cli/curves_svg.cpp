@@ -34,7 +34,7 @@ class LogScale {
   double at(double value) const {
     return from_ + (to_ - from_) * (std::log10(value) - low_) / (high_ - low_);
   }
-  // Decades; where there are few, 2 and 5 between them; where there are many, not all.
+  // Decades; where there are few, 3, or 2 and 5, between them; where there are many, not all.
   std::vector<double> ticks() const {
     const int first = static_cast<int>(std::floor(low_));
     const int last = static_cast<int>(std::ceil(high_));
@@ -43,8 +43,10 @@ class LogScale {
     std::vector<double> found;
     for (int e = first; e <= last; ++e) {
       if (e % step != 0) continue;
-      for (const double digit : {1.0, 2.0, 5.0}) {
-        if (digit > 1 && decades > 2.5) continue;
+      for (const int digit : {1, 2, 3, 5}) {
+        const bool is_shown =
+            digit == 1 || (decades < 1.2 ? digit != 3 : decades < 2.6 && digit == 3);
+        if (!is_shown) continue;
         const double value = digit * std::pow(10.0, e);
         if (std::log10(value) >= low_ && std::log10(value) <= high_) found.push_back(value);
       }

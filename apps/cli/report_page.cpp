@@ -41,8 +41,14 @@ std::string printed(const char* pattern, double value) {
   return text;
 }
 
+// Digits in groups that stay on one line.
+std::string whole_number(std::uint64_t count) {
+  std::string text;
+  for (const char c : grouped(count)) text += c == ' ' ? "\u00A0" : std::string(1, c);
+  return text;
+}
 std::string cell_count(const Json& count) {
-  return grouped(count.get<std::uint64_t>());
+  return whole_number(count.get<std::uint64_t>());
 }
 
 std::string bits_as_bytes(double bits) {
@@ -81,7 +87,7 @@ std::string box_text(const Json& bounds) {
   std::string text;
   for (std::size_t i = 0; i < 3; ++i) {
     const double side = bounds["high"][i].get<double>() - bounds["low"][i].get<double>();
-    text += (i > 0 ? " × " : "") + in_length(side);
+    text += (i > 0 ? " ×\u00A0" : "") + in_length(side);
   }
   return text;
 }
@@ -117,8 +123,8 @@ std::string level_figure(const ReportLevel& level, double diagonal, const std::s
     html += "<img alt=\"" + escaped(model + ", " + level.name) + "\" src=\"data:image/png;base64," +
             base64(level.png) + "\"/>";
   }
-  html +=
-      "<figcaption><b>" + escaped(level.name) + "</b> · " + grouped(level.triangles) + " triangles";
+  html += "<figcaption><b>" + escaped(level.name) + "</b> · " + whole_number(level.triangles) +
+          " triangles";
   if (level.measured) {
     const double most = hausdorff(*level.measured);
     html += "<span>off by at most " + in_length(most) + " (" + of_diagonal(most, diagonal) +
@@ -136,11 +142,11 @@ std::string levels_table(const ReportLevels& all) {
                "95 % below", "file says", "stopped by"});
   for (const ReportLevel& level : all.levels) {
     std::vector<std::string> row = {level.name,
-                                    grouped(level.triangles),
-                                    grouped(level.vertices),
-                                    grouped(level.sn_triangles),
-                                    grouped(level.fn_triangles),
-                                    grouped(level.nsn_triangles),
+                                    whole_number(level.triangles),
+                                    whole_number(level.vertices),
+                                    whole_number(level.sn_triangles),
+                                    whole_number(level.fn_triangles),
+                                    whole_number(level.nsn_triangles),
                                     in_bytes(level.bytes_needed)};
     if (level.measured) {
       const Comparison& m = *level.measured;
