@@ -30,12 +30,12 @@ def camera(position, target, fov, viewport, pixels=1):
 # A picture: its model, its camera, and the options of `crease render` beside them.
 FIGURES = {
     # DB03 figure 1: with and without hard edges kept apart, the same triangles.
-    "buildings": ("city", camera([-105, -300, 78], [4, -70, 12], 40, [560, 460]),
-                  ("--ratio", 0.2, "--control", "--size", "1120x500")),
+    "buildings": ("city", camera([-105, -300, 78], [4, -70, 12], 40, [470, 360]),
+                  ("--ratio", 0.2, "--control", "--size", "940x390")),
     # DB03 figure 13: part of the city, a million triangles and two hundred thousand.
-    "levels": ("city", camera([-260, -330, 120], [10, 40, 0], 32, [560, 400]),
-               ("--levels", "1,0.2", "--size", "1120x440")),
-    "engine": ("engine", None, ("--ratio", 0.15, "--control", "--size", "1120x500")),
+    "levels": ("city", camera([-260, -330, 120], [10, 40, 0], 32, [450, 320]),
+               ("--levels", "1,0.2", "--size", "900x350")),
+    "engine": ("engine", None, ("--ratio", 0.15, "--control", "--size", "1120x400")),
     "outside": ("city", camera([-300, -420, 45], [60, 60, 10], 40, [1200, 750], 1.5),
                 ("--outside", "--size", "900x500")),
 }
