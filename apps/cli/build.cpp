@@ -2,8 +2,8 @@
 #include "crease/build.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/fields.h"
 #include "cli/model.h"
-#include "cli/report.h"
 #include "cli/text.h"
 
 #include <memory>

@@ -44,6 +44,7 @@ Command add_info(CLI::App& app, const Common& common);
 Command add_extract(CLI::App& app, const Common& common);
 Command add_compare(CLI::App& app, const Common& common);
 Command add_render(CLI::App& app, const Common& common);
+Command add_report(CLI::App& app, const Common& common);
 Command add_validate(CLI::App& app, const Common& common);
 Command add_generate(CLI::App& app, const Common& common);
 Command add_serve(CLI::App& app, const Common& common);

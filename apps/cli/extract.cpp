@@ -1,10 +1,10 @@
 // crease extract: levels of detail as meshes, with what they are off by.
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/fields.h"
 #include "cli/level.h"
 #include "cli/lod_chain.h"
 #include "cli/model.h"
-#include "cli/report.h"
 #include "cli/text.h"
 #include "cli/view.h"
 #include "crease/export.h"

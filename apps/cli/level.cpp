@@ -1,7 +1,7 @@
 #include "cli/level.h"
 
 #include "cli/console.h"
-#include "cli/report.h"
+#include "cli/fields.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "cli/lod_chain.h"
 
 #include "cli/console.h"
+#include "cli/fields.h"
 #include "cli/glb.h"
 #include "cli/level.h"
-#include "cli/report.h"
 #include "cli/text.h"
 #include "cli/write_file.h"
 #include "crease/export.h"

@@ -60,10 +60,11 @@ int run_main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
 
   Common common;
-  const std::vector<Command> commands = {
-      add_build(app, common),    add_info(app, common),   add_extract(app, common),
-      add_compare(app, common),  add_render(app, common), add_validate(app, common),
-      add_generate(app, common), add_serve(app, common),  add_view(app, common)};
+  const std::vector<Command> commands = {add_build(app, common),    add_info(app, common),
+                                         add_extract(app, common),  add_compare(app, common),
+                                         add_render(app, common),   add_report(app, common),
+                                         add_validate(app, common), add_generate(app, common),
+                                         add_serve(app, common),    add_view(app, common)};
   for (const Command& command : commands) add_common_options(*command.app, common);
 
   try {

@@ -1,7 +1,7 @@
 #include "cli/model.h"
 
 #include "cli/console.h"
-#include "cli/report.h"
+#include "cli/fields.h"
 #include "cli/text.h"
 #include "crease/block_view.h"
 #include "crease/build_progressive_arrays.h"
@@ -237,7 +237,9 @@ Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOption
   if (!built.ok()) return built.failure();
   Result<BlockFile> file = BlockFile::open(memory_source(built->file_bytes, path.string()));
   if (!file.ok()) return file.failure();
-  return ModelFile(*std::move(file), std::move(built->file_bytes), common);
+  ModelFile model(*std::move(file), std::move(built->file_bytes), common);
+  model.imported_ = std::move(imported->report);
+  return model;
 }
 
 Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& options,

@@ -65,6 +65,7 @@ class ModelFile {
   std::uint64_t bytes_to_open() const { return bytes_to_open_; }
   std::string name() const;                           // without folders or host
   bool was_built() const { return !built_.empty(); }  // FILE was a mesh, built on the fly
+  const std::optional<ImportReport>& imported() const { return imported_; }  // of such a mesh
 
  private:
   friend Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOptions& options,
@@ -72,6 +73,7 @@ class ModelFile {
   ModelFile(BlockFile blocks, std::vector<std::byte> built, const Common& common);
 
   std::vector<std::byte> built_;  // what blocks_ reads, or empty
+  std::optional<ImportReport> imported_;
   BlockFile blocks_;
   std::uint64_t bytes_to_open_;
   const Common* common_;

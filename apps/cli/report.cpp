@@ -1,87 +1,144 @@
-#include "cli/report.h"
-
+// crease report: a page about a model, to send to somebody.
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/facts.h"
+#include "cli/fields.h"
+#include "cli/model.h"
+#include "cli/report_levels.h"
+#include "cli/report_page.h"
 #include "cli/text.h"
+#include "cli/view.h"
+#include "cli/write_file.h"
+#include "crease/build_progressive_arrays.h"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 
 namespace crease::cli {
 
-Json to_json(const LevelError& error) {
-  return {{"surface", error.surface},
-          {"line", error.line},
-          {"degrees", error.degrees},
-          {"texture", error.texture}};
+namespace {
+
+struct ReportArguments {
+  std::filesystem::path file, output;
+  std::string levels = "0.5,0.2,0.1,0.05,0.02,0.01";
+  std::string title, view, size, up = "z";
+  std::size_t samples = 50'000;
+  ReadOptions read;
+};
+
+Result<ReportLevelOptions> report_level_options(const ReportArguments& options) {
+  ReportLevelOptions level;
+  Result<std::vector<double>> ratios = parse_ratios(options.levels);
+  if (!ratios.ok()) return ratios.failure();
+  level.ratios = *std::move(ratios);
+  std::ranges::sort(level.ratios, std::greater());
+  level.samples = options.samples;
+  if (options.up == "y") level.up = {0, 1, 0};
+  if (!options.view.empty()) {
+    const Result<Camera> camera = read_camera(options.view);
+    if (!camera.ok()) return camera.failure();
+    level.view = *camera;
+  }
+  if (!options.size.empty()) {
+    const Result<std::pair<int, int>> size = parse_size(options.size);
+    if (!size.ok()) return size.failure();
+    level.width_px = size->first;
+    level.height_px = size->second;
+  }
+  return level;
 }
 
-Json to_json(const Comparison& c) {
-  const auto both = [](double a_to_b, double b_to_a) {
-    return Json{{"a_to_b", a_to_b}, {"b_to_a", b_to_a}};
-  };
-  const Spread& to = c.distance.a_to_b;
-  const Spread& from = c.distance.b_to_a;
-  const double diagonal = c.diagonal > 0 ? c.diagonal : 1;
-  return {{"distance",
-           {{"mean", both(to.mean, from.mean)},
-            {"rms", both(to.rms, from.rms)},
-            {"max", both(to.max, from.max)},
-            {"mean_relative", both(to.mean / diagonal, from.mean / diagonal)},
-            {"rms_relative", both(to.rms / diagonal, from.rms / diagonal)},
-            {"max_relative", both(to.max / diagonal, from.max / diagonal)}}},
-          {"normal_deviation",
-           {{"mean", c.normal_deviation.mean},
-            {"p95", c.normal_deviation.p95},
-            {"max", c.normal_deviation.max}}},
-          {"diagonal", c.diagonal},
-          {"samples", c.samples}};
+Json level_json(const ReportLevel& level) {
+  Json json = {{"name", level.name},
+               {"triangles", level.triangles},
+               {"vertices", level.vertices},
+               {"sn_triangles", level.sn_triangles},
+               {"fn_triangles", level.fn_triangles},
+               {"nsn_triangles", level.nsn_triangles},
+               {"stopped_by", name_of(level.stopped_by)},
+               {"bytes_needed", level.bytes_needed},
+               {"error", to_json(level.recorded)}};
+  if (level.measured) json["error_measured"] = measured_json(*level.measured);
+  json["picture"] = !level.png.empty();
+  return json;
 }
 
-Json to_json(const ImportReport& report) {
-  return {{"format", report.format},
-          {"normals", report.normals},
-          {"polygons", report.polygons},
-          {"degenerate_triangles", report.degenerate_triangles},
-          {"duplicate_triangles", report.duplicate_triangles},
-          {"zero_area_triangles", report.zero_area_triangles},
-          {"isolated_vertices", report.isolated_vertices},
-          {"welded_vertices", report.welded_vertices},
-          {"zero_normals", report.zero_normals},
-          {"bad_attribute_values", report.bad_attribute_values},
-          {"joined_normals", report.joined_normals},
-          {"notes", report.notes}};
+Result<Report> run_report(const ReportArguments& options, const Common& common) {
+  const Stopwatch watch;
+  const Result<ReportLevelOptions> asked = report_level_options(options);
+  if (!asked.ok()) return asked.failure();
+  const Result<ModelFile> file = open_model(options.file, options.read, common);
+  if (!file.ok()) return file.failure();
+  DecodeOptions decode = decode_options(common);
+  decode.count_bits = true;
+  const Result<DecodedModel> model = decode_model(file->blocks(), decode);
+  if (!model.ok()) return model.failure();
+  if (interrupted()) return interrupted_failure();
+  const ProgressiveArraysPtr arrays = build_progressive_arrays(model->mesh, model->sequence);
+
+  PageContent page;
+  page.title = options.title.empty() ? file->name() : options.title;
+  page.facts = file_facts(*file, *model, *arrays);
+  if (file->imported()) page.import_lines = lines_of(*file->imported());
+  log(common, "levels of " + file->name() + ", measured and drawn:");
+  Result<ReportLevels> levels = make_report_levels(*file, model->mesh, arrays, *asked, common);
+  if (!levels.ok()) return levels.failure();
+  page.levels = *std::move(levels);
+  if (!page.levels.no_pictures.empty()) {
+    log(common, "  no pictures: " + page.levels.no_pictures);
+  }
+  const std::string html = report_page(page);
+  const Status written = write_file(options.output, std::as_bytes(std::span<const char>(html)));
+  if (!written.ok()) return written.failure();
+
+  Report report;
+  Json all = Json::array();
+  for (const ReportLevel& level : page.levels.levels) all.push_back(level_json(level));
+  report.json = {{"output", options.output.string()},
+                 {"bytes", html.size()},
+                 {"levels", std::move(all)},
+                 {"bytes_read", file->blocks().source().bytes_read()},
+                 {"seconds", watch.seconds()}};
+  report.text = options.output.string() + ": " + in_bytes(html.size()) + ", " +
+                std::to_string(page.levels.levels.size()) + " levels, " +
+                in_seconds(watch.seconds());
+  return report;
 }
 
-Json measured_json(const Comparison& c) {
-  const Spread& to = c.distance.a_to_b;
-  const Spread& from = c.distance.b_to_a;
-  return {{"surface_mean", (to.mean + from.mean) / 2},
-          {"surface_rms", std::max(to.rms, from.rms)},
-          {"surface_max", hausdorff(c)},
-          {"degrees_mean", c.normal_deviation.mean},
-          {"degrees_p95", c.normal_deviation.p95},
-          {"degrees_max", c.normal_deviation.max},
-          {"samples", c.samples}};
-}
+}  // namespace
 
-std::string lines_of(const ImportReport& report) {
-  std::string lines = "  " + report.format + "; normals: " + report.normals;
-  const auto say = [&lines](std::size_t count, const char* what) {
-    if (count > 0) lines += "\n  " + grouped(count) + " " + what;
-  };
-  say(report.polygons, "polygons triangulated");
-  say(report.degenerate_triangles, "triangles with two equal corners dropped");
-  say(report.duplicate_triangles, "triangles repeat another's vertices: kept");
-  say(report.zero_area_triangles, "triangles without area: kept");
-  say(report.isolated_vertices, "isolated vertices dropped");
-  say(report.welded_vertices, "stored vertices welded to one at the same place");
-  say(report.zero_normals, "unusable normals replaced by the triangle's own");
-  say(report.bad_attribute_values, "attribute values that are not finite set to zero");
-  say(report.joined_normals, "normals joined with one that is almost the same");
-  for (const std::string& note : report.notes) lines += "\n  " + note;
-  return lines;
-}
-
-double hausdorff(const Comparison& c) {
-  return std::max(c.distance.a_to_b.max, c.distance.b_to_a.max);
+Command add_report(CLI::App& app, const Common& common) {
+  auto options = std::make_shared<ReportArguments>();
+  CLI::App* command = app.add_subcommand(
+      "report", "one page about a model, with pictures and curves, to send to somebody");
+  command->add_option("FILE", options->file, "a .crease, the URL of one, or a mesh file")
+      ->required();
+  command->add_option("-o,--output", options->output, "the page; it needs no other file")
+      ->required()
+      ->type_name("OUT.html");
+  command
+      ->add_option("--levels", options->levels,
+                   "shares of the triangles that are measured and shown beside the original")
+      ->type_name("R,...")
+      ->capture_default_str();
+  command
+      ->add_option("--samples", options->samples,
+                   "points on each surface that errors are measured at; 0 measures nothing")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--title", options->title, "of the page; default: the file's name");
+  command
+      ->add_option("--view", options->view,
+                   "camera of the pictures, as in render; default: all of the model")
+      ->type_name("CAM.json");
+  command->add_option("--up", options->up, "axis that points up when there is no --view")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "of a picture; default 640x480")->type_name("WxH");
+  add_build_options(*command, options->read);
+  command->footer("Example:\n  crease report house.crease -o house.html");
+  return {command, [options, &common] { return run_report(*options, common); }};
 }
 
 }  // namespace crease::cli

@@ -12,6 +12,7 @@
 #include "crease/result.h"
 #include "crease/vec.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -81,5 +82,7 @@ struct Image {
 // a list that cannot be meant. Threads: call from any; an OpenGL context that is current stays so.
 Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& options);
 Status write_png(const Image& image, const std::filesystem::path& path);
+// The bytes that write_png() writes. Fails with BadValue for an image without all its pixels.
+Result<std::vector<std::byte>> encode_png(const Image& image);
 
 }  // namespace crease

@@ -8,8 +8,8 @@ import struct
 
 import tool
 
-COMMANDS = ["build", "info", "extract", "compare", "render", "validate", "generate", "serve",
-            "view"]
+COMMANDS = ["build", "info", "extract", "compare", "render", "report", "validate", "generate",
+            "serve", "view"]
 
 
 def digest(path):

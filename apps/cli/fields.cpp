@@ -1,0 +1,87 @@
+#include "cli/fields.h"
+
+#include "cli/text.h"
+
+#include <algorithm>
+
+namespace crease::cli {
+
+Json to_json(const LevelError& error) {
+  return {{"surface", error.surface},
+          {"line", error.line},
+          {"degrees", error.degrees},
+          {"texture", error.texture}};
+}
+
+Json to_json(const Comparison& c) {
+  const auto both = [](double a_to_b, double b_to_a) {
+    return Json{{"a_to_b", a_to_b}, {"b_to_a", b_to_a}};
+  };
+  const Spread& to = c.distance.a_to_b;
+  const Spread& from = c.distance.b_to_a;
+  const double diagonal = c.diagonal > 0 ? c.diagonal : 1;
+  return {{"distance",
+           {{"mean", both(to.mean, from.mean)},
+            {"rms", both(to.rms, from.rms)},
+            {"max", both(to.max, from.max)},
+            {"mean_relative", both(to.mean / diagonal, from.mean / diagonal)},
+            {"rms_relative", both(to.rms / diagonal, from.rms / diagonal)},
+            {"max_relative", both(to.max / diagonal, from.max / diagonal)}}},
+          {"normal_deviation",
+           {{"mean", c.normal_deviation.mean},
+            {"p95", c.normal_deviation.p95},
+            {"max", c.normal_deviation.max}}},
+          {"diagonal", c.diagonal},
+          {"samples", c.samples}};
+}
+
+Json to_json(const ImportReport& report) {
+  return {{"format", report.format},
+          {"normals", report.normals},
+          {"polygons", report.polygons},
+          {"degenerate_triangles", report.degenerate_triangles},
+          {"duplicate_triangles", report.duplicate_triangles},
+          {"zero_area_triangles", report.zero_area_triangles},
+          {"isolated_vertices", report.isolated_vertices},
+          {"welded_vertices", report.welded_vertices},
+          {"zero_normals", report.zero_normals},
+          {"bad_attribute_values", report.bad_attribute_values},
+          {"joined_normals", report.joined_normals},
+          {"notes", report.notes}};
+}
+
+Json measured_json(const Comparison& c) {
+  const Spread& to = c.distance.a_to_b;
+  const Spread& from = c.distance.b_to_a;
+  return {{"surface_mean", (to.mean + from.mean) / 2},
+          {"surface_rms", std::max(to.rms, from.rms)},
+          {"surface_max", hausdorff(c)},
+          {"degrees_mean", c.normal_deviation.mean},
+          {"degrees_p95", c.normal_deviation.p95},
+          {"degrees_max", c.normal_deviation.max},
+          {"samples", c.samples}};
+}
+
+std::string lines_of(const ImportReport& report) {
+  std::string lines = "  " + report.format + "; normals: " + report.normals;
+  const auto say = [&lines](std::size_t count, const char* what) {
+    if (count > 0) lines += "\n  " + grouped(count) + " " + what;
+  };
+  say(report.polygons, "polygons triangulated");
+  say(report.degenerate_triangles, "triangles with two equal corners dropped");
+  say(report.duplicate_triangles, "triangles repeat another's vertices: kept");
+  say(report.zero_area_triangles, "triangles without area: kept");
+  say(report.isolated_vertices, "isolated vertices dropped");
+  say(report.welded_vertices, "stored vertices welded to one at the same place");
+  say(report.zero_normals, "unusable normals replaced by the triangle's own");
+  say(report.bad_attribute_values, "attribute values that are not finite set to zero");
+  say(report.joined_normals, "normals joined with one that is almost the same");
+  for (const std::string& note : report.notes) lines += "\n  " + note;
+  return lines;
+}
+
+double hausdorff(const Comparison& c) {
+  return std::max(c.distance.a_to_b.max, c.distance.b_to_a.max);
+}
+
+}  // namespace crease::cli

@@ -1,0 +1,124 @@
+#include "cli/report_levels.h"
+
+#include "cli/console.h"
+#include "cli/text.h"
+#include "crease/render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace crease::cli {
+
+namespace {
+
+// Blocks lie from coarse to fine, so a level needs all from the start to the last of its finest
+// band. One value a band, its coarse end, and a last one in front: full resolution.
+Result<std::vector<std::uint64_t>> bytes_by_band(const BlockFile& blocks) {
+  const std::size_t bands = blocks.facts().bands.size();
+  std::vector<std::uint64_t> ends(bands + 1, blocks.head().head_bytes);  // by band, the base last
+  for (std::uint32_t p = 0; p < blocks.page_count(); ++p) {
+    const Result<DirectoryPage> page = blocks.read_page(p);
+    if (!page.ok()) return page.failure();
+    for (const BlockEntry& entry : page->blocks) {
+      std::uint64_t& end = ends[entry.facts.band];
+      end = std::max(end, entry.offset + entry.bytes);
+    }
+  }
+  for (std::size_t b = bands; b-- > 0;) ends[b] = std::max(ends[b], ends[b + 1]);
+  return ends;
+}
+
+// Of the coarsest band whose fine end has as many triangles.
+std::size_t band_needed(const ModelFacts& facts, std::size_t triangles) {
+  std::size_t band = 0;
+  while (band < facts.bands.size() && facts.bands[band].triangles_after >= triangles) ++band;
+  return band;
+}
+
+std::pair<Vec3d, Vec3d> box_of(const Mesh& mesh) {
+  Vec3d low = mesh.positions.front(), high = low;
+  for (const Vec3d& p : mesh.positions) {
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  }
+  return {low, high};
+}
+
+Result<std::vector<std::byte>> draw_level(const ProgressiveMesh& mesh, const Camera& camera,
+                                          const ReportLevelOptions& options) {
+  RenderOptions render;
+  render.width_px = options.width_px;
+  render.height_px = options.height_px;
+  render.camera = camera;
+  render.up = options.up;
+  Panel panel;
+  panel.list = mesh.draw_list();
+  const Result<Image> image = render_panels(std::span(&panel, 1), render);
+  if (!image.ok()) return image.failure();
+  return encode_png(*image);
+}
+
+ReportLevel counts_of(const ProgressiveMesh& mesh) {
+  ReportLevel level;
+  const DrawList list = mesh.draw_list();
+  level.triangles = mesh.triangle_count();
+  level.vertices = mesh.vertex_count();
+  level.sn_triangles = list.sn.triangle_count();
+  level.fn_triangles = list.fn.triangle_count();
+  level.nsn_triangles = list.nsn.triangle_count();
+  level.recorded = mesh.error();
+  return level;
+}
+
+}  // namespace
+
+Result<ReportLevels> make_report_levels(const ModelFile& file, const Mesh& full,
+                                        const ProgressiveArraysPtr& arrays,
+                                        const ReportLevelOptions& options, const Common& common) {
+  const ModelFacts& facts = file.blocks().facts();
+  const Result<std::vector<std::uint64_t>> bytes = bytes_by_band(file.blocks());
+  if (!bytes.ok()) return bytes.failure();
+  const auto [low, high] = box_of(full);
+  const Camera camera =
+      options.view.value_or(fit_camera(low, high, options.width_px, options.height_px, options.up));
+
+  ReportLevels made;
+  made.bytes_of_band.assign(bytes->begin() + 1, bytes->end());
+  made.diagonal = length(high - low);
+  std::vector<double> ratios = options.ratios;
+  ratios.insert(ratios.begin(), 1.0);
+  ProgressiveMesh mesh(arrays);
+  for (const double ratio : ratios) {
+    const Result<Chosen> chosen = choose_level(mesh, full, {.ratio = ratio}, common);
+    if (!chosen.ok()) return chosen.failure();
+    if (!made.levels.empty() && made.levels.back().triangles == mesh.triangle_count()) continue;
+    ReportLevel level = counts_of(mesh);
+    level.name = !chosen->target_met                             ? "coarsest"
+                 : level.triangles == mesh.full_triangle_count() ? "original"
+                                                                 : in_percent(ratio);
+    level.stopped_by = chosen->stopped_by;
+    level.bytes_needed = (*bytes)[band_needed(facts, level.triangles)];
+    log(common, "  " + level.name + ": " + grouped(level.triangles) + " triangles");
+    if (mesh.applied() > 0 && options.samples > 0) {
+      level.measured = measure_level(mesh, full, options.samples, common);
+    }
+    if (made.no_pictures.empty()) {
+      Result<std::vector<std::byte>> png = draw_level(mesh, camera, options);
+      if (png.ok()) {
+        level.png = *std::move(png);
+      } else if (png.failure().error == Error::NotSupported) {
+        made.no_pictures = png.failure().message;
+      } else {
+        return png.failure();
+      }
+    }
+    made.levels.push_back(std::move(level));
+    if (interrupted()) return interrupted_failure();
+  }
+  return made;
+}
+
+}  // namespace crease::cli
