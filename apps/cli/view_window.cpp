@@ -18,7 +18,7 @@ namespace {
 struct ViewArguments {
   std::string source;
   std::string size, view, flight, mode = "block", coloring = "shaded", up = "z";
-  bool wireframe = false, outside = false, panels = false;
+  bool wireframe = false, creases = false, outside = false, panels = false;
   std::filesystem::path screenshot;
   std::optional<double> pixels, budget_mb;
   std::optional<std::size_t> triangles;
@@ -62,6 +62,7 @@ Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common&
   viewer.mode = mode_of(options.mode);
   viewer.coloring = coloring_named(options.coloring);
   viewer.wireframe = options.wireframe;
+  viewer.creases = options.creases;
   viewer.outside = options.outside;
   viewer.panels_on_screenshot = options.panels;
   if (options.up == "y") viewer.up = {0, 1, 0};
@@ -154,6 +155,8 @@ Command add_view(CLI::App& app, const Common& common) {
       ->type_name("BY")
       ->capture_default_str();
   command->add_flag("--wireframe", options->wireframe, "edges over the surface");
+  command->add_flag("--creases", options->creases,
+                    "lines at hard edges, and at borders in another tint");
   command
       ->add_option("--view", options->view,
                    "camera to begin with, as crease render has it; its viewport is the size. "

@@ -56,6 +56,7 @@ struct ViewerOptions {
   ViewMode mode = ViewMode::Blocks;
   ViewColoring coloring = ViewColoring::Shaded;
   bool wireframe = false;
+  bool creases = false;  // hard edges of what is shown as lines, and its borders in another tint
   bool outside = false;  // once the view is complete: frozen, and looked at from outside
   double pixels = 1;     // error allowed on the screen
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();

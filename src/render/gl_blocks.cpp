@@ -8,30 +8,6 @@ std::uint32_t key_of(BlockId id) {
   return static_cast<std::uint32_t>(index_of(id));
 }
 
-Vec3d corner_of(const Box& box, int i) {
-  return {(i & 1) ? box.high.x : box.low.x, (i & 2) ? box.high.y : box.low.y,
-          (i & 4) ? box.high.z : box.low.z};
-}
-
-// Whether the box lies beyond one of the four sides of the view, or behind the eye.
-bool is_beside(const View& view, const Box& box) {
-  int beyond[5] = {};
-  for (int i = 0; i < 8; ++i) {
-    const Vec3d to = corner_of(box, i) - view.eye;
-    const double depth = -dot(to, view.back);
-    const double x = dot(to, view.right), y = dot(to, view.above);
-    beyond[0] += x > view.tan_half_width * depth;
-    beyond[1] += -x > view.tan_half_width * depth;
-    beyond[2] += y > view.tan_half_height * depth;
-    beyond[3] += -y > view.tan_half_height * depth;
-    beyond[4] += depth < 0;
-  }
-  for (const int count : beyond) {
-    if (count == 8) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 const GlScene* GlBlocks::find(const ResidentBlock& block) const {

@@ -34,6 +34,7 @@ App::App(const ViewerOptions& options, ViewerWindow& window, GlCanvas canvas)
   settings_.mode = options.mode;
   settings_.coloring = options.coloring;
   settings_.wireframe = options.wireframe;
+  settings_.creases = options.creases;
   settings_.pixels = options.pixels;
   settings_.max_triangles = options.max_triangles;
   settings_.max_bytes = options.max_bytes;
@@ -293,6 +294,9 @@ void App::act(Action action) {
       break;
     case Action::Wireframe:
       settings_.wireframe = !settings_.wireframe;
+      break;
+    case Action::Creases:
+      settings_.creases = !settings_.creases;
       break;
     case Action::Freeze:
       freeze(!frozen_);

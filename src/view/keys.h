@@ -13,6 +13,7 @@ enum class Action {
   NextMode,
   NextColoring,
   Wireframe,
+  Creases,
   Freeze,
   Outside,
   Finer,

@@ -123,6 +123,8 @@ void settings_panel(const PanelContent& content, ViewSettings& settings,
   choice("cut", "##mode", settings.mode, kModeNames);
   choice("colours", "##coloring", settings.coloring, kColoringNames);
   ImGui::Checkbox("wireframe", &settings.wireframe);
+  ImGui::SameLine();
+  ImGui::Checkbox("creases", &settings.creases);
   pixels_slider(settings.pixels);
   degrees_slider(settings.degrees);
   budget_slider("triangles", "##triangles", settings.max_triangles, 1000, 10, 100'000,

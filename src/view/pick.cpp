@@ -108,10 +108,7 @@ std::optional<Hit> pick(const DrawList& list, const DrawRanges& ranges, const Ra
 }
 
 std::optional<Hit> pick(const DrawList& list, const Ray& ray) {
-  const auto all = [](const DrawPart& part) {
-    return Range{0, std::uint32_t(part.triangle_count())};
-  };
-  return pick(list, {all(list.sn), all(list.fn), all(list.nsn)}, ray);
+  return pick(list, all_of(list), ray);
 }
 
 std::optional<Hit> pick(std::span<const ShownRange> shown, const Grid& grid, const Ray& ray) {

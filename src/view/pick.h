@@ -4,7 +4,7 @@
 #include "crease/block_mesh.h"
 #include "crease/draw_list.h"
 #include "crease/shading.h"
-#include "render/gl_scene.h"
+#include "render/draw_ranges.h"
 #include "view/camera_moves.h"
 
 #include <array>

@@ -15,8 +15,9 @@ struct ViewSettings {
   ViewMode mode = ViewMode::Blocks;
   ViewColoring coloring = ViewColoring::Shaded;
   bool wireframe = false;
-  double pixels = 1;   // error on the screen
-  double degrees = 0;  // of shading; 0: any
+  bool creases = false;  // hard edges and borders as lines
+  double pixels = 1;     // error on the screen
+  double degrees = 0;    // of shading; 0: any
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
   std::size_t max_bytes = std::size_t(512) << 20;  // of resident blocks
 

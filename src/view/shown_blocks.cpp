@@ -40,10 +40,12 @@ FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camer
   FrameFacts facts;
   blocks_.drop(report.cut.dropped);
   facts.uploaded_bytes = blocks_.upload(mesh.shown());
+  creases_.drop(report.cut.dropped);
+  if (settings.creases) facts.uploaded_bytes += creases_.update(mesh.shown());
   facts.triangles = mesh.triangle_count();
   facts.error_pixels = std::min(std::max(1.0, double(mesh.view_error())) * settings.pixels,
                                 double(camera.height_px));
-  facts.gpu_bytes = blocks_.bytes();
+  facts.gpu_bytes = blocks_.bytes() + creases_.bytes();
   facts.resident_bytes = mesh.resident_bytes();
   facts.pending_bytes = streamer_.statistics().pending_bytes;
   facts.blocks = mesh.resident_count();
@@ -82,7 +84,12 @@ Result<DrawCount> ShownBlocks::draw(ProgramCache& programs, const DrawPass& pass
       };
       break;
   }
-  return blocks_.draw(programs, pass, style, streamer_.mesh().shown(), color_of_block);
+  const Result<DrawCount> count =
+      blocks_.draw(programs, pass, style, streamer_.mesh().shown(), color_of_block);
+  if (!count.ok() || !settings.creases) return count;
+  const Status drawn = creases_.draw(programs, pass, style);
+  if (!drawn.ok()) return drawn.failure();
+  return count;
 }
 
 std::optional<Hit> ShownBlocks::pick(const Ray& ray) const {

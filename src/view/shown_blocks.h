@@ -2,6 +2,7 @@
 #pragma once
 
 #include "crease/block_streamer.h"
+#include "render/gl_creases.h"
 #include "view/shown_mesh.h"
 
 namespace crease {
@@ -23,6 +24,7 @@ class ShownBlocks final : public ShownMesh {
  private:
   BlockStreamer streamer_;
   GlBlocks blocks_;
+  GlBlockCreases creases_;
 };
 
 }  // namespace crease

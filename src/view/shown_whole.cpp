@@ -4,6 +4,7 @@
 #include "crease/build_progressive_arrays.h"
 #include "crease/decode_model.h"
 #include "crease/threads.h"
+#include "view/whole_creases.h"
 
 #include <algorithm>
 #include <chrono>
@@ -63,9 +64,22 @@ class ShownWhole : public ShownMesh {
   Box box() const override { return box_; }
 
  protected:
+  // `list`: what is shown now.
+  void update_creases(const ViewSettings& settings, const DrawList& list, FrameFacts& facts) {
+    if (!settings.creases) return creases_.forget();
+    const std::size_t uploaded = creases_.update(list, facts.has_changed);
+    facts.uploaded_bytes += uploaded;
+    facts.has_changed |= uploaded > 0;
+    facts.gpu_bytes += creases_.bytes();
+    facts.is_complete &= !creases_.is_behind();
+  }
+
   Result<DrawCount> draw_scene(ProgramCache& programs, const DrawPass& pass,
                                const DrawStyle& style) const {
     if (const Status drawn = scene_.draw(programs, pass, style); !drawn.ok()) {
+      return drawn.failure();
+    }
+    if (const Status drawn = creases_.draw(programs, pass, style); !drawn.ok()) {
       return drawn.failure();
     }
     const DrawRanges all = scene_.all();
@@ -78,6 +92,7 @@ class ShownWhole : public ShownMesh {
 
  private:
   const Vec3d origin_;
+  WholeCreases creases_;
 };
 
 class ShownVertices final : public ShownWhole {
@@ -107,6 +122,7 @@ class ShownVertices final : public ShownWhole {
     facts.gpu_bytes = scene_.bytes();
     facts.resident_bytes = mesh_->active_bytes() + hierarchy_bytes_;
     facts.is_complete = report.complete;
+    update_creases(settings, mesh_->draw_list(), facts);
     return facts;
   }
 
@@ -172,6 +188,7 @@ class ShownLinear final : public ShownWhole {
     facts.error_pixels = in_pixels(mesh_->error(), camera, std::max(distance, 1e-9));
     facts.gpu_bytes = facts.resident_bytes = scene_.bytes();
     facts.is_complete = true;
+    update_creases(settings, mesh_->draw_list(), facts);
     return facts;
   }
 
