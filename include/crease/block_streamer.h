@@ -20,6 +20,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -34,6 +35,8 @@ struct StreamOptions {
   int prefetch_frames = 30;
   // Before a block that failed is asked for again; twice as long each further time, up to a minute.
   std::chrono::milliseconds first_pause{500};
+  // Asked ten times a second while open() waits; true ends it with Interrupted.
+  std::function<bool()> stopped{};
 };
 
 struct StreamReport {
@@ -55,7 +58,7 @@ class BlockStreamer {
  public:
   // Waits for the head and the schema, which mostly are in the first 64 KiB; of a host these are
   // one request, out of which the first picture comes as well. Nothing else may be asked of the
-  // source.
+  // source. `options.stopped` ends the wait.
   static Result<BlockStreamer> open(AsyncSourcePtr source, const StreamOptions& options = {});
   // Of a file whose head has been read. `source`: of the same bytes.
   static Result<BlockStreamer> open(const BlockFile& file, AsyncSourcePtr source,

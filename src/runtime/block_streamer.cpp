@@ -18,6 +18,7 @@ constexpr float kPagePriority = 1e9f;          // before any block
 constexpr std::size_t kDecodingPerThread = 8;  // so that none is idle between two frames
 constexpr int kUpdatesBetweenPrefetches = 8;
 constexpr std::chrono::milliseconds kLongestPause{60'000};
+constexpr std::chrono::milliseconds kGlance{100};  // how often open() asks whether to stop
 
 // On its way from the source to the mesh.
 struct Pending {
@@ -288,7 +289,8 @@ namespace {
 // An asynchronous source of which nothing else is asked, as one that waits.
 class WaitingSource : public ByteSource {
  public:
-  explicit WaitingSource(AsyncSourcePtr source) : source_(std::move(source)) {}
+  WaitingSource(AsyncSourcePtr source, std::function<bool()> stopped)
+      : source_(std::move(source)), stopped_(std::move(stopped)) {}
 
   std::string name() const override { return source_->name(); }
   std::uint64_t size() const override { return source_->size().value_or(0); }
@@ -299,7 +301,11 @@ class WaitingSource : public ByteSource {
   Status read_at(std::uint64_t offset, std::span<std::byte> into) const override {
     const Ticket ticket = source_->request({offset, into.size()});
     for (;;) {
-      source_->wait(std::chrono::milliseconds(1000));
+      source_->wait(kGlance);
+      if (stopped_ && stopped_()) {
+        source_->cancel(ticket);
+        return fail(Error::Interrupted, "interrupted");
+      }
       for (const AsyncAnswer& answer : source_->poll()) {
         if (answer.ticket != ticket) continue;
         if (!answer.bytes.ok()) return answer.bytes.failure();
@@ -309,13 +315,14 @@ class WaitingSource : public ByteSource {
     }
   }
 
-  AsyncSourcePtr source_;
+  const AsyncSourcePtr source_;
+  const std::function<bool()> stopped_;
 };
 
 }  // namespace
 
 Result<BlockStreamer> BlockStreamer::open(AsyncSourcePtr source, const StreamOptions& options) {
-  const auto waiting = std::make_shared<const WaitingSource>(source);
+  const auto waiting = std::make_shared<const WaitingSource>(source, options.stopped);
   if (Status status = waiting->begin(); !status.ok()) return status.failure();
   const Result<BlockFile> file = BlockFile::open(waiting);
   if (!file.ok()) return file.failure();
