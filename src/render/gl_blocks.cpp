@@ -15,17 +15,25 @@ const GlScene* GlBlocks::find(const ResidentBlock& block) const {
   return at == scenes_.end() ? nullptr : at->second.get();
 }
 
-std::size_t GlBlocks::upload(std::span<const ShownRange> shown) {
+std::size_t GlBlocks::upload(std::span<const ShownRange> shown, const GlBlocks* other) {
   std::size_t uploaded = 0;
   for (const ShownRange& range : shown) {
-    std::unique_ptr<GlScene>& scene = scenes_[key_of(range.block->id())];
+    std::shared_ptr<const GlScene>& scene = scenes_[key_of(range.block->id())];
     if (scene) continue;
+    if (other != nullptr) {
+      const auto there = other->scenes_.find(key_of(range.block->id()));
+      if (there != other->scenes_.end()) {
+        scene = there->second;
+        bytes_ += scene->bytes();
+        continue;
+      }
+    }
     const DrawList list = range.block->draw_list();
     if (!materials_) materials_ = upload_materials(list.materials);
-    scene = std::make_unique<GlScene>(list, std::span<const float>{}, materials_);
+    scene = std::make_shared<const GlScene>(list, std::span<const float>{}, materials_);
     uploaded += scene->bytes();
+    bytes_ += scene->bytes();
   }
-  bytes_ += uploaded;
   return uploaded;
 }
 

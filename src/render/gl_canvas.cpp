@@ -1,7 +1,5 @@
 #include "render/gl_canvas.h"
 
-#include "render/palette.h"
-
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -69,6 +67,19 @@ Status GlCanvas::begin(int width_px, int height_px) {
   }
   target_->begin(width_, height_);
   return Done{};
+}
+
+void GlCanvas::set_columns(int left, int width) {
+  glViewport(left, 0, width, height_);
+}
+
+void GlCanvas::fill_columns(int left, int width, const ColorSrgb& color) {
+  const Color linear = linear_from_srgb(color);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(left, 0, width, height_);
+  glClearColor(linear[0], linear[1], linear[2], 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 Status GlCanvas::compose(GLuint framebuffer) {

@@ -70,6 +70,7 @@ void App::take_event(const WindowEvent& event) {
       !input_.is_flying()) {
     return;
   }
+  if (!input_.is_flying() && take_divider(event)) return;
   const auto point_under = [this](double x, double y) -> std::optional<Vec3d> {
     const std::optional<Hit> hit = hit_at(x, y);
     if (!hit) return std::nullopt;
@@ -98,6 +99,7 @@ PanelContent App::panel_content() const {
   if (picked_) content.picked = picked_lines_;
   content.message = session_.message();
   content.notice = notice_;
+  if (side_count() > 1) content.halves = half_labels();
   content.switches = switches_;
   content.switches.is_flying = input_.is_flying();
   content.switches.is_frozen = frozen_.has_value();

@@ -19,6 +19,8 @@ constexpr KeyRow kRows[] = {
     {Action::Outside, GLFW_KEY_O, 0, "O", "freeze, and look from outside"},
     {Action::Finer, GLFW_KEY_LEFT_BRACKET, GLFW_KEY_MINUS, "[ or -", "half the error"},
     {Action::Coarser, GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_EQUAL, "] or =", "twice the error"},
+    {Action::NextSplit, GLFW_KEY_V, 0, "V", "one picture, beside the original, two settings"},
+    {Action::OtherHalf, GLFW_KEY_TAB, 0, "Tab", "keys and panels are for the other half"},
     {Action::Screenshot, GLFW_KEY_P, GLFW_KEY_F12, "P or F12", "picture into this folder"},
     {Action::Record, GLFW_KEY_R, 0, "R", "record a flight, and write it"},
     {Action::HidePanels, GLFW_KEY_H, 0, "H", "hide the panels"},
@@ -32,6 +34,7 @@ constexpr MouseRow kMouseRows[] = {
     {"wheel", "zoom to what is under the mouse"},
     {"click", "what is there"},
     {"double click", "orbit about what is there"},
+    {"drag the line between halves", "make one wider"},
     {"drop a file", "open it"},
 };
 

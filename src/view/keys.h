@@ -18,6 +18,8 @@ enum class Action {
   Outside,
   Finer,
   Coarser,
+  NextSplit,
+  OtherHalf,
   Screenshot,
   Record,
   HidePanels,

@@ -119,10 +119,4 @@ Result<OpenedModel> open_model(const std::string& source, const ViewerOptions& o
   return stream(std::move(model), options, limit, note);
 }
 
-Result<OpenedModel> stream_again(const ModelSource& model, const ViewerOptions& options,
-                                 const StreamLimit& limit, Note& note) {
-  note.say("opening once more");
-  return stream(model, options, limit, note);
-}
-
 }  // namespace crease

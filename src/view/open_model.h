@@ -36,10 +36,6 @@ using StreamLimit = std::shared_ptr<RateLimit>;
 Result<OpenedModel> open_model(const std::string& source, const ViewerOptions& options,
                                const StreamLimit& limit, Note& note);
 
-// A second stream of the same bytes.
-Result<OpenedModel> stream_again(const ModelSource& model, const ViewerOptions& options,
-                                 const StreamLimit& limit, Note& note);
-
 // The bytes once more, for loading all of them: reading fails with Interrupted once the note says
 // to stop, and tells it how much is read.
 Result<BlockFile> open_again(const ModelSource& model, Note& note);

@@ -244,20 +244,27 @@ Result<WholeModel> load_whole(const ModelSource& model, ViewMode mode, Note& not
   Result<DecodedModel> decoded = decode_model(*file, {.for_each = loop_on_threads(1)});
   if (!decoded.ok()) return decoded.failure();
   if (note.is_stopped()) return fail(Error::Interrupted, "interrupted");
-  WholeModel whole;
-  whole.bytes_read = file->source().bytes_read();
-  for (const Vec3d& p : decoded->mesh.positions) whole.box.add(p);
+  WholeData data;
+  for (const Vec3d& p : decoded->mesh.positions) data.box.add(p);
   if (mode == ViewMode::Linear) {
     note.say("sorting the levels");
-    whole.linear = std::make_unique<ProgressiveMesh>(
-        build_progressive_arrays(decoded->mesh, decoded->sequence));
-    return whole;
+    data.levels = build_progressive_arrays(decoded->mesh, decoded->sequence);
+  } else {
+    note.say("building the hierarchy");
+    Result<MeshHierarchy> hierarchy = build_hierarchy(decoded->mesh, decoded->sequence, {});
+    if (!hierarchy.ok()) return hierarchy.failure();
+    data.hierarchy = std::make_shared<const MeshHierarchy>(*std::move(hierarchy));
   }
-  note.say("building the hierarchy");
-  Result<MeshHierarchy> hierarchy = build_hierarchy(decoded->mesh, decoded->sequence, {});
-  if (!hierarchy.ok()) return hierarchy.failure();
-  whole.vertices =
-      std::make_unique<AdaptiveMesh>(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
+  WholeModel whole = mesh_of(std::move(data));
+  whole.bytes_read = file->source().bytes_read();
+  return whole;
+}
+
+WholeModel mesh_of(WholeData data) {
+  WholeModel whole;
+  if (data.levels) whole.linear = std::make_unique<ProgressiveMesh>(data.levels);
+  if (data.hierarchy) whole.vertices = std::make_unique<AdaptiveMesh>(data.hierarchy);
+  whole.data = std::move(data);
   return whole;
 }
 
@@ -272,10 +279,10 @@ Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& 
   }
   if (model.linear) {
     return std::unique_ptr<ShownMesh>(
-        std::make_unique<ShownLinear>(std::move(model.linear), model.box));
+        std::make_unique<ShownLinear>(std::move(model.linear), model.data.box));
   }
   return std::unique_ptr<ShownMesh>(
-      std::make_unique<ShownVertices>(std::move(model.vertices), model.box));
+      std::make_unique<ShownVertices>(std::move(model.vertices), model.data.box));
 }
 
 }  // namespace crease

@@ -187,6 +187,66 @@ TEST_CASE("the error asked for and the triangles allowed decide what is shown") 
   }
 }
 
+TEST_CASE("beside the original the right half has all triangles, the left one what it is set to") {
+  const Folder folder;
+  ViewerOptions options = small_window(folder.crease_file("sphere.crease", smooth_sphere(48, 96)));
+  options.pixels = 8;
+  options.split = ViewSplit::Original;
+  for (const ViewMode mode : {ViewMode::Blocks, ViewMode::Vertices, ViewMode::Linear}) {
+    options.mode = mode;
+    Running viewer(options);
+    const App& app = *viewer.app;
+    viewer.until([&] { return app.right_frame().is_complete; });
+    viewer.until_complete();
+    CAPTURE(int(mode));
+    CHECK(app.right_frame().triangles == app.session().facts()->triangle_count);
+    CHECK(app.frame().triangles < app.right_frame().triangles / 2);
+    CHECK(app.frame().triangles > 10);
+  }
+}
+
+TEST_CASE("two halves have settings of their own, and keys are for one of them") {
+  const Folder folder;
+  ViewerOptions options = small_window(folder.crease_file("sphere.crease", smooth_sphere(48, 96)));
+  options.split = ViewSplit::Settings;
+  options.right.pixels = 8;
+  Running viewer(options);
+  App& app = *viewer.app;
+  viewer.until_complete();
+  CHECK(app.right_frame().triangles < app.frame().triangles);
+
+  app.act(Action::OtherHalf);
+  for (int i = 0; i < 4; ++i) app.act(Action::Finer);
+  CHECK(app.settings().pixels == 1);
+  CHECK(app.split().right.pixels == 0.5);
+  REQUIRE(app.step().ok());
+  viewer.until_complete();
+  CHECK(app.right_frame().triangles > app.frame().triangles);
+
+  app.act(Action::NextMode);  // of the right half; it loads, the left one stays
+  CHECK(app.split().right.mode == ViewMode::Vertices);
+  REQUIRE(app.step().ok());
+  viewer.until_complete();
+  CHECK(app.settings().mode == ViewMode::Blocks);
+  CHECK(app.frame().blocks > 0);
+  CHECK(app.right_frame().blocks == 0);
+  CHECK(app.right_frame().triangles > 100);
+  const std::uint64_t bytes = app.session().bytes_read();
+  app.act(Action::OtherHalf);
+  app.act(Action::NextMode);  // of the left half: the same one, out of the same arrays
+  REQUIRE(app.step().ok());
+  viewer.until_complete();
+  CHECK(app.frame().blocks == 0);
+  CHECK(app.frame().triangles > 100);
+  CHECK(app.session().bytes_read() == bytes);
+
+  app.act(Action::NextSplit);
+  CHECK(app.split().kind == ViewSplit::Off);
+  REQUIRE(app.step().ok());
+  viewer.until_complete();
+  CHECK(app.session().shown(1) == nullptr);
+}
+
 TEST_CASE("a window that is closed while a model is built ends the build") {
   const Folder folder;
   const std::string path = folder.mesh_file("sphere.ply", smooth_sphere(200, 400));
