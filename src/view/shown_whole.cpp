@@ -4,6 +4,7 @@
 #include "crease/build_progressive_arrays.h"
 #include "crease/decode_model.h"
 #include "crease/threads.h"
+#include "view/level_walk.h"
 #include "view/whole_creases.h"
 
 #include <algorithm>
@@ -179,15 +180,14 @@ class ShownLinear final : public ShownWhole {
     const double distance = distance_to(box_, camera.position);
     const double wanted = settings.pixels * pixel_size(camera, distance);
     FrameFacts facts;
-    if (wanted != error_ || settings.max_triangles != max_triangles_) {
-      const std::size_t before = mesh_->applied();
-      move_to(wanted, settings.max_triangles, facts);
-      facts.has_changed = mesh_->applied() != before;
-    }
+    const std::size_t before = mesh_->applied();
+    facts.is_complete = walk_.go(
+        *mesh_, {float(wanted), settings.max_triangles}, kUpdateSeconds,
+        [&] { facts.uploaded_bytes += scene_.update(mesh_->draw_list(), mesh_->changes()); });
+    facts.has_changed = mesh_->applied() != before;
     facts.triangles = mesh_->triangle_count();
     facts.error_pixels = in_pixels(mesh_->error(), camera, std::max(distance, 1e-9));
     facts.gpu_bytes = facts.resident_bytes = scene_.bytes();
-    facts.is_complete = true;
     update_creases(settings, mesh_->draw_list(), facts);
     return facts;
   }
@@ -211,23 +211,8 @@ class ShownLinear final : public ShownWhole {
   std::vector<Vec3f> outline() const override { return used_positions(mesh_->draw_list()); }
 
  private:
-  void move_to(double error, std::size_t max_triangles, FrameFacts& facts) {
-    error_ = error;
-    max_triangles_ = max_triangles;
-    mesh_->set_error(float(error));
-    take_changes(facts);
-    if (mesh_->triangle_count() <= max_triangles) return;
-    mesh_->set_triangle_count(max_triangles);
-    take_changes(facts);
-  }
-
-  void take_changes(FrameFacts& facts) {
-    facts.uploaded_bytes += scene_.update(mesh_->draw_list(), mesh_->changes());
-  }
-
   std::unique_ptr<ProgressiveMesh> mesh_;
-  double error_ = -1;  // of the last update
-  std::size_t max_triangles_ = 0;
+  LevelWalk walk_;
 };
 
 std::size_t largest_array(const DrawList& list) {
