@@ -44,13 +44,14 @@ class App {
   const Session& session() const { return session_; }
   const FrameFacts& frame() const { return frame_; }
   const FrameFacts& right_frame() const { return right_frame_; }
+  const Lines& picked() const { return picked_lines_; }  // what was said of it, last
+  void take_click(const Click& click);
   bool is_frozen() const { return frozen_.has_value(); }
 
  private:
   double now() const;
   void take_events();
   void take_event(const WindowEvent& event);
-  void take_click(const Click& click);
   void open(const std::string& source);
   void welcome();      // a model that is there now
   void move_camera();  // by the flight, by keys, to fit
@@ -64,7 +65,9 @@ class App {
   void remember();
   // Under a point of the window.
   std::optional<Hit> hit_at(double x, double y) const;
+  Ray ray_at(double x, double y) const;
   std::size_t side_at(double x) const;
+  std::string block_at(double x, double y) const;
 
   // One side, or two: from the left, of so many columns.
   struct Columns {

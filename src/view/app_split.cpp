@@ -115,10 +115,13 @@ std::size_t App::side_at(double x) const {
 }
 
 std::optional<Hit> App::hit_at(double x, double y) const {
+  const ShownMesh* mesh = session_.shown(side_at(x));
+  return mesh == nullptr ? std::nullopt : mesh->pick(ray_at(x, y));
+}
+
+Ray App::ray_at(double x, double y) const {
   const std::size_t side = side_at(x);
-  const ShownMesh* mesh = session_.shown(side);
-  if (mesh == nullptr) return std::nullopt;
-  return mesh->pick(ray_through(sized(camera_, side), x - columns_of(side).left, y));
+  return ray_through(sized(camera_, side), x - columns_of(side).left, y);
 }
 
 std::vector<HalfLabel> App::half_labels() const {

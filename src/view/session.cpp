@@ -101,11 +101,6 @@ const ModelFacts* Session::facts() const {
   return streamer_ ? &streamer_->mesh().facts() : nullptr;
 }
 
-std::span<const std::string> Session::part_names() const {
-  if (!streamer_) return {};
-  return streamer_->mesh().part_names();
-}
-
 std::uint64_t Session::bytes_read() const {
   if (!streamer_) return 0;
   return streamer_->statistics().source.bytes_transferred + whole_bytes_;

@@ -49,9 +49,12 @@ class Session {
   // In the mode of the last poll(), or by block while that loads. Null: nothing is open, or there
   // is no such side.
   ShownMesh* shown(std::size_t side = 0) const;
+  // The same model by block, whatever is shown.
+  const ShownBlocks* blocks(std::size_t side) const {
+    return side < sides_.size() ? sides_[side].blocks.get() : nullptr;
+  }
   const ModelSource& source() const { return source_; }
   const ModelFacts* facts() const;
-  std::span<const std::string> part_names() const;  // empty while they are not known
   std::uint64_t bytes_read() const;
   // What streams may ask for.
   RateLimit& limit() { return *limit_; }

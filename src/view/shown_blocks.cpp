@@ -97,6 +97,15 @@ std::optional<Hit> ShownBlocks::pick(const Ray& ray) const {
   return crease::pick(mesh().shown(), mesh().facts().grid, ray);
 }
 
+HitFacts ShownBlocks::facts_of(const Hit& hit) const {
+  const BlockFacts& block = hit.block->facts();
+  const std::size_t bands = mesh().facts().bands.size();
+  const std::string level =
+      block.band == bands ? "the base of " + std::to_string(bands) + " bands"
+                          : "band " + std::to_string(block.band) + " of " + std::to_string(bands);
+  return {level, block.fine, part_of(hit, mesh().part_names())};
+}
+
 // Of few blocks all corners, of many those of their boxes: a camera is fitted again with each block
 // that arrives, between two frames.
 std::vector<Vec3f> ShownBlocks::outline() const {

@@ -21,6 +21,7 @@ class ShownBlocks final : public ShownMesh {
   Result<DrawCount> draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
                          const ViewSettings& settings, const Camera& cut_camera) override;
   std::optional<Hit> pick(const Ray& ray) const override;
+  HitFacts facts_of(const Hit& hit) const override;
   std::vector<Vec3f> outline() const override;
   Vec3d origin() const override { return mesh().facts().grid.origin; }
   Box box() const override { return blocks_.box_of(mesh().shown()); }

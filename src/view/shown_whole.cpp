@@ -6,6 +6,7 @@
 #include "crease/threads.h"
 #include "view/level_walk.h"
 #include "view/whole_creases.h"
+#include "view/words.h"
 
 #include <algorithm>
 #include <chrono>
@@ -53,6 +54,10 @@ DrawStyle styled(DrawStyle style, ViewColoring coloring, float level_share) {
   if (coloring == ViewColoring::Error) style.coloring = Coloring::Error;
   style.level_share = level_share;
   return style;
+}
+
+std::string in_words(std::size_t shown, std::size_t full) {
+  return grouped(shown) + " of " + grouped(full) + " triangles";
 }
 
 // What both have.
@@ -141,6 +146,19 @@ class ShownVertices final : public ShownWhole {
   std::optional<Hit> pick(const Ray& ray) const override {
     return crease::pick(mesh_->draw_list(), ray);
   }
+  HitFacts facts_of(const Hit& hit) const override {
+    const DrawList list = mesh_->draw_list();
+    const std::vector<float> errors = mesh_->error_of_position();
+    HitFacts facts{in_words(mesh_->triangle_count(), mesh_->hierarchy().vertices.triangles.size()),
+                   {},
+                   part_of(hit, mesh_->extract())};
+    const DrawPart& part = part_of_kind(list, hit.kind);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float error = errors[part.indices[3 * std::size_t(hit.triangle) + c]];
+      facts.error.surface = std::max(facts.error.surface, error);
+    }
+    return facts;
+  }
   std::vector<Vec3f> outline() const override { return used_positions(mesh_->draw_list()); }
 
  private:
@@ -207,6 +225,18 @@ class ShownLinear final : public ShownWhole {
 
   std::optional<Hit> pick(const Ray& ray) const override {
     return crease::pick(mesh_->draw_list(), ray);
+  }
+  HitFacts facts_of(const Hit& hit) const override {
+    const ProgressiveArrays& arrays = mesh_->arrays();
+    HitFacts facts{
+        in_words(mesh_->triangle_count(), mesh_->full_triangle_count()), mesh_->error(), {}};
+    if (arrays.part_of_triangle.empty()) return facts;
+    std::size_t triangle = hit.triangle;  // the three kinds in a row
+    if (hit.kind != TriangleKind::SN) triangle += arrays.full.sn_triangles;
+    if (hit.kind == TriangleKind::NSN) triangle += arrays.full.fn_triangles;
+    const std::uint32_t part = arrays.part_of_triangle[triangle];
+    if (part < arrays.parts.size()) facts.part = arrays.parts[part];
+    return facts;
   }
   std::vector<Vec3f> outline() const override { return used_positions(mesh_->draw_list()); }
 

@@ -11,6 +11,8 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <map>
+#include <string>
 
 namespace crease {
 
@@ -184,6 +186,43 @@ TEST_CASE("the error asked for and the triangles allowed decide what is shown") 
     limited.until_complete();
     CHECK(limited.app->frame().triangles <= 1500);
     CHECK(limited.app->frame().triangles > 100);
+  }
+}
+
+TEST_CASE("what is clicked on is told with block, level, error, kind and part in every mode") {
+  Mesh mesh = city_blocks(2, 2);
+  mesh.parts = {"left", "right"};
+  mesh.part_of_triangle.clear();
+  for (const Triangle& t : mesh.triangles) {
+    const bool is_left = mesh.positions[index_of(t[0])].x < 1.5;
+    mesh.part_of_triangle.push_back(PartId(is_left ? 0u : 1u));
+  }
+  const Folder folder;
+  ViewerOptions options = small_window(folder.crease_file("city.crease", mesh));
+  options.pixels = 0.01;
+  Running viewer(options);
+  App& app = *viewer.app;
+  for (const ViewMode mode : {ViewMode::Blocks, ViewMode::Vertices, ViewMode::Linear}) {
+    CAPTURE(int(mode));
+    if (mode != ViewMode::Blocks) app.act(Action::NextMode);
+    REQUIRE(app.step().ok());
+    viewer.until_complete();
+    for (int i = 0; i < 50; ++i) REQUIRE(app.step().ok());  // names of parts come last
+    int hits = 0;
+    for (double x = 10; x < 320; x += 15) {
+      app.take_click({x, 120, false});
+      if (app.picked().empty()) continue;
+      ++hits;
+      std::map<std::string, std::string> told(app.picked().begin(), app.picked().end());
+      for (const char* name : {"block", "level", "error", "kind", "normal", "position"}) {
+        CAPTURE(std::string(name));
+        CHECK_FALSE(told[name].empty());
+      }
+      CHECK(told["kind"] == "FN: one normal");
+      CHECK(told["part"] == (std::stod(told["position"]) < 1.5 ? "left" : "right"));
+      CHECK(told["error"].find("pixels") != std::string::npos);
+    }
+    CHECK(hits > 4);
   }
 }
 
