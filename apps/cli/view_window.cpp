@@ -22,7 +22,7 @@ namespace {
 struct ViewArguments {
   std::string source;
   std::string size, view, flight, split, mode = "block", coloring = "shaded", up = "z";
-  bool wireframe = false, creases = false, outside = false, panels = false;
+  bool wireframe = false, creases = false, occlusion = false, outside = false, panels = false;
   std::filesystem::path screenshot;
   std::optional<double> pixels, degrees, budget_mb, bandwidth_kb;
   std::optional<std::size_t> triangles;
@@ -94,13 +94,15 @@ class SplitWords {
     if (!value.empty()) return false;
     if (name == "wireframe") return half.wireframe = true;
     if (name == "creases") return half.creases = true;
+    if (name == "ambient-occlusion") return half.ambient_occlusion = true;
     return false;
   }
 
   Failure wrong(const std::string& word) const {
-    return fail(Error::CommandLine, "--split " + text_ + ": \"" + word +
-                                        "\" is none of original, pixels=N, degrees=N, triangles=N, "
-                                        "mode=block|vertex|linear, color=BY, wireframe, creases");
+    return fail(Error::CommandLine,
+                "--split " + text_ + ": \"" + word +
+                    "\" is none of original, pixels=N, degrees=N, triangles=N, "
+                    "mode=block|vertex|linear, color=BY, wireframe, creases, ambient-occlusion");
   }
 
   const std::string& text_;
@@ -108,8 +110,14 @@ class SplitWords {
 
 // The right half begins as the left one.
 Status set_split(const std::string& text, ViewerOptions& viewer) {
-  viewer.right = {viewer.mode,   viewer.coloring, viewer.wireframe,    viewer.creases,
-                  viewer.pixels, viewer.degrees,  viewer.max_triangles};
+  viewer.right = {.mode = viewer.mode,
+                  .coloring = viewer.coloring,
+                  .wireframe = viewer.wireframe,
+                  .creases = viewer.creases,
+                  .ambient_occlusion = viewer.ambient_occlusion,
+                  .pixels = viewer.pixels,
+                  .degrees = viewer.degrees,
+                  .max_triangles = viewer.max_triangles};
   if (text.empty()) return Done{};
   viewer.split = text == "original" ? ViewSplit::Original : ViewSplit::Settings;
   if (viewer.split == ViewSplit::Original) return Done{};
@@ -134,6 +142,7 @@ Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common&
   viewer.coloring = coloring_named(options.coloring);
   viewer.wireframe = options.wireframe;
   viewer.creases = options.creases;
+  viewer.ambient_occlusion = options.occlusion;
   viewer.outside = options.outside;
   viewer.panels_on_screenshot = options.panels;
   if (options.up == "y") viewer.up = {0, 1, 0};
@@ -239,12 +248,14 @@ Command add_view(CLI::App& app, const Common& common) {
   command->add_flag("--wireframe", options->wireframe, "edges over the surface");
   command->add_flag("--creases", options->creases,
                     "lines at hard edges, and at borders in another tint");
+  command->add_flag("--ambient-occlusion", options->occlusion,
+                    "darker in corners and at the feet of walls");
   command
       ->add_option(
           "--split", options->split,
           "two pictures from one camera. original: right, the model as fine as it is | what "
           "the right one has otherwise: pixels=N,degrees=N,triangles=N,mode=M,color=BY,"
-          "wireframe,creases")
+          "wireframe,creases,ambient-occlusion")
       ->type_name("RIGHT");
   command
       ->add_option("--view", options->view,

@@ -48,7 +48,7 @@ enum class ViewSplit : std::uint8_t {
 struct HalfSettings {
   ViewMode mode = ViewMode::Blocks;
   ViewColoring coloring = ViewColoring::Shaded;
-  bool wireframe = false, creases = false;
+  bool wireframe = false, creases = false, ambient_occlusion = false;
   double pixels = 1, degrees = 0;  // as in ViewerOptions
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
 };
@@ -72,9 +72,10 @@ struct ViewerOptions {
   ViewColoring coloring = ViewColoring::Shaded;
   bool wireframe = false;
   bool creases = false;  // hard edges of what is shown as lines, and its borders in another tint
-  bool outside = false;  // once the view is complete: frozen, and looked at from outside
-  double pixels = 1;     // error allowed on the screen
-  double degrees = 0;    // of shading allowed; 0: any
+  bool ambient_occlusion = false;  // darkens where little light comes, by the picture's depths
+  bool outside = false;            // once the view is complete: frozen, and looked at from outside
+  double pixels = 1;               // error allowed on the screen
+  double degrees = 0;              // of shading allowed; 0: any
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
   std::size_t max_bytes = std::size_t(512) << 20;  // of resident blocks
   // Of streamed blocks, asked for a second; infinity: no limit.

@@ -1,5 +1,7 @@
 #include "render/gl_canvas.h"
 
+#include "render/gl_occlusion.h"
+
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -71,6 +73,12 @@ Status GlCanvas::begin(int width_px, int height_px) {
 
 void GlCanvas::set_columns(int left, int width) {
   glViewport(left, 0, width, height_);
+}
+
+Status GlCanvas::occlude(const DrawPass& pass, const DrawStyle& style) {
+  const Result<const GlTexture*> depths = target_->resolve_depth(width_, height_);
+  if (!depths.ok()) return depths.failure();
+  return draw_occlusion(programs_, **depths, pass, style);
 }
 
 void GlCanvas::fill_columns(int left, int width, const ColorSrgb& color) {

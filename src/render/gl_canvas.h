@@ -11,6 +11,7 @@
 #include "crease/render.h"
 #include "render/gl_context.h"
 #include "render/gl_objects.h"
+#include "render/gl_pass.h"
 #include "render/gl_shaders.h"
 #include "render/gl_target.h"
 #include "render/palette.h"
@@ -26,6 +27,8 @@ class GlCanvas {
   Status begin(int width_px, int height_px);
   // What is drawn next goes into these columns.
   void set_columns(int left, int width);
+  // Darkens what is drawn in those columns where little light comes.
+  Status occlude(const DrawPass& pass, const DrawStyle& style);
   // Over what is drawn there.
   void fill_columns(int left, int width, const ColorSrgb& color);
   // Into the window's framebuffer. Leaves OpenGL as a program expects that draws over it.

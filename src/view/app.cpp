@@ -36,6 +36,7 @@ App::App(const ViewerOptions& options, ViewerWindow& window, GlCanvas canvas)
   settings_.coloring = options.coloring;
   settings_.wireframe = options.wireframe;
   settings_.creases = options.creases;
+  settings_.ambient_occlusion = options.ambient_occlusion;
   settings_.pixels = options.pixels;
   settings_.degrees = options.degrees;
   settings_.max_triangles = options.max_triangles;
@@ -295,6 +296,9 @@ void App::act(Action action) {
       break;
     case Action::Creases:
       edited().creases = !edited().creases;
+      break;
+    case Action::Occlusion:
+      edited().ambient_occlusion = !edited().ambient_occlusion;
       break;
     case Action::Freeze:
       freeze(!frozen_);

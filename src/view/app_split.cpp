@@ -28,6 +28,7 @@ SplitSettings split_of(const ViewerOptions& options) {
   split.right.coloring = right.coloring;
   split.right.wireframe = right.wireframe;
   split.right.creases = right.creases;
+  split.right.ambient_occlusion = right.ambient_occlusion;
   split.right.pixels = right.pixels;
   split.right.degrees = right.degrees;
   split.right.max_triangles = right.max_triangles;

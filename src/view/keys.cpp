@@ -15,6 +15,7 @@ constexpr KeyRow kRows[] = {
     {Action::NextColoring, GLFW_KEY_C, 0, "C", "colours: shaded, kind, level, block, error"},
     {Action::Wireframe, GLFW_KEY_X, 0, "X", "wireframe"},
     {Action::Creases, GLFW_KEY_L, 0, "L", "lines at hard edges and borders"},
+    {Action::Occlusion, GLFW_KEY_K, 0, "K", "darker where little light comes"},
     {Action::Freeze, GLFW_KEY_Z, 0, "Z", "freeze what is shown and look at it from elsewhere"},
     {Action::Outside, GLFW_KEY_O, 0, "O", "freeze, and look from outside"},
     {Action::Finer, GLFW_KEY_LEFT_BRACKET, GLFW_KEY_MINUS, "[ or -", "half the error"},

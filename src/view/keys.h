@@ -14,6 +14,7 @@ enum class Action {
   NextColoring,
   Wireframe,
   Creases,
+  Occlusion,
   Freeze,
   Outside,
   Finer,

@@ -18,8 +18,9 @@ struct ViewSettings {
   ViewColoring coloring = ViewColoring::Shaded;
   bool wireframe = false;
   bool creases = false;  // hard edges and borders as lines
-  double pixels = 1;     // error on the screen
-  double degrees = 0;    // of shading; 0: any
+  bool ambient_occlusion = false;
+  double pixels = 1;   // error on the screen
+  double degrees = 0;  // of shading; 0: any
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
   std::size_t max_bytes = std::size_t(512) << 20;  // of resident blocks
   // As fine as there is, within max_bytes; `pixels` is for colours alone.
