@@ -15,7 +15,7 @@ bool is_same(const Vec3f& a, const Vec3f& b) {
   return dot(a, b) >= kSameNormalCos;
 }
 
-auto key_of(const Vec3f& p) {
+auto place_of(const Vec3f& p) {
   return std::tuple(p.x, p.y, p.z);
 }
 
@@ -102,7 +102,7 @@ class Sides {
 };
 
 RimEdge rim_edge(const Vec3f& a, const Vec3f& b, const Vec3f& normal_a, const Vec3f& normal_b) {
-  if (key_of(b) < key_of(a)) return {{b, a}, {normal_b, normal_a}};
+  if (place_of(b) < place_of(a)) return {{b, a}, {normal_b, normal_a}};
   return {{a, b}, {normal_a, normal_b}};
 }
 
@@ -140,7 +140,7 @@ CreaseLines join_rims(std::span<const std::span<const RimEdge>> rims) {
     for (const RimEdge& edge : rim) edges.push_back(&edge);
   }
   const auto ends = [](const RimEdge* e) {
-    return std::tuple_cat(key_of(e->ends[0]), key_of(e->ends[1]));
+    return std::tuple_cat(place_of(e->ends[0]), place_of(e->ends[1]));
   };
   std::sort(edges.begin(), edges.end(),
             [&](const RimEdge* a, const RimEdge* b) { return ends(a) < ends(b); });

@@ -141,7 +141,7 @@ bool is_same_run(const ShownRange& a, const ShownRange& b) {
          is_same_range(a.nsn, b.nsn);
 }
 
-std::uint32_t key_of(BlockId id) {
+std::uint32_t number_of(BlockId id) {
   return static_cast<std::uint32_t>(index_of(id));
 }
 
@@ -164,7 +164,7 @@ Status GlCreases::draw(ProgramCache& programs, const DrawPass& pass, const DrawS
 
 const GlBlockCreases::BlockLines& GlBlockCreases::lines_of_block(const ResidentBlock& block,
                                                                  std::size_t& uploaded) {
-  const auto [at, is_new] = blocks_.try_emplace(key_of(block.id()));
+  const auto [at, is_new] = blocks_.try_emplace(number_of(block.id()));
   BlockLines& lines = at->second;
   if (!is_new) return lines;
   const DrawList list = block.draw_list();
@@ -192,7 +192,7 @@ std::size_t GlBlockCreases::update(std::span<const ShownRange> shown) {
 
 void GlBlockCreases::drop(std::span<const BlockId> blocks) {
   for (const BlockId id : blocks) {
-    if (blocks_.erase(key_of(id)) == 0) continue;
+    if (blocks_.erase(number_of(id)) == 0) continue;
     of_.clear();  // whatever is shown now, it is another thing
     shown_.clear();
   }
