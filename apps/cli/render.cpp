@@ -20,7 +20,7 @@ struct RenderArguments {
   std::string levels, view, size, up = "z";
   std::string coloring;                          // empty: shaded, by error from outside
   bool wireframe = false, no_wireframe = false;  // neither: from outside
-  bool outside = false;
+  bool outside = false, occlusion = false;
   int columns = 0;
 
   bool has_level() const {
@@ -48,6 +48,7 @@ Result<RenderOptions> render_options(const RenderArguments& options) {
   render.coloring = by_error ? Coloring::Error : coloring_of(options.coloring);
   render.wireframe = options.wireframe || (options.outside && !options.no_wireframe);
   render.columns = options.columns;
+  render.ambient_occlusion = options.occlusion;
   if (options.up == "y") render.up = {0, 1, 0};
   if (!options.view.empty()) {
     const Result<Camera> camera = read_camera(options.view);
@@ -149,6 +150,8 @@ Command add_render(CLI::App& app, const Common& common) {
   command->add_option("--up", options->up, "axis that points up when there is no --view")
       ->check(CLI::IsMember({"y", "z"}))
       ->capture_default_str();
+  command->add_flag("--ambient-occlusion", options->occlusion,
+                    "darker in corners and at the feet of walls");
   command
       ->add_option("--color", options->coloring,
                    "shaded | kind | level | error; default: shaded, error with --outside")

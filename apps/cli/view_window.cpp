@@ -6,10 +6,14 @@
 #include "cli/view.h"
 #include "crease/viewer.h"
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
 
 namespace crease::cli {
 
@@ -17,10 +21,10 @@ namespace {
 
 struct ViewArguments {
   std::string source;
-  std::string size, view, flight, mode = "block", coloring = "shaded", up = "z";
-  bool wireframe = false, outside = false, panels = false;
+  std::string size, view, flight, split, mode = "block", coloring = "shaded", up = "z";
+  bool wireframe = false, creases = false, occlusion = false, outside = false, panels = false;
   std::filesystem::path screenshot;
-  std::optional<double> pixels, budget_mb;
+  std::optional<double> pixels, degrees, budget_mb, bandwidth_kb;
   std::optional<std::size_t> triangles;
   ReadOptions read;
 };
@@ -48,6 +52,81 @@ Result<Flight> read_flight(const std::filesystem::path& path) {
   return fail(flight.failure().error, path.string() + ": " + flight.failure().message);
 }
 
+// A comma between, a name before each: "pixels=8,mode=linear,wireframe".
+class SplitWords {
+ public:
+  explicit SplitWords(const std::string& text) : text_(text) {}
+
+  Result<HalfSettings> read(HalfSettings half) {
+    std::istringstream words(text_);
+    for (std::string word; std::getline(words, word, ',');) {
+      const std::string::size_type equals = word.find('=');
+      const std::string name = word.substr(0, equals);
+      const std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
+      if (!take(name, value, half)) return wrong(word);
+    }
+    return half;
+  }
+
+ private:
+  static bool take(const std::string& name, const std::string& value, HalfSettings& half) {
+    const auto number = [&](double low, double& to) {
+      char* end = nullptr;
+      to = std::strtod(value.c_str(), &end);
+      return !value.empty() && *end == 0 && to >= low && to <= 1e12;
+    };
+    double count = 0;
+    if (name == "pixels") return number(0.01, half.pixels);
+    if (name == "degrees") return number(0, half.degrees);
+    if (name == "triangles") {
+      if (!number(0, count)) return false;
+      half.max_triangles = std::size_t(count);
+      return true;
+    }
+    if (name == "mode") {
+      half.mode = mode_of(value);
+      return value == "block" || value == "vertex" || value == "linear";
+    }
+    if (name == "color") {
+      half.coloring = coloring_named(value);
+      return half.coloring != ViewColoring::Shaded || value == "shaded";
+    }
+    if (!value.empty()) return false;
+    if (name == "wireframe") return half.wireframe = true;
+    if (name == "creases") return half.creases = true;
+    if (name == "ambient-occlusion") return half.ambient_occlusion = true;
+    return false;
+  }
+
+  Failure wrong(const std::string& word) const {
+    return fail(Error::CommandLine,
+                "--split " + text_ + ": \"" + word +
+                    "\" is none of original, pixels=N, degrees=N, triangles=N, "
+                    "mode=block|vertex|linear, color=BY, wireframe, creases, ambient-occlusion");
+  }
+
+  const std::string& text_;
+};
+
+// The right half begins as the left one.
+Status set_split(const std::string& text, ViewerOptions& viewer) {
+  viewer.right = {.mode = viewer.mode,
+                  .coloring = viewer.coloring,
+                  .wireframe = viewer.wireframe,
+                  .creases = viewer.creases,
+                  .ambient_occlusion = viewer.ambient_occlusion,
+                  .pixels = viewer.pixels,
+                  .degrees = viewer.degrees,
+                  .max_triangles = viewer.max_triangles};
+  if (text.empty()) return Done{};
+  viewer.split = text == "original" ? ViewSplit::Original : ViewSplit::Settings;
+  if (viewer.split == ViewSplit::Original) return Done{};
+  const Result<HalfSettings> right = SplitWords(text).read(viewer.right);
+  if (!right.ok()) return right.failure();
+  viewer.right = *right;
+  return Done{};
+}
+
 Status set_size(const std::string& text, ViewerOptions& viewer) {
   const Result<std::pair<int, int>> size = parse_size(text);
   if (!size.ok()) return size.failure();
@@ -62,6 +141,8 @@ Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common&
   viewer.mode = mode_of(options.mode);
   viewer.coloring = coloring_named(options.coloring);
   viewer.wireframe = options.wireframe;
+  viewer.creases = options.creases;
+  viewer.ambient_occlusion = options.occlusion;
   viewer.outside = options.outside;
   viewer.panels_on_screenshot = options.panels;
   if (options.up == "y") viewer.up = {0, 1, 0};
@@ -83,6 +164,9 @@ Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common&
   }
   if (options.pixels) viewer.pixels = *options.pixels;
   if (options.triangles) viewer.max_triangles = *options.triangles;
+  if (options.degrees) viewer.degrees = *options.degrees;
+  if (options.bandwidth_kb) viewer.max_bytes_per_second = *options.bandwidth_kb * 1e3;
+  if (const Status set = set_split(options.split, viewer); !set.ok()) return set.failure();
   if (options.budget_mb) viewer.max_bytes = std::size_t(*options.budget_mb * 1e6);
   Result<ImportOptions> import = import_options(options.read, common);
   if (!import.ok()) return import.failure();
@@ -139,11 +223,19 @@ Command add_view(CLI::App& app, const Common& common) {
   command->add_option("--pixels", options->pixels, "error allowed on the screen; default 1")
       ->check(CLI::Range(0.01, 1000.0))
       ->type_name("N");
+  command->add_option("--degrees", options->degrees, "error of shading allowed; default: any")
+      ->check(CLI::Range(0.0, 180.0))
+      ->type_name("N");
   command->add_option("--triangles", options->triangles, "at most so many; default: no limit")
       ->type_name("N");
   command->add_option("--budget", options->budget_mb, "memory of blocks, MB; default 537")
       ->check(CLI::Range(1.0, 1e6))
       ->type_name("MB");
+  command
+      ->add_option("--bandwidth", options->bandwidth_kb,
+                   "what blocks are asked for, kB a second; default: no limit")
+      ->check(CLI::Range(0.1, 1e9))
+      ->type_name("KB");
   command
       ->add_option("--mode", options->mode,
                    "block: streams, and cuts along blocks | vertex, linear: load all of the model")
@@ -154,6 +246,17 @@ Command add_view(CLI::App& app, const Common& common) {
       ->type_name("BY")
       ->capture_default_str();
   command->add_flag("--wireframe", options->wireframe, "edges over the surface");
+  command->add_flag("--creases", options->creases,
+                    "lines at hard edges, and at borders in another tint");
+  command->add_flag("--ambient-occlusion", options->occlusion,
+                    "darker in corners and at the feet of walls");
+  command
+      ->add_option(
+          "--split", options->split,
+          "two pictures from one camera. original: right, the model as fine as it is | what "
+          "the right one has otherwise: pixels=N,degrees=N,triangles=N,mode=M,color=BY,"
+          "wireframe,creases,ambient-occlusion")
+      ->type_name("RIGHT");
   command
       ->add_option("--view", options->view,
                    "camera to begin with, as crease render has it; its viewport is the size. "

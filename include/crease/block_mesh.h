@@ -107,6 +107,9 @@ class BlockMesh {
  public:
   // Reads the schema: tables and materials. The directory comes by add_page().
   static Result<BlockMesh> open(const BlockFile& file);
+  // Another mesh of the same file, for another view: with the pages and names that are there, and
+  // no block. Blocks of the one may be inserted into the other, and are then in memory once.
+  BlockMesh another() const;
   ~BlockMesh();
   BlockMesh(BlockMesh&&) noexcept;
 
@@ -135,7 +138,8 @@ class BlockMesh {
   std::optional<BlockDecodeJob> decode_job(BlockId id) const;
   // What the block needs and is not resident; `id` must be of a page that was added.
   std::vector<BlockId> lacking(BlockId id) const;
-  // From a job of this mesh. The cut goes through it with the next update().
+  // From a job of this mesh, or of one that another() made. The cut goes through it with the next
+  // update().
   void insert(ResidentBlockPtr block);
 
   std::span<const ShownRange> shown() const;  // coarse blocks first
@@ -150,7 +154,8 @@ class BlockMesh {
   std::size_t resident_count() const;
   std::size_t resident_bytes() const;
   bool is_resident(BlockId id) const;
-  bool is_refined(BlockId id) const;  // the cut goes through it
+  ResidentBlockPtr resident(BlockId id) const;  // null: it is not
+  bool is_refined(BlockId id) const;            // the cut goes through it
   // At most so many bytes, if it becomes resident.
   std::size_t bytes_of(const BlockFacts& facts) const;
   const ModelFacts& facts() const;

@@ -6,6 +6,11 @@
 //     streamer->update({.view = {.camera = camera}, .max_bytes = 256 << 20});
 //     for (const ShownRange& range : streamer->mesh().shown()) draw(range);
 //
+// Several views of one model, for pictures side by side:
+//
+//   streamer->set_view_count(2);
+//   every frame: for (std::size_t v = 0; v < 2; ++v) streamer->update(parameters[v], v);
+//
 // Memory: what BlockViewParameters::max_bytes allows of resident blocks, and beside that at most
 // StreamOptions::max_pending_bytes of payloads, of each thread the BlockFacts::decoded_bytes of
 // what it decodes, and eight decoded blocks that wait for the next update().
@@ -20,6 +25,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -34,6 +40,8 @@ struct StreamOptions {
   int prefetch_frames = 30;
   // Before a block that failed is asked for again; twice as long each further time, up to a minute.
   std::chrono::milliseconds first_pause{500};
+  // Asked ten times a second while open() waits; true ends it with Interrupted.
+  std::function<bool()> stopped{};
 };
 
 struct StreamReport {
@@ -55,7 +63,7 @@ class BlockStreamer {
  public:
   // Waits for the head and the schema, which mostly are in the first 64 KiB; of a host these are
   // one request, out of which the first picture comes as well. Nothing else may be asked of the
-  // source.
+  // source. `options.stopped` ends the wait.
   static Result<BlockStreamer> open(AsyncSourcePtr source, const StreamOptions& options = {});
   // Of a file whose head has been read. `source`: of the same bytes.
   static Result<BlockStreamer> open(const BlockFile& file, AsyncSourcePtr source,
@@ -65,9 +73,17 @@ class BlockStreamer {
 
   // Takes what has arrived, moves the cut, and asks for what is missing. Never waits. Time: that of
   // BlockMesh::update() and of what arrived.
-  StreamReport update(const BlockViewParameters& parameters);
+  StreamReport update(const BlockViewParameters& parameters, std::size_t view = 0);
 
-  const BlockMesh& mesh() const;
+  // 1 to kMaxViews; begins with 1. Each has a cut and a mesh of its own. What one view has and
+  // another one misses is taken from there: it is asked for and decoded once, and in memory once,
+  // though max_bytes of each view counts it. Views that go leave their blocks only to the others
+  // that have them.
+  static constexpr std::size_t kMaxViews = 8;
+  void set_view_count(std::size_t count);
+  std::size_t view_count() const;
+
+  const BlockMesh& mesh(std::size_t view = 0) const;
   const BlockFileHead& head() const;
   StreamStatistics statistics() const;
   // The last thing that went wrong, while it has not gone right since. What is shown is right all

@@ -33,6 +33,8 @@ class ProgressiveMesh {
   void set_triangle_count(std::size_t count);
   // The coarsest level whose surface error is at most `surface_error`, model units.
   void set_error(float surface_error);
+  // How many contractions that level has in force. Negative: 0.
+  std::size_t applied_for_error(float surface_error) const;
 
   std::size_t triangle_count() const;
   std::size_t vertex_count() const;  // active

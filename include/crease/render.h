@@ -59,8 +59,9 @@ struct RenderOptions {
   std::optional<Camera> frustum{};
   Vec3d up{0, 0, 1};  // for the fitted camera: many scans have y up
   Coloring coloring = Coloring::Shaded;
-  bool wireframe = false;  // edges over the shaded surface
-  int columns = 0;         // 0: as many as look best
+  bool wireframe = false;          // edges over the shaded surface
+  bool ambient_occlusion = false;  // darkens where little light comes, by the picture's depths
+  int columns = 0;                 // 0: as many as look best
   // Coloring::Error: the error at the red end, or 0: nearly the largest one there is.
   double error_full = 0;
   std::string error_unit = "model units";

@@ -38,6 +38,21 @@ enum class ViewColoring : std::uint8_t {
   Error,   // on the screen: what is allowed in the middle of the scale, blue to red
 };
 
+enum class ViewSplit : std::uint8_t {
+  Off,
+  Original,  // right: the model as fine as it is, by block, within the memory allowed
+  Settings,  // right: settings of its own
+};
+
+// What one half of the picture has for itself.
+struct HalfSettings {
+  ViewMode mode = ViewMode::Blocks;
+  ViewColoring coloring = ViewColoring::Shaded;
+  bool wireframe = false, creases = false, ambient_occlusion = false;
+  double pixels = 1, degrees = 0;  // as in ViewerOptions
+  std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
+};
+
 // A camera of a flight, so many seconds after its begin.
 struct TimedCamera {
   double seconds = 0;
@@ -56,10 +71,19 @@ struct ViewerOptions {
   ViewMode mode = ViewMode::Blocks;
   ViewColoring coloring = ViewColoring::Shaded;
   bool wireframe = false;
-  bool outside = false;  // once the view is complete: frozen, and looked at from outside
-  double pixels = 1;     // error allowed on the screen
+  bool creases = false;  // hard edges of what is shown as lines, and its borders in another tint
+  bool ambient_occlusion = false;  // darkens where little light comes, by the picture's depths
+  bool outside = false;            // once the view is complete: frozen, and looked at from outside
+  double pixels = 1;               // error allowed on the screen
+  double degrees = 0;              // of shading allowed; 0: any
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
   std::size_t max_bytes = std::size_t(512) << 20;  // of resident blocks
+  // Of streamed blocks, asked for a second; infinity: no limit.
+  double max_bytes_per_second = std::numeric_limits<double>::infinity();
+  // Two pictures side by side from the same camera.
+  ViewSplit split = ViewSplit::Off;
+  HalfSettings right{};  // ViewSplit::Settings
+  double divider = 0.5;  // share of the width that the left half has
   // Else the last one that this file was seen from, else all of the model.
   std::optional<Camera> camera{};
   Vec3d up{0, 0, 1};  // where no camera says

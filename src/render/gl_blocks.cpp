@@ -8,30 +8,6 @@ std::uint32_t key_of(BlockId id) {
   return static_cast<std::uint32_t>(index_of(id));
 }
 
-Vec3d corner_of(const Box& box, int i) {
-  return {(i & 1) ? box.high.x : box.low.x, (i & 2) ? box.high.y : box.low.y,
-          (i & 4) ? box.high.z : box.low.z};
-}
-
-// Whether the box lies beyond one of the four sides of the view, or behind the eye.
-bool is_beside(const View& view, const Box& box) {
-  int beyond[5] = {};
-  for (int i = 0; i < 8; ++i) {
-    const Vec3d to = corner_of(box, i) - view.eye;
-    const double depth = -dot(to, view.back);
-    const double x = dot(to, view.right), y = dot(to, view.above);
-    beyond[0] += x > view.tan_half_width * depth;
-    beyond[1] += -x > view.tan_half_width * depth;
-    beyond[2] += y > view.tan_half_height * depth;
-    beyond[3] += -y > view.tan_half_height * depth;
-    beyond[4] += depth < 0;
-  }
-  for (const int count : beyond) {
-    if (count == 8) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 const GlScene* GlBlocks::find(const ResidentBlock& block) const {
@@ -39,17 +15,25 @@ const GlScene* GlBlocks::find(const ResidentBlock& block) const {
   return at == scenes_.end() ? nullptr : at->second.get();
 }
 
-std::size_t GlBlocks::upload(std::span<const ShownRange> shown) {
+std::size_t GlBlocks::upload(std::span<const ShownRange> shown, const GlBlocks* other) {
   std::size_t uploaded = 0;
   for (const ShownRange& range : shown) {
-    std::unique_ptr<GlScene>& scene = scenes_[key_of(range.block->id())];
+    std::shared_ptr<const GlScene>& scene = scenes_[key_of(range.block->id())];
     if (scene) continue;
+    if (other != nullptr) {
+      const auto there = other->scenes_.find(key_of(range.block->id()));
+      if (there != other->scenes_.end()) {
+        scene = there->second;
+        bytes_ += scene->bytes();
+        continue;
+      }
+    }
     const DrawList list = range.block->draw_list();
     if (!materials_) materials_ = upload_materials(list.materials);
-    scene = std::make_unique<GlScene>(list, std::span<const float>{}, materials_);
+    scene = std::make_shared<const GlScene>(list, std::span<const float>{}, materials_);
     uploaded += scene->bytes();
+    bytes_ += scene->bytes();
   }
-  bytes_ += uploaded;
   return uploaded;
 }
 

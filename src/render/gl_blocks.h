@@ -33,9 +33,9 @@ class GlBlocks {
   // What a block is drawn in, all of it; empty: as the style says.
   using ColorOfBlock = std::function<ColorSrgb(const ResidentBlock&)>;
 
-  // What is shown and not here yet: all of it, since there is nothing to draw in its place. Returns
-  // the bytes.
-  std::size_t upload(std::span<const ShownRange> shown);
+  // What is shown and not here yet: all of it, since there is nothing to draw in its place. What
+  // `other` has of it is shared instead. Returns the bytes.
+  std::size_t upload(std::span<const ShownRange> shown, const GlBlocks* other = nullptr);
   void drop(std::span<const BlockId> blocks);
 
   // Around all corners of the blocks of which something is shown.
@@ -49,13 +49,13 @@ class GlBlocks {
                          const ColorOfBlock& color_of_block = {}) const;
 
   std::size_t block_count() const { return scenes_.size(); }
-  std::size_t bytes() const { return bytes_; }  // on the GPU
+  std::size_t bytes() const { return bytes_; }  // on the GPU, what is shared among it
 
  private:
   const GlScene* find(const ResidentBlock& block) const;
 
   GlMaterials materials_;
-  std::unordered_map<std::uint32_t, std::unique_ptr<GlScene>> scenes_;  // by block
+  std::unordered_map<std::uint32_t, std::shared_ptr<const GlScene>> scenes_;  // by block
   std::size_t bytes_ = 0;
 };
 

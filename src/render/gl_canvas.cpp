@@ -1,6 +1,6 @@
 #include "render/gl_canvas.h"
 
-#include "render/palette.h"
+#include "render/gl_occlusion.h"
 
 #include <cstring>
 #include <utility>
@@ -69,6 +69,25 @@ Status GlCanvas::begin(int width_px, int height_px) {
   }
   target_->begin(width_, height_);
   return Done{};
+}
+
+void GlCanvas::set_columns(int left, int width) {
+  glViewport(left, 0, width, height_);
+}
+
+Status GlCanvas::occlude(const DrawPass& pass, const DrawStyle& style) {
+  const Result<const GlTexture*> depths = target_->resolve_depth(width_, height_);
+  if (!depths.ok()) return depths.failure();
+  return draw_occlusion(programs_, **depths, pass, style);
+}
+
+void GlCanvas::fill_columns(int left, int width, const ColorSrgb& color) {
+  const Color linear = linear_from_srgb(color);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(left, 0, width, height_);
+  glClearColor(linear[0], linear[1], linear[2], 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 Status GlCanvas::compose(GLuint framebuffer) {

@@ -11,8 +11,10 @@
 #include "crease/render.h"
 #include "render/gl_context.h"
 #include "render/gl_objects.h"
+#include "render/gl_pass.h"
 #include "render/gl_shaders.h"
 #include "render/gl_target.h"
+#include "render/palette.h"
 
 #include <optional>
 
@@ -23,6 +25,12 @@ class GlCanvas {
   static Result<GlCanvas> make();
 
   Status begin(int width_px, int height_px);
+  // What is drawn next goes into these columns.
+  void set_columns(int left, int width);
+  // Darkens what is drawn in those columns where little light comes.
+  Status occlude(const DrawPass& pass, const DrawStyle& style);
+  // Over what is drawn there.
+  void fill_columns(int left, int width, const ColorSrgb& color);
   // Into the window's framebuffer. Leaves OpenGL as a program expects that draws over it.
   Status show();
   // The same picture as an image.

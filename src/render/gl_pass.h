@@ -20,6 +20,7 @@ struct DrawPass {
 struct DrawStyle {
   Coloring coloring = Coloring::Shaded;
   bool wireframe = false;
+  bool ambient_occlusion = false;      // for who draws: scenes know nothing of it
   float line_px = 1;                   // width of wireframe lines, in pixels of the framebuffer
   float level_share = 0;               // Coloring::Level
   float error_full = 1;                // Coloring::Error: the error at the scale's red end

@@ -6,9 +6,9 @@
 //   scene.draw(programs, pass, style);
 #pragma once
 
-#include "crease/draw_changes.h"
 #include "crease/draw_list.h"
 #include "crease/shading.h"
+#include "render/draw_ranges.h"
 #include "render/gl_objects.h"
 #include "render/gl_pass.h"
 #include "render/gl_shaders.h"
@@ -16,12 +16,6 @@
 #include <memory>
 
 namespace crease {
-
-// Triangles of the three parts.
-struct DrawRanges {
-  Range sn, fn, nsn;
-  std::size_t triangle_count() const { return std::size_t(sn.count) + fn.count + nsn.count; }
-};
 
 // What to draw a model's materials in.
 using GlMaterials = std::shared_ptr<const GlArray>;

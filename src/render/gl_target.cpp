@@ -49,6 +49,8 @@ bool attach(GlFramebuffer& framebuffer, const GlTexture& color) {
 Result<GlTarget> GlTarget::make(const GlLimits& gl, int width, int height) {
   GlTarget target;
   target.reversed_depth_ = gl.can_reverse_depth;
+  target.width_ = width;
+  target.height_ = height;
   const int samples = std::min(kSamples, gl.max_samples);
   target.color_ = make_storage(samples, GL_SRGB8_ALPHA8, width, height);
   target.depth_ = make_storage(samples, GL_DEPTH_COMPONENT32F, width, height);
@@ -85,6 +87,30 @@ const GlTexture& GlTarget::resolve(int width, int height) {
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.id());
   glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   return resolved_color_;
+}
+
+Result<const GlTexture*> GlTarget::resolve_depth(int width, int height) {
+  if (!depths_) {
+    depths_ = GlTexture::make();
+    glBindTexture(GL_TEXTURE_2D, depths_.id());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, width_, height_, 0, GL_DEPTH_COMPONENT,
+                 GL_FLOAT, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    resolved_depth_ = GlFramebuffer::make();
+    glBindFramebuffer(GL_FRAMEBUFFER, resolved_depth_.id());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depths_.id(), 0);
+    glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);
+    if (!is_complete()) {
+      return fail(Error::NotSupported, "OpenGL has no framebuffer of depths alone");
+    }
+  }
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, multisampled_.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_depth_.id());
+  glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, multisampled_.id());
+  return &depths_;
 }
 
 void GlTarget::read(int width, int height, std::span<std::uint8_t> rgba) {

@@ -19,7 +19,9 @@ class GlTarget {
   void begin(int width, int height);
   // Averages the samples. The texture's colours are times coverage.
   const GlTexture& resolve(int width, int height);
-  // The same, and copies width x height pixels, bottom row first, sRGB-encoded colours
+  // One sample of each pixel's depth. What is drawn next goes on where it was.
+  Result<const GlTexture*> resolve_depth(int width, int height);
+  // As resolve(), and copies width x height pixels, bottom row first, sRGB-encoded colours
   // times coverage and coverage.
   void read(int width, int height, std::span<std::uint8_t> rgba);
 
@@ -28,6 +30,9 @@ class GlTarget {
   GlFramebuffer multisampled_, resolved_;
   GlRenderbuffer color_, depth_;
   GlTexture resolved_color_;
+  int width_ = 0, height_ = 0;
+  GlFramebuffer resolved_depth_;  // once it is asked for
+  GlTexture depths_;
 };
 
 }  // namespace crease

@@ -20,8 +20,9 @@ Color linear_from_srgb(const ColorSrgb& encoded);
 
 inline constexpr ColorSrgb kBackgroundTop{250, 251, 252}, kBackgroundBottom{218, 224, 231};
 inline constexpr ColorSrgb kTextColor{38, 43, 51}, kPageColor{255, 255, 255};
-inline constexpr ColorSrgb kSeparatorColor{196, 202, 210};
+inline constexpr ColorSrgb kSeparatorColor{196, 202, 210}, kDividerColor{120, 128, 140};
 inline constexpr ColorSrgb kFrustumColor{20, 24, 30};
+inline constexpr ColorSrgb kCreaseColor{26, 30, 38}, kBorderColor{214, 72, 20};
 
 inline constexpr ColorSrgb kDefaultSurface{224, 217, 207};  // warm light grey
 

@@ -3,6 +3,7 @@
 #include "render/frustum.h"
 #include "render/gl_context.h"
 #include "render/gl_lines.h"
+#include "render/gl_occlusion.h"
 #include "render/gl_scene.h"
 #include "render/gl_target.h"
 #include "render/layout.h"
@@ -191,10 +192,15 @@ Status draw_view(Image& image, const PixelRect& view_rect, const GlScene& scene,
       pass.window.bottom = 1 - double(y + height) / view_rect.height;
       const int draw_width = width * kSupersampling, draw_height = height * kSupersampling;
       target.begin(draw_width, draw_height);
-      for (const Status& drawn :
-           {scene.draw(programs, pass, style), draw_lines(programs, lines, pass, style)}) {
+      if (const Status drawn = scene.draw(programs, pass, style); !drawn.ok()) return drawn;
+      if (style.ambient_occlusion) {
+        const Result<const GlTexture*> depths = target.resolve_depth(draw_width, draw_height);
+        if (!depths.ok()) return depths.failure();
+        const Status drawn = draw_occlusion(programs, **depths, pass, style);
         if (!drawn.ok()) return drawn;
       }
+      const Status drawn = draw_lines(programs, lines, pass, style);
+      if (!drawn.ok()) return drawn;
       pixels.resize(4 * std::size_t(draw_width) * std::size_t(draw_height));
       target.read(draw_width, draw_height, pixels);
       lay_over(image, {view_rect.x + x, view_rect.y + y, width, height}, pixels);
@@ -300,6 +306,7 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
     fill_background(image, layout.views[i]);
     const DrawStyle style{.coloring = options.coloring,
                           .wireframe = options.wireframe,
+                          .ambient_occlusion = options.ambient_occlusion,
                           .line_px = kSupersampling * std::max(1.0f, float(size.height) / 1080),
                           .level_share = panels[i].level_share,
                           .error_full = float(scale.full),

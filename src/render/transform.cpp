@@ -75,6 +75,28 @@ Matrix4f clip_from_list(const View& view, const Vec3d& origin, const DepthRange&
   return m;
 }
 
+Vec3d corner_of(const Box& box, int i) {
+  return corner_of(box.low, box.high, i);
+}
+
+bool is_beside(const View& view, const Box& box) {
+  int beyond[5] = {};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3d to = corner_of(box, i) - view.eye;
+    const double depth = -dot(to, view.back);
+    const double x = dot(to, view.right), y = dot(to, view.above);
+    beyond[0] += x > view.tan_half_width * depth;
+    beyond[1] += -x > view.tan_half_width * depth;
+    beyond[2] += y > view.tan_half_height * depth;
+    beyond[3] += -y > view.tan_half_height * depth;
+    beyond[4] += depth < 0;
+  }
+  for (const int count : beyond) {
+    if (count == 8) return true;
+  }
+  return false;
+}
+
 void Box::add(const Vec3d& p) {
   if (empty) {
     low = high = p;

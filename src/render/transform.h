@@ -49,4 +49,10 @@ struct Box {
   void add(const Vec3d& p);
 };
 
+// Its eight corners: bit 0 of `i` is the high end along x, bit 1 along y, bit 2 along z.
+Vec3d corner_of(const Box& box, int i);
+
+// Whether the box lies beyond one of the four sides of the view, or behind the eye.
+bool is_beside(const View& view, const Box& box);
+
 }  // namespace crease

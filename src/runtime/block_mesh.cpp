@@ -20,7 +20,17 @@ struct BlockMesh::Impl {
         page_count(pages),
         graph(schema->facts, blocks),
         chooser(graph, schema->facts.grid) {}
+  // Of the same file, with no block.
+  explicit Impl(const Impl* other)
+      : schema(other->schema),
+        part_names(other->part_names),
+        page_count(other->page_count),
+        graph(other->graph),
+        chooser(graph, schema->facts.grid) {
+    make_room();
+  }
 
+  void make_room();  // for what the graph has
   BlockUpdate update(const BlockViewParameters& parameters);
   void move_cut(std::span<const std::uint32_t> chosen, BlockUpdate& report);
   void drop_beyond(std::size_t max_bytes, BlockUpdate& report);
@@ -50,6 +60,17 @@ struct BlockMesh::Impl {
   BlockViewParameters last;
   bool has_changed = true;  // since the last update
 };
+
+void BlockMesh::Impl::make_room() {
+  const std::uint32_t count = graph.size();
+  resident.resize(count);
+  for (auto block = static_cast<std::uint32_t>(bytes_of_block.size()); block < count; ++block) {
+    bytes_of_block.push_back(resident_bytes_of(graph.entry(block).facts, *schema));
+  }
+  is_refined.resize(count, 0);
+  wanted_at.resize(count, 0);
+  has_changed = true;
+}
 
 BlockChooser::Limits BlockMesh::Impl::limits(const BlockViewParameters& parameters) const {
   return {parameters.max_bytes, bytes_of_block, is_refined};
@@ -168,6 +189,10 @@ Result<BlockMesh> BlockMesh::open(const BlockFile& file) {
       std::make_unique<Impl>(*std::move(schema), file.block_count(), file.page_count()));
 }
 
+BlockMesh BlockMesh::another() const {
+  return BlockMesh(std::make_unique<Impl>(impl_.get()));
+}
+
 BlockMesh::BlockMesh(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 BlockMesh::~BlockMesh() = default;
 BlockMesh::BlockMesh(BlockMesh&&) noexcept = default;
@@ -179,14 +204,7 @@ std::optional<std::uint32_t> BlockMesh::next_page() const {
 
 Status BlockMesh::add_page(const DirectoryPage& page) {
   if (Status status = impl_->graph.add_page(page); !status.ok()) return status.failure();
-  const std::size_t count = impl_->graph.size();
-  impl_->resident.resize(count);
-  for (std::size_t block = impl_->bytes_of_block.size(); block < count; ++block) {
-    impl_->bytes_of_block.push_back(bytes_of(impl_->graph.entry(std::uint32_t(block)).facts));
-  }
-  impl_->is_refined.resize(count, 0);
-  impl_->wanted_at.resize(count, 0);
-  impl_->has_changed = true;
+  impl_->make_room();
   return Done{};
 }
 
@@ -280,6 +298,10 @@ std::size_t BlockMesh::resident_bytes() const {
 
 bool BlockMesh::is_resident(BlockId id) const {
   return index_of(id) < impl_->resident.size() && impl_->resident[index_of(id)] != nullptr;
+}
+
+ResidentBlockPtr BlockMesh::resident(BlockId id) const {
+  return index_of(id) < impl_->resident.size() ? impl_->resident[index_of(id)] : nullptr;
 }
 
 std::size_t BlockMesh::bytes_of(const BlockFacts& facts) const {

@@ -1,5 +1,6 @@
 #include "crease/block_streamer.h"
 
+#include "base/assert.h"
 #include "codec/decode_container.h"
 #include "runtime/decode_workers.h"
 
@@ -18,6 +19,7 @@ constexpr float kPagePriority = 1e9f;          // before any block
 constexpr std::size_t kDecodingPerThread = 8;  // so that none is idle between two frames
 constexpr int kUpdatesBetweenPrefetches = 8;
 constexpr std::chrono::milliseconds kLongestPause{60'000};
+constexpr std::chrono::milliseconds kGlance{100};  // how often open() asks whether to stop
 
 // On its way from the source to the mesh.
 struct Pending {
@@ -25,7 +27,7 @@ struct Pending {
   enum class State { Asked, Waiting, Decoding } state = State::Asked;
   Ticket ticket{};                 // Asked
   std::vector<std::byte> payload;  // Waiting, for what it needs
-  bool is_wanted = true;           // by the present view
+  std::uint32_t wanted_by = 0;     // a bit for each of the present views
   bool is_prefetch = false;
 };
 
@@ -38,26 +40,31 @@ struct Pause {
 
 struct BlockStreamer::Impl {
   Impl(BlockFileHead h, BlockMesh m, AsyncSourcePtr s, const StreamOptions& o)
-      : head(std::move(h)),
-        mesh(std::move(m)),
-        source(std::move(s)),
-        options(o),
-        workers(o.decode_threads) {
+      : head(std::move(h)), source(std::move(s)), options(o), workers(o.decode_threads) {
+    meshes.push_back(std::move(m));
     lacks_names = head.part_count > 0;
   }
 
-  StreamReport update(const BlockViewParameters& parameters);
+  StreamReport update(const BlockViewParameters& parameters, std::size_t view);
   void take_answers();
   void take_page(Result<std::vector<std::byte>> bytes);
   void take_names(const Result<std::vector<std::byte>>& bytes);
   void take_payload(BlockId id, Result<std::vector<std::byte>> bytes);
   void take_decoded(StreamReport& report);
+  void take_from_others(std::size_t view, StreamReport& report);
+  bool others_have(BlockId id) const;
   void ask_for_page();
-  void ask_for_blocks(const BlockViewParameters& parameters);
-  void ask_for(std::span<const BlockEntry> missing, bool is_prefetch);
-  bool is_coming(BlockId id) const { return mesh.is_resident(id) || pending.contains(id); }
+  void ask_for_names();
+  void ask_for_blocks(const BlockViewParameters& parameters, std::size_t view);
+  void ask_for(std::span<const BlockEntry> missing, std::size_t view, bool is_prefetch);
+  void want(std::span<const BlockEntry> entries, std::size_t view);
+  bool is_nothing_missing() const {
+    return std::all_of(meshes.begin(), meshes.end(),
+                       [](const BlockMesh& mesh) { return mesh.missing().empty(); });
+  }
   void forget_unwanted();
   void decode_what_can_be();
+  std::optional<BlockDecodeJob> decode_job(BlockId id) const;
   void lengthen(Pause& pause) const {
     pause.length = std::clamp(2 * pause.length, options.first_pause, kLongestPause);
     pause.until = Clock::now() + pause.length;
@@ -70,7 +77,7 @@ struct BlockStreamer::Impl {
   }
 
   BlockFileHead head;
-  BlockMesh mesh;
+  std::vector<BlockMesh> meshes;  // one a view; all have the same pages
   AsyncSourcePtr source;
   StreamOptions options;
   std::map<BlockId, Pending> pending;  // by id: coarse ones first
@@ -87,14 +94,17 @@ struct BlockStreamer::Impl {
   DecodeWorkers workers;  // the last one: its threads end before what they use
 };
 
-StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters) {
+StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters, std::size_t view) {
   StreamReport report;
   take_answers();
   take_decoded(report);
+  take_from_others(view, report);
+  BlockMesh& mesh = meshes[view];
   report.cut = mesh.update(parameters);
   statistics.blocks_dropped += report.cut.dropped.size();
   ask_for_page();
-  ask_for_blocks(parameters);
+  ask_for_names();
+  ask_for_blocks(parameters, view);
   forget_unwanted();
   decode_what_can_be();
   report.is_complete = mesh.missing().empty() && !mesh.next_page();
@@ -121,11 +131,14 @@ void BlockStreamer::Impl::take_answers() {
 }
 
 void BlockStreamer::Impl::take_page(Result<std::vector<std::byte>> bytes) {
-  const std::uint32_t page = *mesh.next_page();
+  const std::uint32_t page = *meshes.front().next_page();
   Status added = Done{};
   if (bytes.ok()) {
     const Result<DirectoryPage> decoded = decode_page(*bytes, head, page, Checksums::Verify);
-    added = decoded.ok() ? mesh.add_page(*decoded) : decoded.failure();
+    added = decoded.ok() ? Status(Done{}) : Status(decoded.failure());
+    for (std::size_t v = 0; added.ok() && v < meshes.size(); ++v) {
+      added = meshes[v].add_page(*decoded);  // fails for the first one or for none
+    }
   } else {
     added = bytes.failure();
   }
@@ -144,7 +157,8 @@ void BlockStreamer::Impl::take_names(const Result<std::vector<std::byte>>& bytes
   if (bytes.ok() && checksum(*bytes) == head.parts.checksum) {
     Result<std::vector<std::string>> names = decode_parts(*bytes, head.part_count);
     lacks_names = false;
-    if (names.ok()) mesh.set_part_names(*std::move(names));
+    if (!names.ok()) return;
+    for (BlockMesh& mesh : meshes) mesh.set_part_names(*names);
     return;
   }
   lengthen(names_pause);
@@ -177,55 +191,92 @@ void BlockStreamer::Impl::take_decoded(StreamReport& report) {
       continue;
     }
     const auto at = pending.find(decoded.id);
+    // What nobody wants any more is there for the first one.
+    const std::uint32_t wanted_by = at->second.wanted_by != 0 ? at->second.wanted_by : 1;
     statistics.blocks_prefetched += at->second.is_prefetch;
     pending_bytes -= at->second.entry.bytes;
     pending.erase(at);
     if (paused.erase(decoded.id) > 0 && paused.empty()) trouble.reset();
     ++statistics.blocks_decoded;
-    mesh.insert(*std::move(decoded.block));
+    for (std::size_t v = 0; v < meshes.size(); ++v) {
+      if ((wanted_by >> v & 1) != 0) meshes[v].insert(*decoded.block);
+    }
     ++report.inserted;
   }
 }
 
-void BlockStreamer::Impl::ask_for_page() {
-  // Names last: once the view has what it wants.
-  if (lacks_names && !names_ticket && Clock::now() >= names_pause.until && !mesh.next_page() &&
-      mesh.missing().empty() && !mesh.shown().empty()) {
-    names_ticket = source->request(head.parts.range, 0);
+void BlockStreamer::Impl::take_from_others(std::size_t view, StreamReport& report) {
+  if (meshes.size() == 1) return;
+  for (const BlockEntry& entry : meshes[view].missing()) {
+    for (const BlockMesh& other : meshes) {
+      ResidentBlockPtr block = other.resident(entry.id);
+      if (!block) continue;
+      meshes[view].insert(std::move(block));
+      ++report.inserted;
+      break;
+    }
   }
-  const std::optional<std::uint32_t> page = mesh.next_page();
+}
+
+bool BlockStreamer::Impl::others_have(BlockId id) const {
+  return std::any_of(meshes.begin(), meshes.end(),
+                     [id](const BlockMesh& mesh) { return mesh.is_resident(id); });
+}
+
+// Names last: once the views have what they want.
+void BlockStreamer::Impl::ask_for_names() {
+  if (!lacks_names || names_ticket || Clock::now() < names_pause.until) return;
+  const BlockMesh& mesh = meshes.front();
+  if (mesh.next_page() || mesh.shown().empty() || !is_nothing_missing()) return;
+  names_ticket = source->request(head.parts.range, 0);
+}
+
+void BlockStreamer::Impl::ask_for_page() {
+  const std::optional<std::uint32_t> page = meshes.front().next_page();
   if (!page || page_ticket || Clock::now() < page_pause.until) return;
   page_ticket = source->request(head.pages[*page], kPagePriority);
 }
 
-void BlockStreamer::Impl::ask_for_blocks(const BlockViewParameters& parameters) {
-  for (auto& [id, p] : pending) p.is_wanted = false;
-  for (const BlockEntry& entry : mesh.missing()) {
-    if (const auto at = pending.find(entry.id); at != pending.end()) at->second.is_wanted = true;
+void BlockStreamer::Impl::want(std::span<const BlockEntry> entries, std::size_t view) {
+  for (const BlockEntry& entry : entries) {
+    if (const auto at = pending.find(entry.id); at != pending.end()) {
+      at->second.wanted_by |= std::uint32_t(1) << view;
+    }
   }
-  ask_for(mesh.missing(), false);
+}
+
+void BlockStreamer::Impl::ask_for_blocks(const BlockViewParameters& parameters, std::size_t view) {
+  for (auto& [id, p] : pending) p.wanted_by &= ~(std::uint32_t(1) << view);
+  want(meshes[view].missing(), view);
+  ask_for(meshes[view].missing(), view, false);
+  if (view != 0) return;  // the first one's camera tells for all where they go
   const std::vector<BlockEntry> soon = missing_soon(parameters);
-  for (const BlockEntry& entry : soon) {
-    if (const auto at = pending.find(entry.id); at != pending.end()) at->second.is_wanted = true;
-  }
-  ask_for(soon, true);
+  want(soon, view);
+  ask_for(soon, view, true);
   last_camera = parameters.view.camera;
 }
 
 // In their order, as far as there is room, and with what they need on its way.
-void BlockStreamer::Impl::ask_for(std::span<const BlockEntry> missing, bool is_prefetch) {
+void BlockStreamer::Impl::ask_for(std::span<const BlockEntry> missing, std::size_t view,
+                                  bool is_prefetch) {
+  const BlockMesh& mesh = meshes[view];
   std::vector<RangeRequest> requests;
   std::vector<BlockId> ids;
   float priority = is_prefetch ? 0 : static_cast<float>(missing.size());
   for (const BlockEntry& entry : missing) {
     if (pending_bytes > 0 && pending_bytes + entry.bytes > options.max_pending_bytes) break;
     priority -= 1;
-    if (pending.contains(entry.id) || is_paused(entry.id)) continue;
+    if (pending.contains(entry.id) || is_paused(entry.id) || others_have(entry.id)) continue;
     const std::vector<BlockId> needed = mesh.lacking(entry.id);
-    if (!std::all_of(needed.begin(), needed.end(), [this](BlockId id) { return is_coming(id); })) {
+    // What another view has will be here with the next update.
+    if (!std::all_of(needed.begin(), needed.end(),
+                     [this](BlockId id) { return others_have(id) || pending.contains(id); })) {
       continue;
     }
-    pending[entry.id] = {.entry = entry, .payload = {}, .is_prefetch = is_prefetch};
+    pending[entry.id] = {.entry = entry,
+                         .payload = {},
+                         .wanted_by = std::uint32_t(1) << view,
+                         .is_prefetch = is_prefetch};
     pending_bytes += entry.bytes;
     requests.push_back({{entry.offset, entry.bytes}, priority});
     ids.push_back(entry.id);
@@ -243,7 +294,7 @@ void BlockStreamer::Impl::ask_for(std::span<const BlockEntry> missing, bool is_p
 std::vector<BlockEntry> BlockStreamer::Impl::missing_soon(const BlockViewParameters& parameters) {
   const Camera& now = parameters.view.camera;
   if (++updates % kUpdatesBetweenPrefetches != 0 || options.prefetch_frames == 0 || !last_camera ||
-      !mesh.missing().empty() || pending_bytes > options.max_pending_bytes / 2 ||
+      !is_nothing_missing() || pending_bytes > options.max_pending_bytes / 2 ||
       (last_camera->position == now.position && last_camera->target == now.target)) {
     return {};
   }
@@ -251,15 +302,15 @@ std::vector<BlockEntry> BlockStreamer::Impl::missing_soon(const BlockViewParamet
   const double frames = options.prefetch_frames;
   soon.view.camera.position = now.position + (now.position - last_camera->position) * frames;
   soon.view.camera.target = now.target + (now.target - last_camera->target) * frames;
-  return mesh.missing_for(soon);
+  return meshes.front().missing_for(soon);
 }
 
 // What was prefetched may come while nobody else needs its room.
 void BlockStreamer::Impl::forget_unwanted() {
-  const bool has_room = mesh.missing().empty() || pending_bytes <= options.max_pending_bytes / 2;
+  const bool has_room = is_nothing_missing() || pending_bytes <= options.max_pending_bytes / 2;
   for (auto at = pending.begin(); at != pending.end();) {
     Pending& p = at->second;
-    if (p.is_wanted || p.state == Pending::State::Decoding || (p.is_prefetch && has_room)) {
+    if (p.wanted_by != 0 || p.state == Pending::State::Decoding || (p.is_prefetch && has_room)) {
       ++at;
       continue;
     }
@@ -272,11 +323,18 @@ void BlockStreamer::Impl::forget_unwanted() {
   }
 }
 
+std::optional<BlockDecodeJob> BlockStreamer::Impl::decode_job(BlockId id) const {
+  for (const BlockMesh& mesh : meshes) {
+    if (std::optional<BlockDecodeJob> job = mesh.decode_job(id)) return job;
+  }
+  return std::nullopt;
+}
+
 void BlockStreamer::Impl::decode_what_can_be() {
   for (auto& [id, p] : pending) {
     if (workers.outstanding() >= most_decoding()) return;
     if (p.state != Pending::State::Waiting) continue;
-    std::optional<BlockDecodeJob> job = mesh.decode_job(id);
+    std::optional<BlockDecodeJob> job = decode_job(id);
     if (!job) continue;
     p.state = Pending::State::Decoding;
     workers.add(*std::move(job), std::move(p.payload));
@@ -288,7 +346,8 @@ namespace {
 // An asynchronous source of which nothing else is asked, as one that waits.
 class WaitingSource : public ByteSource {
  public:
-  explicit WaitingSource(AsyncSourcePtr source) : source_(std::move(source)) {}
+  WaitingSource(AsyncSourcePtr source, std::function<bool()> stopped)
+      : source_(std::move(source)), stopped_(std::move(stopped)) {}
 
   std::string name() const override { return source_->name(); }
   std::uint64_t size() const override { return source_->size().value_or(0); }
@@ -299,7 +358,11 @@ class WaitingSource : public ByteSource {
   Status read_at(std::uint64_t offset, std::span<std::byte> into) const override {
     const Ticket ticket = source_->request({offset, into.size()});
     for (;;) {
-      source_->wait(std::chrono::milliseconds(1000));
+      source_->wait(kGlance);
+      if (stopped_ && stopped_()) {
+        source_->cancel(ticket);
+        return fail(Error::Interrupted, "interrupted");
+      }
       for (const AsyncAnswer& answer : source_->poll()) {
         if (answer.ticket != ticket) continue;
         if (!answer.bytes.ok()) return answer.bytes.failure();
@@ -309,13 +372,14 @@ class WaitingSource : public ByteSource {
     }
   }
 
-  AsyncSourcePtr source_;
+  const AsyncSourcePtr source_;
+  const std::function<bool()> stopped_;
 };
 
 }  // namespace
 
 Result<BlockStreamer> BlockStreamer::open(AsyncSourcePtr source, const StreamOptions& options) {
-  const auto waiting = std::make_shared<const WaitingSource>(source);
+  const auto waiting = std::make_shared<const WaitingSource>(source, options.stopped);
   if (Status status = waiting->begin(); !status.ok()) return status.failure();
   const Result<BlockFile> file = BlockFile::open(waiting);
   if (!file.ok()) return file.failure();
@@ -334,16 +398,31 @@ BlockStreamer::BlockStreamer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)
 BlockStreamer::~BlockStreamer() = default;
 BlockStreamer::BlockStreamer(BlockStreamer&&) noexcept = default;
 
-StreamReport BlockStreamer::update(const BlockViewParameters& parameters) {
-  return impl_->update(parameters);
+StreamReport BlockStreamer::update(const BlockViewParameters& parameters, std::size_t view) {
+  CREASE_ASSERT(view < view_count());
+  return impl_->update(parameters, view);
+}
+
+void BlockStreamer::set_view_count(std::size_t count) {
+  CREASE_ASSERT(count >= 1 && count <= kMaxViews);
+  std::vector<BlockMesh>& meshes = impl_->meshes;
+  while (meshes.size() > count) meshes.pop_back();
+  while (meshes.size() < count) meshes.push_back(meshes.front().another());
+  const std::uint32_t all = (std::uint32_t(1) << count) - 1;
+  for (auto& [id, p] : impl_->pending) p.wanted_by &= all;
+}
+
+std::size_t BlockStreamer::view_count() const {
+  return impl_->meshes.size();
 }
 
 const BlockFileHead& BlockStreamer::head() const {
   return impl_->head;
 }
 
-const BlockMesh& BlockStreamer::mesh() const {
-  return impl_->mesh;
+const BlockMesh& BlockStreamer::mesh(std::size_t view) const {
+  CREASE_ASSERT(view < view_count());
+  return impl_->meshes[view];
 }
 
 StreamStatistics BlockStreamer::statistics() const {

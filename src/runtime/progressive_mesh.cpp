@@ -221,11 +221,16 @@ void ProgressiveMesh::set_triangle_count(std::size_t count) {
 }
 
 void ProgressiveMesh::set_error(float surface_error) {
+  set_applied(applied_for_error(surface_error));
+}
+
+std::size_t ProgressiveMesh::applied_for_error(float surface_error) const {
+  if (surface_error < 0) return 0;
   const std::vector<ErrorStep>& errors = impl_->arrays->contractions.errors;
   const auto too_coarse = std::partition_point(
       errors.begin(), errors.end(),
       [surface_error](const ErrorStep& step) { return step.error.surface <= surface_error; });
-  set_applied(too_coarse == errors.end() ? contraction_count() : too_coarse->applied - 1);
+  return too_coarse == errors.end() ? contraction_count() : too_coarse->applied - 1;
 }
 
 std::size_t ProgressiveMesh::triangle_count() const {

@@ -1,6 +1,7 @@
 #include "view/app.h"
 
 #include "view/remembered_views.h"
+#include "view/split_of.h"
 #include "view/words.h"
 #include "view/write_text.h"
 
@@ -34,9 +35,14 @@ App::App(const ViewerOptions& options, ViewerWindow& window, GlCanvas canvas)
   settings_.mode = options.mode;
   settings_.coloring = options.coloring;
   settings_.wireframe = options.wireframe;
+  settings_.creases = options.creases;
+  settings_.ambient_occlusion = options.ambient_occlusion;
   settings_.pixels = options.pixels;
+  settings_.degrees = options.degrees;
   settings_.max_triangles = options.max_triangles;
   settings_.max_bytes = options.max_bytes;
+  split_ = split_of(options);
+  stream_.max_bytes_per_second = options.max_bytes_per_second;
   camera_.up = options.up;
   if (!options.source.empty()) session_.open(options.source);
 }
@@ -77,20 +83,13 @@ void App::welcome() {
   if (camera) {
     camera_ = *camera;
     // A picture of another shape shows at least what the camera's own does.
-    const auto [width, height] = window_.size_px();
-    if (width > 0 && height > 0) {
-      const View view = make_view(camera_, double(width) / height);
+    const Camera shown = sized(camera_);
+    if (window_.size_px().second > 0) {
+      const View view = make_view(camera_, double(shown.width_px) / shown.height_px);
       camera_.vertical_fov_deg = degrees(2 * std::atan(view.tan_half_height));
     }
   }
   window_.set_title(session_.source().name + " - crease");
-}
-
-Camera App::sized(Camera camera) const {
-  const auto [width, height] = window_.size_px();
-  camera.width_px = std::max(1, width);
-  camera.height_px = std::max(1, height);
-  return camera;
 }
 
 void App::fit() {
@@ -99,7 +98,12 @@ void App::fit() {
   const std::vector<Vec3f> points = mesh->outline();
   if (points.empty()) return;
   const PointSet set{mesh->origin(), points};
-  camera_ = fit_camera_to(std::span(&set, 1), options_.up, camera_.width_px, camera_.height_px);
+  Camera narrowest = camera_;
+  for (std::size_t side = 0; side < side_count(); ++side) {
+    const Camera of_side = sized(camera_, side);
+    if (of_side.width_px < narrowest.width_px) narrowest = of_side;
+  }
+  camera_ = fit_camera_to(std::span(&set, 1), options_.up, narrowest.width_px, narrowest.height_px);
 }
 
 // A cut for another camera has another outline, so this might go on for ever. The outline of a
@@ -138,19 +142,15 @@ void App::move_camera() {
   recorder_.add(camera_, time);
 }
 
-std::optional<Hit> App::hit_at(double x, double y) const {
-  const ShownMesh* mesh = session_.shown();
-  return mesh == nullptr ? std::nullopt : mesh->pick(ray_through(camera_, x, y));
-}
-
 Status App::step() {
   window_.wait(wait_seconds());
   const std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   if (options_.stopped && options_.stopped()) window_.close();
   camera_ = sized(camera_);
   take_events();
-  if (session_.poll(settings_, canvas_.limits())) welcome();
+  if (poll_session()) welcome();
   move_camera();
+  session_.limit().set(stream_.max_bytes_per_second);
   if (ShownMesh* mesh = session_.shown()) {
     ViewSettings wanted = settings_;
     const bool knows_where = !is_fitted_ || frame_.triangles > 0;
@@ -161,12 +161,17 @@ Status App::step() {
     frame_ = mesh->update(wanted, sized(frozen_.value_or(camera_)));
     frame_.draw_calls = calls;
     frame_.uploaded_bytes += not_drawn;
-    if (is_fitted_ && (frame_.has_changed || !knows_where) && fit_again()) {
+    frame_.has_changed |= std::exchange(last_shown_, mesh) != mesh;
+    update_right();
+    const bool has_become_complete = frame_.is_complete && !was_complete;
+    const bool may_be_larger = frame_.has_changed || has_become_complete || !knows_where;
+    if (is_fitted_ && may_be_larger && fit_again()) {
       frame_.has_changed = true;
       frame_.is_complete = false;  // not for this camera
     }
     if (frame_.is_complete != was_complete) frame_.has_changed = true;
   }
+  frame_.bytes_per_second = pace_.add(now(), session_.bytes_read());
   if (!is_drawing_due()) return finish_screenshot();
   const auto [width, height] = window_.size_px();
   if (width == 0 || height == 0) return Done{};
@@ -190,20 +195,15 @@ bool App::is_drawing_due() {
 }
 
 Status App::draw() {
-  if (const Status begun = canvas_.begin(camera_.width_px, camera_.height_px); !begun.ok()) {
-    return begun;
-  }
-  if (ShownMesh* mesh = session_.shown()) {
-    const Picture picture{camera_, sized(frozen_.value_or(camera_)), window_.scale()};
-    const Result<DrawCount> count = paint(canvas_, *mesh, picture, settings_, lines());
-    if (!count.ok()) return count.failure();
-    frame_.draw_calls = count->calls;
-  }
+  const auto [width, height] = window_.size_px();
+  if (const Status begun = canvas_.begin(width, height); !begun.ok()) return begun;
+  if (const Status drawn = draw_sides(); !drawn.ok()) return drawn;
   if (const Status shown = canvas_.show(); !shown.ok()) return shown;
   gui_.begin();
   const ViewSettings before = settings_;
-  for (const Action action : draw_panels(panel_content(), settings_)) act(action);
-  if (!(before == settings_)) draws_left_ = kSettlingFrames;
+  const SplitSettings split_before = split_;
+  for (const Action action : draw_panels(panel_content(), edited(), split_, stream_)) act(action);
+  if (!(before == settings_ && split_before == split_)) draws_left_ = kSettlingFrames;
   gui_.draw();
   if (window_picture_) window_picture_ = canvas_.read_window();
   window_.show();
@@ -286,13 +286,19 @@ void App::act(Action action) {
       window_.capture_mouse(input_.is_flying());
       break;
     case Action::NextMode:
-      settings_.mode = next_of(settings_.mode, 3);
+      edited().mode = next_of(edited().mode, 3);
       break;
     case Action::NextColoring:
-      settings_.coloring = next_of(settings_.coloring, 5);
+      edited().coloring = next_of(edited().coloring, 5);
       break;
     case Action::Wireframe:
-      settings_.wireframe = !settings_.wireframe;
+      edited().wireframe = !edited().wireframe;
+      break;
+    case Action::Creases:
+      edited().creases = !edited().creases;
+      break;
+    case Action::Occlusion:
+      edited().ambient_occlusion = !edited().ambient_occlusion;
       break;
     case Action::Freeze:
       freeze(!frozen_);
@@ -301,10 +307,16 @@ void App::act(Action action) {
       look_from_outside();
       break;
     case Action::Finer:
-      settings_.pixels = std::max(0.1, settings_.pixels / 2);
+      edited().pixels = std::max(0.1, edited().pixels / 2);
       break;
     case Action::Coarser:
-      settings_.pixels = std::min(64.0, settings_.pixels * 2);
+      edited().pixels = std::min(64.0, edited().pixels * 2);
+      break;
+    case Action::NextSplit:
+      split_.kind = next_of(split_.kind, 3);
+      break;
+    case Action::OtherHalf:
+      split_.edits_right = !split_.edits_right;
       break;
     case Action::Screenshot:
       write_picture();
@@ -340,8 +352,9 @@ bool App::is_all_there() const {
   const bool is_flight_over =
       options_.flight.empty() ||
       (flight_began_ && now() - *flight_began_ > options_.flight.back().seconds + 0.5);
-  return frame_.is_complete && !frame_.has_changed && !session_.is_busy() && is_flight_over &&
-         draws_left_ == 0 && !has_arrived_ && session_.shown() != nullptr;
+  return frame_.is_complete && !frame_.has_changed && session_.shown(side_count() - 1) != nullptr &&
+         !session_.is_busy() && is_flight_over && draws_left_ == 0 && !has_arrived_ &&
+         session_.shown() != nullptr;
 }
 
 Result<Image> App::final_picture() {

@@ -38,16 +38,20 @@ class App {
   void act(Action action);
 
   const ViewSettings& settings() const { return settings_; }
+  const SplitSettings& split() const { return split_; }
+  const StreamSettings& stream() const { return stream_; }
   const Camera& camera() const { return camera_; }
   const Session& session() const { return session_; }
   const FrameFacts& frame() const { return frame_; }
+  const FrameFacts& right_frame() const { return right_frame_; }
+  const Lines& picked() const { return picked_lines_; }  // what was said of it, last
+  void take_click(const Click& click);
   bool is_frozen() const { return frozen_.has_value(); }
 
  private:
   double now() const;
   void take_events();
   void take_event(const WindowEvent& event);
-  void take_click(const Click& click);
   void open(const std::string& source);
   void welcome();      // a model that is there now
   void move_camera();  // by the flight, by keys, to fit
@@ -59,11 +63,29 @@ class App {
   void write_picture();
   void say(std::string notice);
   void remember();
+  // Under a point of the window.
   std::optional<Hit> hit_at(double x, double y) const;
-  Camera sized(Camera camera) const;
+  Ray ray_at(double x, double y) const;
+  std::size_t side_at(double x) const;
+  std::string block_at(double x, double y) const;
+
+  // One side, or two: from the left, of so many columns.
+  struct Columns {
+    int left = 0, width = 1;
+  };
+  std::size_t side_count() const { return split_.kind == ViewSplit::Off ? 1 : 2; }
+  Columns columns_of(std::size_t side) const;
+  Camera sized(Camera camera, std::size_t side = 0) const;  // to a side
+  ViewSettings settings_of(std::size_t side) const;
+  ViewSettings& edited();  // what keys and panels change
+  bool take_divider(const WindowEvent& event);
+  bool poll_session();  // true: another model is there
+  void update_right();
 
   bool is_drawing_due();
   Status draw();
+  Status draw_sides();
+  std::vector<HalfLabel> half_labels() const;
   PanelContent panel_content() const;
   std::vector<Segment> lines() const;
   double wait_seconds() const;
@@ -77,9 +99,12 @@ class App {
   GlCanvas canvas_;
   Gui gui_;
   Session session_;
-  ViewSettings settings_;
+  ViewSettings settings_;  // of the left side, or of all
+  SplitSettings split_;
+  StreamSettings stream_;
   CameraInput input_;
   Histories histories_;
+  Pace pace_;  // of bytes that are read
   FlightRecorder recorder_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 
@@ -93,7 +118,10 @@ class App {
   Lines picked_lines_;
   std::optional<double> flight_began_;  // when the flight did that is played
 
-  FrameFacts frame_;
+  FrameFacts frame_;  // of the left side; what is uploaded, asked for and complete of both
+  const ShownMesh* last_shown_ = nullptr;
+  FrameFacts right_frame_;  // of the right side
+  bool drags_divider_ = false;
   Switches switches_;
   std::string notice_;
   double notice_until_ = 0, last_step_ = 0;

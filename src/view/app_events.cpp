@@ -22,27 +22,25 @@ std::string name_of(TriangleKind kind) {
   return {};
 }
 
-std::string in_words(const LevelError& error) {
-  return in_digits(double(std::max(error.surface, error.line))) + ", " +
-         in_digits(double(error.degrees)) + " degrees";
+std::string in_words(const LevelError& error, double pixels) {
+  std::string words =
+      in_digits(double(std::max(error.surface, error.line))) + ", " + in_digits(pixels) + " pixels";
+  if (error.degrees > 0) words += ", " + in_digits(double(error.degrees)) + " degrees";
+  return words;
 }
 
-Lines lines_of(const Hit& hit, const std::string& part, const ModelFacts& model) {
+// `block`: where by block the same place is, or empty.
+Lines lines_of(const Hit& hit, const HitFacts& facts, const std::string& block, double pixels) {
   Lines lines;
-  if (hit.block != nullptr) {
-    const BlockFacts& facts = hit.block->facts();
-    const std::size_t bands = model.bands.size();
-    lines.emplace_back("block", std::to_string(index_of(hit.block->id())));
-    lines.emplace_back("band", facts.band == bands
-                                   ? std::string("base")
-                                   : std::to_string(facts.band) + " of " + std::to_string(bands));
-    lines.emplace_back("error", in_words(facts.fine));
-  }
+  if (!block.empty()) lines.emplace_back("block", block);
+  lines.emplace_back("level", facts.level);
+  lines.emplace_back("error", in_words(facts.error, pixels));
   lines.emplace_back("kind", name_of(hit.kind));
+  lines.emplace_back("triangle", grouped(hit.triangle) + " of its kind");
   lines.emplace_back("normal", in_digits(Vec3d{hit.normal.x, hit.normal.y, hit.normal.z}));
   lines.emplace_back("position", in_digits(hit.position));
   if (!hit.material.empty()) lines.emplace_back("material", hit.material);
-  if (!part.empty()) lines.emplace_back("part", part);
+  if (!facts.part.empty()) lines.emplace_back("part", facts.part);
   return lines;
 }
 
@@ -70,6 +68,7 @@ void App::take_event(const WindowEvent& event) {
       !input_.is_flying()) {
     return;
   }
+  if (!input_.is_flying() && take_divider(event)) return;
   const auto point_under = [this](double x, double y) -> std::optional<Vec3d> {
     const std::optional<Hit> hit = hit_at(x, y);
     if (!hit) return std::nullopt;
@@ -83,9 +82,25 @@ void App::take_event(const WindowEvent& event) {
 void App::take_click(const Click& click) {
   picked_ = hit_at(click.x, click.y);
   if (!picked_) return;
-  picked_lines_ = lines_of(*picked_, part_of(*picked_, session_.part_names()), *session_.facts());
+  const std::size_t side = side_at(click.x);
+  const HitFacts facts = session_.shown(side)->facts_of(*picked_);
+  const Camera cut_camera = sized(frozen_.value_or(camera_), side);
+  const double distance = length(picked_->position - cut_camera.position);
+  picked_lines_ = lines_of(*picked_, facts, block_at(click.x, click.y),
+                           in_pixels(facts.error, cut_camera, std::max(distance, 1e-12)));
   picked_->block = nullptr;  // it may go while the lines stay
   if (click.is_double) camera_ = retargeted(camera_, picked_->position);
+}
+
+// Of what is shown, or of what was last there by block; empty where nothing has streamed.
+std::string App::block_at(double x, double y) const {
+  const std::size_t side = side_at(x);
+  const ShownBlocks* blocks = session_.blocks(side);
+  if (blocks == nullptr) return {};
+  const std::optional<Hit> hit = blocks->pick(ray_at(x, y));
+  if (!hit) return {};
+  const std::string number = std::to_string(index_of(hit->block->id()));
+  return session_.shown(side) == blocks ? number : number + ", if it were by block";
 }
 
 PanelContent App::panel_content() const {
@@ -98,6 +113,7 @@ PanelContent App::panel_content() const {
   if (picked_) content.picked = picked_lines_;
   content.message = session_.message();
   content.notice = notice_;
+  if (side_count() > 1) content.halves = half_labels();
   content.switches = switches_;
   content.switches.is_flying = input_.is_flying();
   content.switches.is_frozen = frozen_.has_value();

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -12,8 +14,8 @@ namespace crease {
 
 inline constexpr std::size_t kHistoryLength = 240;
 
-enum class Series { FrameMs, UploadKb, ResidentMb, PendingKb, ErrorPixels };
-inline constexpr std::size_t kSeriesCount = 5;
+enum class Series { FrameMs, UploadKb, ResidentMb, PendingKb, StreamedKb, ErrorPixels };
+inline constexpr std::size_t kSeriesCount = 6;
 
 class Histories {
  public:
@@ -33,6 +35,20 @@ class Histories {
   std::array<std::array<float, kHistoryLength>, kSeriesCount> rings_{};
   std::size_t next_ = 0;
   std::vector<float> frame_ms_;  // of all frames
+};
+
+// How fast a count grows, over the last second.
+class Pace {
+ public:
+  // `now`: seconds of any clock, ascending. A count that falls begins anew.
+  double add(double now, std::uint64_t count);
+
+ private:
+  struct Entry {
+    double time;
+    std::uint64_t count;
+  };
+  std::deque<Entry> entries_;
 };
 
 }  // namespace crease

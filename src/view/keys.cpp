@@ -14,10 +14,14 @@ constexpr KeyRow kRows[] = {
     {Action::NextMode, GLFW_KEY_M, 0, "M", "by block, by vertex, linear"},
     {Action::NextColoring, GLFW_KEY_C, 0, "C", "colours: shaded, kind, level, block, error"},
     {Action::Wireframe, GLFW_KEY_X, 0, "X", "wireframe"},
+    {Action::Creases, GLFW_KEY_L, 0, "L", "lines at hard edges and borders"},
+    {Action::Occlusion, GLFW_KEY_K, 0, "K", "darker where little light comes"},
     {Action::Freeze, GLFW_KEY_Z, 0, "Z", "freeze what is shown and look at it from elsewhere"},
     {Action::Outside, GLFW_KEY_O, 0, "O", "freeze, and look from outside"},
     {Action::Finer, GLFW_KEY_LEFT_BRACKET, GLFW_KEY_MINUS, "[ or -", "half the error"},
     {Action::Coarser, GLFW_KEY_RIGHT_BRACKET, GLFW_KEY_EQUAL, "] or =", "twice the error"},
+    {Action::NextSplit, GLFW_KEY_V, 0, "V", "one picture, beside the original, two settings"},
+    {Action::OtherHalf, GLFW_KEY_TAB, 0, "Tab", "keys and panels are for the other half"},
     {Action::Screenshot, GLFW_KEY_P, GLFW_KEY_F12, "P or F12", "picture into this folder"},
     {Action::Record, GLFW_KEY_R, 0, "R", "record a flight, and write it"},
     {Action::HidePanels, GLFW_KEY_H, 0, "H", "hide the panels"},
@@ -31,6 +35,7 @@ constexpr MouseRow kMouseRows[] = {
     {"wheel", "zoom to what is under the mouse"},
     {"click", "what is there"},
     {"double click", "orbit about what is there"},
+    {"drag the line between halves", "make one wider"},
     {"drop a file", "open it"},
 };
 

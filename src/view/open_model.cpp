@@ -18,39 +18,33 @@ std::string last_part(const std::string& source) {
   return name.empty() ? path : name;
 }
 
-Result<OpenedModel> stream(const std::string& source, ByteSourcePtr bytes, AsyncSourcePtr blocks,
-                           std::shared_ptr<const std::vector<std::byte>> built,
-                           const ViewerOptions& options) {
-  Result<BlockFile> file = BlockFile::open(std::move(bytes));
-  if (!file.ok()) return file.failure();
-  if (file->facts().triangle_count == 0) {
-    return fail(Error::NoTriangles, source + ": no triangles");
-  }
+AsyncSourcePtr limited(AsyncSourcePtr source, const StreamLimit& limit) {
+  return limit ? limited_source(std::move(source), limit) : source;
+}
+
+Result<AsyncSourcePtr> source_of(const ModelSource& model) {
+  if (model.built) return async_memory_source(*model.built, model.source);
+  if (is_http_url(model.source)) return open_async_http(model.source);
+  return open_async_file(model.source);
+}
+
+Result<OpenedModel> stream(ModelSource model, const ViewerOptions& options,
+                           const StreamLimit& limit, Note& note) {
+  Result<AsyncSourcePtr> source = source_of(model);
+  if (!source.ok()) return source.failure();
   Result<BlockStreamer> streamer = BlockStreamer::open(
-      *file, std::move(blocks), {.decode_threads = std::max(1, options.decode_threads)});
+      limited(*std::move(source), limit), {.decode_threads = std::max(1, options.decode_threads),
+                                           .stopped = [&note] { return note.is_stopped(); }});
   if (!streamer.ok()) return streamer.failure();
-  return OpenedModel{{source, last_part(source), std::move(built), file->head().file_bytes},
-                     *std::move(streamer)};
+  if (streamer->mesh().facts().triangle_count == 0) {
+    return fail(Error::NoTriangles, model.source + ": no triangles");
+  }
+  model.bytes = streamer->head().file_bytes;
+  return OpenedModel{std::move(model), *std::move(streamer)};
 }
 
-Result<OpenedModel> open_url(const std::string& url, const ViewerOptions& options, Note& note) {
-  note.say("connecting");
-  HttpOptions http;
-  http.stopped = [&note] { return note.is_stopped(); };
-  Result<ByteSourcePtr> bytes = open_http_source(url, http);
-  if (!bytes.ok()) return bytes.failure();
-  return stream(url, *std::move(bytes), open_async_http(url), nullptr, options);
-}
-
-Result<OpenedModel> open_file(const std::string& path, const ViewerOptions& options) {
-  Result<ByteSourcePtr> bytes = open_file_source(path);
-  if (!bytes.ok()) return bytes.failure();
-  Result<AsyncSourcePtr> blocks = open_async_file(path);
-  if (!blocks.ok()) return blocks.failure();
-  return stream(path, *std::move(bytes), *std::move(blocks), nullptr, options);
-}
-
-Result<OpenedModel> build(const std::string& path, const ViewerOptions& options, Note& note) {
+Result<std::vector<std::byte>> build(const std::string& path, const ViewerOptions& options,
+                                     Note& note) {
   note.say("reading");
   ImportOptions import = options.import;
   import.progress = note.progress();
@@ -61,9 +55,7 @@ Result<OpenedModel> build(const std::string& path, const ViewerOptions& options,
   how.simplify.progress = note.progress();
   Result<Built> made = build_model(std::move(imported->mesh), how);
   if (!made.ok()) return made.failure();
-  const auto bytes = std::make_shared<const std::vector<std::byte>>(std::move(made->file_bytes));
-  return stream(path, memory_source(*bytes, path), async_memory_source(*bytes, path), bytes,
-                options);
+  return std::move(made->file_bytes);
 }
 
 bool is_crease(const std::string& path) {
@@ -112,11 +104,19 @@ Result<BlockFile> open_again(const ModelSource& model, Note& note) {
 }
 
 Result<OpenedModel> open_model(const std::string& source, const ViewerOptions& options,
-                               Note& note) {
-  note.say("opening");
-  if (is_http_url(source)) return open_url(source, options, note);
-  if (is_crease(source)) return open_file(source, options);
-  return build(source, options, note);
+                               const StreamLimit& limit, Note& note) {
+  ModelSource model{.source = source, .name = last_part(source)};
+  if (is_http_url(source)) {
+    note.say("connecting");
+  } else {
+    note.say("opening");
+    if (!is_crease(source)) {
+      Result<std::vector<std::byte>> bytes = build(source, options, note);
+      if (!bytes.ok()) return bytes.failure();
+      model.built = std::make_shared<const std::vector<std::byte>>(*std::move(bytes));
+    }
+  }
+  return stream(std::move(model), options, limit, note);
 }
 
 }  // namespace crease

@@ -15,6 +15,9 @@ Result<DrawCount> paint(GlCanvas& canvas, ShownMesh& mesh, const Picture& pictur
   const Result<DrawCount> count =
       mesh.draw(canvas.programs(), pass, style, settings, picture.cut_camera);
   if (!count.ok()) return count;
+  if (settings.ambient_occlusion) {
+    if (const Status done = canvas.occlude(pass, style); !done.ok()) return done.failure();
+  }
   const Status drawn = draw_lines(canvas.programs(), lines, pass, style);
   if (!drawn.ok()) return drawn.failure();
   return count;

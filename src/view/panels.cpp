@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace crease {
@@ -73,6 +74,17 @@ void budget_slider(const char* label, const char* id, std::size_t& value, ImU64 
   }
 }
 
+// In kB a second; the right end means no limit.
+void bandwidth_slider(double& max_bytes_per_second) {
+  constexpr double kLow = 10, kHigh = 100'000;
+  double kb = std::min(max_bytes_per_second / 1e3, kHigh);
+  slider_above("bandwidth");
+  if (ImGui::SliderScalar("##bandwidth", ImGuiDataType_Double, &kb, &kLow, &kHigh,
+                          kb >= kHigh ? "no limit" : "%.0f kB/s", ImGuiSliderFlags_Logarithmic)) {
+    max_bytes_per_second = kb >= kHigh ? std::numeric_limits<double>::infinity() : kb * 1e3;
+  }
+}
+
 template <typename Value, std::size_t N>
 void choice(const char* label, const char* id, Value& value, const char* const (&names)[N]) {
   int chosen = int(value);
@@ -101,10 +113,21 @@ void buttons(const Switches& switches, std::vector<Action>& pressed) {
   button("Help", Action::Help, switches.shows_help, pressed);
 }
 
-void settings_panel(const PanelContent& content, ViewSettings& settings,
-                    std::vector<Action>& pressed) {
+void split_controls(SplitSettings& split) {
+  choice("split", "##split", split.kind, kSplitNames);
+  if (split.kind != ViewSplit::Settings) return;
+  int half = split.edits_right ? 1 : 0;
+  ImGui::RadioButton("left half", &half, 0);
+  ImGui::SameLine();
+  ImGui::RadioButton("right half", &half, 1);
+  split.edits_right = half == 1;
+}
+
+void settings_panel(const PanelContent& content, ViewSettings& settings, SplitSettings& split,
+                    StreamSettings& stream, std::vector<Action>& pressed) {
   ImGui::SetNextWindowPos({kMargin, kMargin});
-  ImGui::SetNextWindowSizeConstraints({18 * line_px(), 0}, {18 * line_px(), 4000});
+  const float most = std::max(10 * line_px(), screen().y - 2 * kMargin);  // scrolls in a low window
+  ImGui::SetNextWindowSizeConstraints({18 * line_px(), 0}, {18 * line_px(), most});
   ImGui::Begin("settings", nullptr, kPlain);
   if (content.source != nullptr) {
     text(content.source->name);
@@ -120,9 +143,14 @@ void settings_panel(const PanelContent& content, ViewSettings& settings,
     name_and_value("on the GPU", in_bytes(content.frame.gpu_bytes), column);
     ImGui::Separator();
   }
+  split_controls(split);
   choice("cut", "##mode", settings.mode, kModeNames);
   choice("colours", "##coloring", settings.coloring, kColoringNames);
   ImGui::Checkbox("wireframe", &settings.wireframe);
+  ImGui::SameLine();
+  ImGui::Checkbox("creases", &settings.creases);
+  ImGui::SameLine();
+  ImGui::Checkbox("occlusion", &settings.ambient_occlusion);
   pixels_slider(settings.pixels);
   degrees_slider(settings.degrees);
   budget_slider("triangles", "##triangles", settings.max_triangles, 1000, 10, 100'000,
@@ -130,12 +158,17 @@ void settings_panel(const PanelContent& content, ViewSettings& settings,
   if (settings.mode == ViewMode::Blocks) {
     budget_slider("memory", "##memory", settings.max_bytes, ImU64(1) << 20, 8, 16'384, "%llu MiB");
   }
+  bandwidth_slider(stream.max_bytes_per_second);
   buttons(content.switches, pressed);
   ImGui::End();
 }
 
-void graph(const Histories& histories, Series series, const char* name, const char* format) {
+// `limit`: a line across, and the graph reaches up to it; infinity: none.
+void graph(const Histories& histories, Series series, const char* name, const char* format,
+           double limit = std::numeric_limits<double>::infinity()) {
   const Histories::View view = histories.of(series);
+  const float highest = std::isfinite(limit) ? std::max(view.largest, float(limit)) : view.largest;
+  const float top = std::max(highest * 1.05f, 1e-6f);
   char value[64];
   std::snprintf(value, sizeof value, format, double(view.last));
   faint(name);
@@ -143,12 +176,17 @@ void graph(const Histories& histories, Series series, const char* name, const ch
   text(value);
   ImGui::PushID(name);
   ImGui::PlotLines("", view.values.data(), int(view.values.size()), int(view.oldest), nullptr, 0,
-                   std::max(view.largest * 1.05f, 1e-6f),
-                   {ImGui::GetContentRegionAvail().x, 2.4f * line_px()});
+                   top, {ImGui::GetContentRegionAvail().x, 2.4f * line_px()});
+  if (std::isfinite(limit)) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const float padding = ImGui::GetStyle().FramePadding.y;
+    const float y = high.y - padding - float(limit) / top * (high.y - low.y - 2 * padding);
+    ImGui::GetWindowDrawList()->AddLine({low.x, y}, {high.x, y}, IM_COL32(214, 72, 20, 255));
+  }
   ImGui::PopID();
 }
 
-void graphs_panel(const Histories& histories) {
+void graphs_panel(const Histories& histories, const StreamSettings& stream) {
   const float width = 15 * line_px();
   if (screen().x < 3 * width) return;  // there is no room beside the settings
   ImGui::SetNextWindowPos({screen().x - kMargin, kMargin}, 0, {1, 0});
@@ -158,6 +196,7 @@ void graphs_panel(const Histories& histories) {
   graph(histories, Series::UploadKb, "upload", "%.0f kB");
   graph(histories, Series::ResidentMb, "resident", "%.1f MB");
   graph(histories, Series::PendingKb, "pending", "%.0f kB");
+  graph(histories, Series::StreamedKb, "streaming", "%.0f kB/s", stream.max_bytes_per_second / 1e3);
   graph(histories, Series::ErrorPixels, "error on the screen", "%.2f px");
   ImGui::End();
 }
@@ -174,7 +213,9 @@ void picked_panel(const Lines& lines) {
 void message_panel(const PanelContent& content) {
   const bool is_alone = content.frame.triangles == 0;
   if (!content.message && content.notice.empty() && content.source != nullptr) return;
-  ImGui::SetNextWindowPos({screen().x / 2, is_alone ? screen().y / 2 : screen().y - kMargin}, 0,
+  const float foot =
+      content.halves.empty() ? kMargin : kMargin + 3 * line_px();  // labels are below
+  ImGui::SetNextWindowPos({screen().x / 2, is_alone ? screen().y / 2 : screen().y - foot}, 0,
                           {0.5f, is_alone ? 0.5f : 1});
   ImGui::Begin("message", nullptr, kSeenThrough);
   ImGui::PushTextWrapPos(std::max(20 * line_px(), screen().x - 6 * line_px()));
@@ -193,6 +234,16 @@ void message_panel(const PanelContent& content) {
   }
   ImGui::PopTextWrapPos();
   ImGui::End();
+}
+
+void half_panels(std::span<const HalfLabel> halves) {
+  for (const HalfLabel& half : halves) {
+    const float x = half.divider * screen().x + (half.is_right ? kMargin : -kMargin);
+    ImGui::SetNextWindowPos({x, screen().y - kMargin}, 0, {half.is_right ? 0.0f : 1.0f, 1});
+    ImGui::Begin(half.is_right ? "right half" : "left half", nullptr, kSeenThrough);
+    half.is_edited ? text(half.text) : faint(half.text);
+    ImGui::End();
+  }
 }
 
 void help_panel() {
@@ -221,11 +272,13 @@ void switches_panel(const Switches& switches) {
 
 }  // namespace
 
-std::vector<Action> draw_panels(const PanelContent& content, ViewSettings& settings) {
+std::vector<Action> draw_panels(const PanelContent& content, ViewSettings& settings,
+                                SplitSettings& split, StreamSettings& stream) {
   std::vector<Action> pressed;
   if (content.switches.shows_panels) {
-    settings_panel(content, settings, pressed);
-    graphs_panel(*content.histories);
+    settings_panel(content, settings, split, stream, pressed);
+    half_panels(content.halves);
+    graphs_panel(*content.histories, stream);
     picked_panel(content.picked);
     switches_panel(content.switches);
   }

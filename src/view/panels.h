@@ -24,6 +24,13 @@ struct Switches {
 
 using Lines = std::vector<std::pair<std::string, std::string>>;  // name and value
 
+// What a half of the picture says of itself, at its lower end beside the divider.
+struct HalfLabel {
+  std::string text;
+  float divider = 0;  // share of the width where the half ends, or begins
+  bool is_right = false, is_edited = false;
+};
+
 struct PanelContent {
   const ModelSource* source = nullptr;  // null: nothing is open
   const ModelFacts* model = nullptr;
@@ -33,11 +40,13 @@ struct PanelContent {
   Lines picked;                      // empty: nothing
   std::optional<Message> message{};  // of the session
   std::string notice;                // what was just done; or empty
+  std::vector<HalfLabel> halves{};   // empty: one picture
   Switches switches;
 };
 
 // Between Gui::begin() and Gui::draw(). Changes what the user moves; returns the buttons that were
 // pressed.
-std::vector<Action> draw_panels(const PanelContent& content, ViewSettings& settings);
+std::vector<Action> draw_panels(const PanelContent& content, ViewSettings& settings,
+                                SplitSettings& split, StreamSettings& stream);
 
 }  // namespace crease

@@ -54,10 +54,6 @@ void find_in(const DrawList& list, const DrawPart& part, TriangleKind kind, cons
   }
 }
 
-const DrawPart& part_of_kind(const DrawList& list, TriangleKind kind) {
-  return kind == TriangleKind::SN ? list.sn : kind == TriangleKind::FN ? list.fn : list.nsn;
-}
-
 Vec3f normal_at(const DrawList& list, const DrawPart& part, const Nearest& at) {
   const std::size_t first = 3 * std::size_t(at.triangle);
   if (at.kind == TriangleKind::FN) return part.normals[at.triangle];
@@ -97,6 +93,10 @@ bool passes_sphere(const Ray& ray, const Vec3d& center, double radius) {
 
 }  // namespace
 
+const DrawPart& part_of_kind(const DrawList& list, TriangleKind kind) {
+  return kind == TriangleKind::SN ? list.sn : kind == TriangleKind::FN ? list.fn : list.nsn;
+}
+
 std::optional<Hit> pick(const DrawList& list, const DrawRanges& ranges, const Ray& ray) {
   const Ray near{ray.origin - list.origin, ray.direction};
   Nearest nearest;
@@ -108,10 +108,7 @@ std::optional<Hit> pick(const DrawList& list, const DrawRanges& ranges, const Ra
 }
 
 std::optional<Hit> pick(const DrawList& list, const Ray& ray) {
-  const auto all = [](const DrawPart& part) {
-    return Range{0, std::uint32_t(part.triangle_count())};
-  };
-  return pick(list, {all(list.sn), all(list.fn), all(list.nsn)}, ray);
+  return pick(list, all_of(list), ray);
 }
 
 std::optional<Hit> pick(std::span<const ShownRange> shown, const Grid& grid, const Ray& ray) {
@@ -145,6 +142,31 @@ std::string part_of(const Hit& hit, std::span<const std::string> names) {
     if (!same) continue;
     const std::uint32_t number = mesh.category[t] / data.schema->coding.material_count;
     return number < names.size() ? names[number] : std::string();
+  }
+  return {};
+}
+
+// By places: corners come from floats, and may be off by their last bits.
+std::string part_of(const Hit& hit, const Mesh& mesh) {
+  if (mesh.part_of_triangle.empty()) return {};
+  double size = 0;
+  for (const Vec3d& corner : hit.corners) size = std::max(size, length(corner - mesh.positions[0]));
+  const double close = 1e-6 * size;
+  const auto is_at = [&](VertexId v, const Vec3d& corner) {
+    const Vec3d off = mesh.positions[index_of(v)] - corner;
+    return dot(off, off) <= close * close;
+  };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& vertices = mesh.triangles[t];
+    bool is_same = true;
+    for (const Vec3d& corner : hit.corners) {
+      is_same &=
+          is_at(vertices[0], corner) || is_at(vertices[1], corner) || is_at(vertices[2], corner);
+      if (!is_same) break;
+    }
+    if (!is_same) continue;
+    const std::size_t part = index_of(mesh.part_of_triangle[t]);
+    return part < mesh.parts.size() ? mesh.parts[part] : std::string();
   }
   return {};
 }

@@ -3,8 +3,9 @@
 
 #include "crease/block_mesh.h"
 #include "crease/draw_list.h"
+#include "crease/mesh.h"
 #include "crease/shading.h"
-#include "render/gl_scene.h"
+#include "render/draw_ranges.h"
 #include "view/camera_moves.h"
 
 #include <array>
@@ -26,6 +27,13 @@ struct Hit {
   const ResidentBlock* block = nullptr;
 };
 
+// What the way in which a model is shown knows of it beside.
+struct HitFacts {
+  std::string level;  // in words
+  LevelError error;   // of what is shown there
+  std::string part;   // its name, or empty
+};
+
 // Of all triangles of a list. Time O(triangles).
 std::optional<Hit> pick(const DrawList& list, const Ray& ray);
 std::optional<Hit> pick(const DrawList& list, const DrawRanges& ranges, const Ray& ray);
@@ -35,5 +43,9 @@ std::optional<Hit> pick(std::span<const ShownRange> shown, const Grid& grid, con
 
 // The name of the part that a triangle of a block belongs to, or empty. `names`: of the mesh.
 std::string part_of(const Hit& hit, std::span<const std::string> names);
+// The same of a mesh that has the triangle among others. Time O(triangles).
+std::string part_of(const Hit& hit, const Mesh& mesh);
+
+const DrawPart& part_of_kind(const DrawList& list, TriangleKind kind);
 
 }  // namespace crease

@@ -9,8 +9,9 @@ void Session::open(const std::string& source) {
   open_failure_.reset();
   trouble_.clear();
   opening_name_ = source;
-  opening_.emplace(
-      [source, options = options_](Note& note) { return open_model(source, options, note); });
+  opening_.emplace([source, options = options_, limit = limit_](Note& note) {
+    return open_model(source, options, limit, note);
+  });
 }
 
 bool Session::take_opened() {
@@ -21,69 +22,93 @@ bool Session::take_opened() {
     return false;
   }
   leave(loading_, left_loadings_);
-  whole_ = {};
+  close_sides(0);
+  data_ = {};
   whole_bytes_ = 0;
   source_ = std::move(opened->source);
-  blocks_ = std::make_unique<ShownBlocks>(std::move(opened->streamer));
+  streamer_ = std::make_shared<BlockStreamer>(std::move(opened->streamer));
   return true;
 }
 
-void Session::take_loaded(ViewSettings& settings, const GlLimits& limits) {
+// The last ones first: they share with those before them.
+void Session::close_sides(std::size_t count) {
+  while (sides_.size() > count) sides_.pop_back();
+}
+
+void Session::set_side_count(std::size_t count) {
+  if (!streamer_ || sides_.size() == count) return;
+  if (loading_ && loading_side_ >= count) leave(loading_, left_loadings_);
+  close_sides(count);
+  streamer_->set_view_count(count);
+  while (sides_.size() < count) {
+    const ShownBlocks* beside = sides_.empty() ? nullptr : sides_.front().blocks.get();
+    Side side;
+    side.blocks = std::make_unique<ShownBlocks>(streamer_, sides_.size(), beside);
+    sides_.push_back(std::move(side));
+  }
+}
+
+void Session::take_loaded(std::span<ViewSettings> sides, const GlLimits& limits) {
+  ViewMode& wanted = sides[loading_side_].mode;
   const auto fall_back = [&](const Failure& failure) {
     trouble_ = failure.message;
-    if (settings.mode == loading_mode_) settings.mode = ViewMode::Blocks;
+    if (wanted == loading_mode_) wanted = ViewMode::Blocks;
   };
   Result<WholeModel> loaded = loading_->take();
   loading_.reset();
   if (!loaded.ok()) return fall_back(loaded.failure());
   whole_bytes_ += loaded->bytes_read;
+  data_[std::size_t(loading_mode_)] = loaded->data;
   Result<std::unique_ptr<ShownMesh>> shown = show_whole(*std::move(loaded), limits);
   if (!shown.ok()) return fall_back(shown.failure());
-  whole_[std::size_t(loading_mode_)] = *std::move(shown);
+  sides_[loading_side_].whole[std::size_t(loading_mode_)] = *std::move(shown);
 }
 
-bool Session::poll(ViewSettings& settings, const GlLimits& limits) {
+void Session::load(std::size_t side, ViewMode mode) {
+  loading_side_ = side;
+  loading_mode_ = mode;
+  trouble_.clear();
+  loading_.emplace([source = source_, data = data_[std::size_t(mode)], mode](Note& note) {
+    return data.is_there() ? Result<WholeModel>(mesh_of(data)) : load_whole(source, mode, note);
+  });
+}
+
+bool Session::poll(std::span<ViewSettings> sides, const GlLimits& limits) {
   std::erase_if(left_openings_, [](const auto& work) { return work.is_done(); });
   std::erase_if(left_loadings_, [](const auto& work) { return work.is_done(); });
   const bool is_new = opening_ && opening_->is_done() && take_opened();
-  if (loading_ && loading_->is_done()) take_loaded(settings, limits);
-  const bool is_there =
-      settings.mode == ViewMode::Blocks || whole_[std::size_t(settings.mode)] != nullptr;
-  if (blocks_ && !is_there && !loading_) {
-    loading_mode_ = settings.mode;
-    trouble_.clear();
-    loading_.emplace([source = source_, mode = settings.mode](Note& note) {
-      return load_whole(source, mode, note);
-    });
+  set_side_count(sides.size());
+  if (loading_ && loading_->is_done()) take_loaded(sides, limits);
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const ViewMode mode = sides[i].mode;
+    const bool is_there = mode == ViewMode::Blocks || sides_[i].whole[std::size_t(mode)] != nullptr;
+    if (!is_there && !loading_) load(i, mode);
+    sides_[i].mode = is_there ? mode : ViewMode::Blocks;
   }
-  mode_ = is_there ? settings.mode : ViewMode::Blocks;
   return is_new;
 }
 
-ShownMesh* Session::shown() const {
-  if (mode_ != ViewMode::Blocks && whole_[std::size_t(mode_)]) {
-    return whole_[std::size_t(mode_)].get();
+ShownMesh* Session::shown(std::size_t side) const {
+  if (side >= sides_.size()) return nullptr;
+  const Side& one = sides_[side];
+  if (one.mode != ViewMode::Blocks && one.whole[std::size_t(one.mode)]) {
+    return one.whole[std::size_t(one.mode)].get();
   }
-  return blocks_.get();
+  return one.blocks.get();
 }
 
 const ModelFacts* Session::facts() const {
-  return blocks_ ? &blocks_->streamer().mesh().facts() : nullptr;
-}
-
-std::span<const std::string> Session::part_names() const {
-  if (!blocks_) return {};
-  return blocks_->streamer().mesh().part_names();
+  return streamer_ ? &streamer_->mesh().facts() : nullptr;
 }
 
 std::uint64_t Session::bytes_read() const {
-  if (!blocks_) return 0;
-  return blocks_->streamer().statistics().source.bytes_transferred + whole_bytes_;
+  if (!streamer_) return 0;
+  return streamer_->statistics().source.bytes_transferred + whole_bytes_;
 }
 
 std::optional<Failure> Session::stream_trouble() const {
-  if (!blocks_ || !blocks_->streamer().trouble()) return std::nullopt;
-  Failure trouble = *blocks_->streamer().trouble();
+  if (!streamer_ || !streamer_->trouble()) return std::nullopt;
+  Failure trouble = *streamer_->trouble();
   // Sources name themselves, blocks do not.
   if (trouble.message.find(source_.name) == std::string::npos) {
     trouble.message = source_.source + ": " + trouble.message;
@@ -92,7 +117,7 @@ std::optional<Failure> Session::stream_trouble() const {
 }
 
 std::optional<Failure> Session::stream_failure(std::size_t failed_blocks) const {
-  if (!blocks_ || blocks_->streamer().statistics().blocks_failed < failed_blocks) {
+  if (!streamer_ || streamer_->statistics().blocks_failed < failed_blocks) {
     return std::nullopt;
   }
   return stream_trouble();

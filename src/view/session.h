@@ -3,7 +3,12 @@
 //   session.open("city.crease");
 //   every frame:
 //     if (session.poll(settings, limits)) camera = ...;   // another model is there
-//     if (ShownMesh* mesh = session.shown()) mesh->update(settings, camera);
+//     for (std::size_t side = 0; side < settings.size(); ++side) {
+//       if (ShownMesh* mesh = session.shown(side)) mesh->update(settings[side], camera);
+//     }
+//
+// A picture has one side, or two with a cut each: by block over one stream, else over the same
+// arrays.
 //
 // What is shown stays until there is something to show instead; what fails is told and loses
 // nothing.
@@ -32,19 +37,27 @@ struct Message {
 
 class Session {
  public:
-  explicit Session(const ViewerOptions& options) : options_(options) {}
+  explicit Session(const ViewerOptions& options)
+      : options_(options), limit_(std::make_shared<RateLimit>(options.max_bytes_per_second)) {}
 
   void open(const std::string& source);
-  // Takes what the background has done, and starts what `settings.mode` needs. True once when
-  // another model is there. Sets the mode back where it cannot be had. A context must be current.
-  bool poll(ViewSettings& settings, const GlLimits& limits);
+  // Takes what the background has done, and starts what the modes need; one setting a side. True
+  // once when another model is there. Sets a mode back where it cannot be had. A context must be
+  // current.
+  bool poll(std::span<ViewSettings> sides, const GlLimits& limits);
 
-  // In the mode of the last poll(), or by block while that loads. Null: nothing is open.
-  ShownMesh* shown() const;
+  // In the mode of the last poll(), or by block while that loads. Null: nothing is open, or there
+  // is no such side.
+  ShownMesh* shown(std::size_t side = 0) const;
+  // The same model by block, whatever is shown.
+  const ShownBlocks* blocks(std::size_t side) const {
+    return side < sides_.size() ? sides_[side].blocks.get() : nullptr;
+  }
   const ModelSource& source() const { return source_; }
   const ModelFacts* facts() const;
-  std::span<const std::string> part_names() const;  // empty while they are not known
   std::uint64_t bytes_read() const;
+  // What streams may ask for.
+  RateLimit& limit() { return *limit_; }
 
   // What goes on, else what went wrong last.
   std::optional<Message> message() const;
@@ -56,9 +69,17 @@ class Session {
   void forget_failures();
 
  private:
+  struct Side {
+    ViewMode mode = ViewMode::Blocks;
+    std::unique_ptr<ShownBlocks> blocks;              // null: nothing is open
+    std::array<std::unique_ptr<ShownMesh>, 3> whole;  // by mode
+  };
   std::optional<Failure> stream_trouble() const;
   bool take_opened();
-  void take_loaded(ViewSettings& settings, const GlLimits& limits);
+  void close_sides(std::size_t count);
+  void set_side_count(std::size_t count);
+  void take_loaded(std::span<ViewSettings> sides, const GlLimits& limits);
+  void load(std::size_t side, ViewMode mode);
 
   // What nobody wants any more ends when it notices; no frame waits for it.
   template <typename T>
@@ -76,14 +97,16 @@ class Session {
   std::string opening_name_;
   std::optional<Background<WholeModel>> loading_;
   ViewMode loading_mode_{};
+  std::size_t loading_side_ = 0;
   std::uint64_t whole_bytes_ = 0;
   std::optional<Failure> open_failure_;
   std::string trouble_;  // of loading
 
+  const StreamLimit limit_;
   ModelSource source_;
-  ViewMode mode_ = ViewMode::Blocks;
-  std::unique_ptr<ShownBlocks> blocks_;
-  std::array<std::unique_ptr<ShownMesh>, 3> whole_;  // by mode
+  std::shared_ptr<BlockStreamer> streamer_;  // a view for each side
+  std::array<WholeData, 3> data_;            // by mode: of what is loaded
+  std::vector<Side> sides_;                  // one at least while something is open
 };
 
 }  // namespace crease

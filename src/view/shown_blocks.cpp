@@ -31,31 +31,34 @@ double distance_to(const BlockFacts& facts, const Grid& grid, const Vec3d& eye) 
 FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camera) {
   BlockViewParameters parameters;
   parameters.view.camera = camera;
-  parameters.view.camera.pixels = settings.pixels;
+  parameters.view.camera.pixels = settings.wanted_pixels();
   parameters.view.degrees = settings.degrees;
   parameters.view.max_triangles = settings.max_triangles;
   parameters.max_bytes = settings.max_bytes;
-  const StreamReport report = streamer_.update(parameters);
-  const BlockMesh& mesh = streamer_.mesh();
+  const StreamReport report = streamer_->update(parameters, view_);
   FrameFacts facts;
   blocks_.drop(report.cut.dropped);
-  facts.uploaded_bytes = blocks_.upload(mesh.shown());
-  facts.triangles = mesh.triangle_count();
-  facts.error_pixels = std::min(std::max(1.0, double(mesh.view_error())) * settings.pixels,
-                                double(camera.height_px));
-  facts.gpu_bytes = blocks_.bytes();
-  facts.resident_bytes = mesh.resident_bytes();
-  facts.pending_bytes = streamer_.statistics().pending_bytes;
-  facts.blocks = mesh.resident_count();
+  facts.uploaded_bytes =
+      blocks_.upload(mesh().shown(), beside_ == nullptr ? nullptr : &beside_->blocks_);
+  creases_.drop(report.cut.dropped);
+  if (settings.creases) facts.uploaded_bytes += creases_.update(mesh().shown());
+  facts.triangles = mesh().triangle_count();
+  facts.error_pixels =
+      std::min(std::max(1.0, double(mesh().view_error())) * settings.wanted_pixels(),
+               double(camera.height_px));
+  facts.gpu_bytes = blocks_.bytes() + creases_.bytes();
+  facts.resident_bytes = mesh().resident_bytes();
+  facts.pending_bytes = streamer_->statistics().pending_bytes;
+  facts.blocks = mesh().resident_count();
   facts.has_changed =
       report.cut.refined + report.cut.coarsened + report.inserted + facts.uploaded_bytes > 0;
-  facts.is_complete = report.is_complete && facts.uploaded_bytes == 0 && !mesh.shown().empty();
+  facts.is_complete = report.is_complete && facts.uploaded_bytes == 0 && !mesh().shown().empty();
   return facts;
 }
 
 Result<DrawCount> ShownBlocks::draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
                                     const ViewSettings& settings, const Camera& cut_camera) {
-  const ModelFacts& model = streamer_.mesh().facts();
+  const ModelFacts& model = mesh().facts();
   GlBlocks::ColorOfBlock color_of_block;
   switch (settings.coloring) {
     case ViewColoring::Shaded:
@@ -82,17 +85,31 @@ Result<DrawCount> ShownBlocks::draw(ProgramCache& programs, const DrawPass& pass
       };
       break;
   }
-  return blocks_.draw(programs, pass, style, streamer_.mesh().shown(), color_of_block);
+  const Result<DrawCount> count =
+      blocks_.draw(programs, pass, style, mesh().shown(), color_of_block);
+  if (!count.ok() || !settings.creases) return count;
+  const Status drawn = creases_.draw(programs, pass, style);
+  if (!drawn.ok()) return drawn.failure();
+  return count;
 }
 
 std::optional<Hit> ShownBlocks::pick(const Ray& ray) const {
-  return crease::pick(streamer_.mesh().shown(), streamer_.mesh().facts().grid, ray);
+  return crease::pick(mesh().shown(), mesh().facts().grid, ray);
+}
+
+HitFacts ShownBlocks::facts_of(const Hit& hit) const {
+  const BlockFacts& block = hit.block->facts();
+  const std::size_t bands = mesh().facts().bands.size();
+  const std::string level =
+      block.band == bands ? "the base of " + std::to_string(bands) + " bands"
+                          : "band " + std::to_string(block.band) + " of " + std::to_string(bands);
+  return {level, block.fine, part_of(hit, mesh().part_names())};
 }
 
 // Of few blocks all corners, of many those of their boxes: a camera is fitted again with each block
 // that arrives, between two frames.
 std::vector<Vec3f> ShownBlocks::outline() const {
-  const std::span<const ShownRange> shown = streamer_.mesh().shown();
+  const std::span<const ShownRange> shown = mesh().shown();
   std::vector<Vec3f> points;
   if (shown.size() > kFewBlocks) return blocks_.box_corners_of(shown, origin());
   for (const ShownRange& range : shown) {

@@ -1,28 +1,39 @@
-// By block: what has streamed so far.
+// By block: what has streamed so far. Several show views of one stream, and share on the GPU what
+// another one has there.
 #pragma once
 
 #include "crease/block_streamer.h"
+#include "render/gl_creases.h"
 #include "view/shown_mesh.h"
+
+#include <cstddef>
+#include <memory>
 
 namespace crease {
 
 class ShownBlocks final : public ShownMesh {
  public:
-  explicit ShownBlocks(BlockStreamer streamer) : streamer_(std::move(streamer)) {}
+  // Of that view of the stream, which is there while this lives. `beside`: null, or outlives this.
+  ShownBlocks(std::shared_ptr<BlockStreamer> streamer, std::size_t view, const ShownBlocks* beside)
+      : streamer_(std::move(streamer)), view_(view), beside_(beside) {}
 
   FrameFacts update(const ViewSettings& settings, const Camera& camera) override;
   Result<DrawCount> draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
                          const ViewSettings& settings, const Camera& cut_camera) override;
   std::optional<Hit> pick(const Ray& ray) const override;
+  HitFacts facts_of(const Hit& hit) const override;
   std::vector<Vec3f> outline() const override;
-  Vec3d origin() const override { return streamer_.mesh().facts().grid.origin; }
-  Box box() const override { return blocks_.box_of(streamer_.mesh().shown()); }
+  Vec3d origin() const override { return mesh().facts().grid.origin; }
+  Box box() const override { return blocks_.box_of(mesh().shown()); }
 
-  const BlockStreamer& streamer() const { return streamer_; }
+  const BlockMesh& mesh() const { return streamer_->mesh(view_); }
 
  private:
-  BlockStreamer streamer_;
+  const std::shared_ptr<BlockStreamer> streamer_;
+  const std::size_t view_;
+  const ShownBlocks* const beside_;
   GlBlocks blocks_;
+  GlBlockCreases creases_;
 };
 
 }  // namespace crease

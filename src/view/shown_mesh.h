@@ -28,6 +28,8 @@ class ShownMesh {
   virtual Result<DrawCount> draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
                                  const ViewSettings& settings, const Camera& cut_camera) = 0;
   virtual std::optional<Hit> pick(const Ray& ray) const = 0;
+  // Of a hit of the present cut. May take its time.
+  virtual HitFacts facts_of(const Hit& hit) const = 0;
 
   // Points around all that is shown, close enough to fit a camera to; relative to origin().
   virtual std::vector<Vec3f> outline() const = 0;

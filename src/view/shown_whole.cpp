@@ -4,6 +4,9 @@
 #include "crease/build_progressive_arrays.h"
 #include "crease/decode_model.h"
 #include "crease/threads.h"
+#include "view/level_walk.h"
+#include "view/whole_creases.h"
+#include "view/words.h"
 
 #include <algorithm>
 #include <chrono>
@@ -53,6 +56,10 @@ DrawStyle styled(DrawStyle style, ViewColoring coloring, float level_share) {
   return style;
 }
 
+std::string in_words(std::size_t shown, std::size_t full) {
+  return grouped(shown) + " of " + grouped(full) + " triangles";
+}
+
 // What both have.
 class ShownWhole : public ShownMesh {
  public:
@@ -63,9 +70,22 @@ class ShownWhole : public ShownMesh {
   Box box() const override { return box_; }
 
  protected:
+  // `list`: what is shown now.
+  void update_creases(const ViewSettings& settings, const DrawList& list, FrameFacts& facts) {
+    if (!settings.creases) return creases_.forget();
+    const std::size_t uploaded = creases_.update(list, facts.has_changed);
+    facts.uploaded_bytes += uploaded;
+    facts.has_changed |= uploaded > 0;
+    facts.gpu_bytes += creases_.bytes();
+    facts.is_complete &= !creases_.is_behind();
+  }
+
   Result<DrawCount> draw_scene(ProgramCache& programs, const DrawPass& pass,
                                const DrawStyle& style) const {
     if (const Status drawn = scene_.draw(programs, pass, style); !drawn.ok()) {
+      return drawn.failure();
+    }
+    if (const Status drawn = creases_.draw(programs, pass, style); !drawn.ok()) {
       return drawn.failure();
     }
     const DrawRanges all = scene_.all();
@@ -78,6 +98,7 @@ class ShownWhole : public ShownMesh {
 
  private:
   const Vec3d origin_;
+  WholeCreases creases_;
 };
 
 class ShownVertices final : public ShownWhole {
@@ -107,6 +128,7 @@ class ShownVertices final : public ShownWhole {
     facts.gpu_bytes = scene_.bytes();
     facts.resident_bytes = mesh_->active_bytes() + hierarchy_bytes_;
     facts.is_complete = report.complete;
+    update_creases(settings, mesh_->draw_list(), facts);
     return facts;
   }
 
@@ -123,6 +145,19 @@ class ShownVertices final : public ShownWhole {
 
   std::optional<Hit> pick(const Ray& ray) const override {
     return crease::pick(mesh_->draw_list(), ray);
+  }
+  HitFacts facts_of(const Hit& hit) const override {
+    const DrawList list = mesh_->draw_list();
+    const std::vector<float> errors = mesh_->error_of_position();
+    HitFacts facts{in_words(mesh_->triangle_count(), mesh_->hierarchy().vertices.triangles.size()),
+                   {},
+                   part_of(hit, mesh_->extract())};
+    const DrawPart& part = part_of_kind(list, hit.kind);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float error = errors[part.indices[3 * std::size_t(hit.triangle) + c]];
+      facts.error.surface = std::max(facts.error.surface, error);
+    }
+    return facts;
   }
   std::vector<Vec3f> outline() const override { return used_positions(mesh_->draw_list()); }
 
@@ -163,15 +198,15 @@ class ShownLinear final : public ShownWhole {
     const double distance = distance_to(box_, camera.position);
     const double wanted = settings.pixels * pixel_size(camera, distance);
     FrameFacts facts;
-    if (wanted != error_ || settings.max_triangles != max_triangles_) {
-      const std::size_t before = mesh_->applied();
-      move_to(wanted, settings.max_triangles, facts);
-      facts.has_changed = mesh_->applied() != before;
-    }
+    const std::size_t before = mesh_->applied();
+    facts.is_complete = walk_.go(
+        *mesh_, {float(wanted), settings.max_triangles}, kUpdateSeconds,
+        [&] { facts.uploaded_bytes += scene_.update(mesh_->draw_list(), mesh_->changes()); });
+    facts.has_changed = mesh_->applied() != before;
     facts.triangles = mesh_->triangle_count();
     facts.error_pixels = in_pixels(mesh_->error(), camera, std::max(distance, 1e-9));
     facts.gpu_bytes = facts.resident_bytes = scene_.bytes();
-    facts.is_complete = true;
+    update_creases(settings, mesh_->draw_list(), facts);
     return facts;
   }
 
@@ -191,26 +226,23 @@ class ShownLinear final : public ShownWhole {
   std::optional<Hit> pick(const Ray& ray) const override {
     return crease::pick(mesh_->draw_list(), ray);
   }
+  HitFacts facts_of(const Hit& hit) const override {
+    const ProgressiveArrays& arrays = mesh_->arrays();
+    HitFacts facts{
+        in_words(mesh_->triangle_count(), mesh_->full_triangle_count()), mesh_->error(), {}};
+    if (arrays.part_of_triangle.empty()) return facts;
+    std::size_t triangle = hit.triangle;  // the three kinds in a row
+    if (hit.kind != TriangleKind::SN) triangle += arrays.full.sn_triangles;
+    if (hit.kind == TriangleKind::NSN) triangle += arrays.full.fn_triangles;
+    const std::uint32_t part = arrays.part_of_triangle[triangle];
+    if (part < arrays.parts.size()) facts.part = arrays.parts[part];
+    return facts;
+  }
   std::vector<Vec3f> outline() const override { return used_positions(mesh_->draw_list()); }
 
  private:
-  void move_to(double error, std::size_t max_triangles, FrameFacts& facts) {
-    error_ = error;
-    max_triangles_ = max_triangles;
-    mesh_->set_error(float(error));
-    take_changes(facts);
-    if (mesh_->triangle_count() <= max_triangles) return;
-    mesh_->set_triangle_count(max_triangles);
-    take_changes(facts);
-  }
-
-  void take_changes(FrameFacts& facts) {
-    facts.uploaded_bytes += scene_.update(mesh_->draw_list(), mesh_->changes());
-  }
-
   std::unique_ptr<ProgressiveMesh> mesh_;
-  double error_ = -1;  // of the last update
-  std::size_t max_triangles_ = 0;
+  LevelWalk walk_;
 };
 
 std::size_t largest_array(const DrawList& list) {
@@ -227,20 +259,27 @@ Result<WholeModel> load_whole(const ModelSource& model, ViewMode mode, Note& not
   Result<DecodedModel> decoded = decode_model(*file, {.for_each = loop_on_threads(1)});
   if (!decoded.ok()) return decoded.failure();
   if (note.is_stopped()) return fail(Error::Interrupted, "interrupted");
-  WholeModel whole;
-  whole.bytes_read = file->source().bytes_read();
-  for (const Vec3d& p : decoded->mesh.positions) whole.box.add(p);
+  WholeData data;
+  for (const Vec3d& p : decoded->mesh.positions) data.box.add(p);
   if (mode == ViewMode::Linear) {
     note.say("sorting the levels");
-    whole.linear = std::make_unique<ProgressiveMesh>(
-        build_progressive_arrays(decoded->mesh, decoded->sequence));
-    return whole;
+    data.levels = build_progressive_arrays(decoded->mesh, decoded->sequence);
+  } else {
+    note.say("building the hierarchy");
+    Result<MeshHierarchy> hierarchy = build_hierarchy(decoded->mesh, decoded->sequence, {});
+    if (!hierarchy.ok()) return hierarchy.failure();
+    data.hierarchy = std::make_shared<const MeshHierarchy>(*std::move(hierarchy));
   }
-  note.say("building the hierarchy");
-  Result<MeshHierarchy> hierarchy = build_hierarchy(decoded->mesh, decoded->sequence, {});
-  if (!hierarchy.ok()) return hierarchy.failure();
-  whole.vertices =
-      std::make_unique<AdaptiveMesh>(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
+  WholeModel whole = mesh_of(std::move(data));
+  whole.bytes_read = file->source().bytes_read();
+  return whole;
+}
+
+WholeModel mesh_of(WholeData data) {
+  WholeModel whole;
+  if (data.levels) whole.linear = std::make_unique<ProgressiveMesh>(data.levels);
+  if (data.hierarchy) whole.vertices = std::make_unique<AdaptiveMesh>(data.hierarchy);
+  whole.data = std::move(data);
   return whole;
 }
 
@@ -255,10 +294,10 @@ Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& 
   }
   if (model.linear) {
     return std::unique_ptr<ShownMesh>(
-        std::make_unique<ShownLinear>(std::move(model.linear), model.box));
+        std::make_unique<ShownLinear>(std::move(model.linear), model.data.box));
   }
   return std::unique_ptr<ShownMesh>(
-      std::make_unique<ShownVertices>(std::move(model.vertices), model.box));
+      std::make_unique<ShownVertices>(std::move(model.vertices), model.data.box));
 }
 
 }  // namespace crease

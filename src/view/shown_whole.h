@@ -10,16 +10,27 @@
 
 namespace crease {
 
+// What several meshes of a model share: one of the two.
+struct WholeData {
+  std::shared_ptr<const MeshHierarchy> hierarchy;
+  ProgressiveArraysPtr levels;
+  Box box;
+
+  bool is_there() const { return hierarchy || levels; }
+};
+
 struct WholeModel {
+  WholeData data;
   // One of the two.
   std::unique_ptr<AdaptiveMesh> vertices;
   std::unique_ptr<ProgressiveMesh> linear;
-  Box box;
   std::uint64_t bytes_read = 0;
 };
 
 // `mode`: not Blocks. For threads in the background.
 Result<WholeModel> load_whole(const ModelSource& model, ViewMode mode, Note& note);
+// Another mesh of what is loaded.
+WholeModel mesh_of(WholeData data);
 
 // The largest of its arrays must fit the device: OverLimit. A context must be current.
 Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& limits);

@@ -74,9 +74,13 @@ void ViewerWindow::listen() {
                              .is_shift = (mods & GLFW_MOD_SHIFT) != 0});
   });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int mods) {
-    double x = 0, y = 0;
-    glfwGetCursorPos(w, &x, &y);
-    const auto [px, py] = of(w).in_pixels(x, y);
+    // Where it is now may be further on than where it was pressed.
+    if (!of(w).mouse_) {
+      double x = 0, y = 0;
+      glfwGetCursorPos(w, &x, &y);
+      of(w).mouse_ = of(w).in_pixels(x, y);
+    }
+    const auto [px, py] = *of(w).mouse_;
     of(w).events_.push_back({.kind = WindowEvent::Kind::Button,
                              .code = button,
                              .is_down = action != GLFW_RELEASE,
@@ -86,6 +90,7 @@ void ViewerWindow::listen() {
   });
   glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
     const auto [px, py] = of(w).in_pixels(x, y);
+    of(w).mouse_ = {px, py};
     of(w).events_.push_back({.kind = WindowEvent::Kind::Move, .x = px, .y = py});
   });
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double x, double y) {

@@ -12,6 +12,7 @@
 #include "crease/result.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,7 @@ class ViewerWindow {
 
   GLFWwindow* window_;
   std::vector<WindowEvent> events_;
+  std::optional<std::pair<double, double>> mouse_;  // where it was last seen, pixels
 };
 
 }  // namespace crease

@@ -127,6 +127,47 @@ TEST_CASE("an asynchronous source is all that it takes to open a model") {
   CHECK(!BlockStreamer::open(std::make_shared<UnsteadySource>(c.bytes, 1, 10), hasty(1)).ok());
 }
 
+TEST_CASE("two views of one model are both complete, and share what both have") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  std::mt19937_64 random(4);
+  for (const int failures : {0, 3}) {
+    const auto source = std::make_shared<UnsteadySource>(c.bytes, 11, failures);
+    BlockStreamer streamer = opened_streamer(file, source, hasty(1));
+    finish(streamer, random_view(c.mesh, random));
+    streamer.set_view_count(2);
+    REQUIRE(streamer.view_count() == 2);
+    for (int round = 0; round < 4; ++round) {
+      const BlockViewParameters of[] = {random_view(c.mesh, random), random_view(c.mesh, random)};
+      bool is_complete = false;
+      for (int frames = 0; !is_complete; ++frames) {
+        REQUIRE(frames < 100'000);
+        is_complete = true;
+        for (std::size_t v = 0; v < 2; ++v) is_complete &= streamer.update(of[v], v).is_complete;
+        streamer.wait(std::chrono::milliseconds(50));
+      }
+      for (std::size_t v = 0; v < 2; ++v) {
+        const BlockSet refined = refined_blocks(file, streamer.mesh(v));
+        CHECK((refined == wanted_blocks(file, of[v].view)));
+        check_shown(file, streamer.mesh(v), refined);
+      }
+      if (failures > 0) continue;
+      std::size_t resident_somewhere = 0;
+      for (std::uint32_t b = 0; b < file.block_count(); ++b) {
+        const ResidentBlockPtr one = streamer.mesh(0).resident(BlockId{b});
+        const ResidentBlockPtr other = streamer.mesh(1).resident(BlockId{b});
+        if (one && other) CHECK(one == other);
+        resident_somewhere += one || other;
+      }
+      CHECK(streamer.statistics().blocks_decoded == resident_somewhere);  // none of them twice
+    }
+    streamer.set_view_count(1);
+    const BlockViewParameters last = random_view(c.mesh, random);
+    finish(streamer, last);
+    CHECK((refined_blocks(file, streamer.mesh()) == wanted_blocks(file, last.view)));
+  }
+}
+
 TEST_CASE("while the source fails what is shown stays, and says what is wrong") {
   const EncodedCase c = simplified_case(smooth_sphere(40, 60), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);

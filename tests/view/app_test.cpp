@@ -11,6 +11,8 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <map>
+#include <string>
 
 namespace crease {
 
@@ -185,6 +187,103 @@ TEST_CASE("the error asked for and the triangles allowed decide what is shown") 
     CHECK(limited.app->frame().triangles <= 1500);
     CHECK(limited.app->frame().triangles > 100);
   }
+}
+
+TEST_CASE("what is clicked on is told with block, level, error, kind and part in every mode") {
+  Mesh mesh = city_blocks(2, 2);
+  mesh.parts = {"left", "right"};
+  mesh.part_of_triangle.clear();
+  for (const Triangle& t : mesh.triangles) {
+    const bool is_left = mesh.positions[index_of(t[0])].x < 1.5;
+    mesh.part_of_triangle.push_back(PartId(is_left ? 0u : 1u));
+  }
+  const Folder folder;
+  ViewerOptions options = small_window(folder.crease_file("city.crease", mesh));
+  options.pixels = 0.01;
+  Running viewer(options);
+  App& app = *viewer.app;
+  for (const ViewMode mode : {ViewMode::Blocks, ViewMode::Vertices, ViewMode::Linear}) {
+    CAPTURE(int(mode));
+    if (mode != ViewMode::Blocks) app.act(Action::NextMode);
+    REQUIRE(app.step().ok());
+    viewer.until_complete();
+    for (int i = 0; i < 50; ++i) REQUIRE(app.step().ok());  // names of parts come last
+    int hits = 0;
+    for (double x = 10; x < 320; x += 15) {
+      app.take_click({x, 120, false});
+      if (app.picked().empty()) continue;
+      ++hits;
+      std::map<std::string, std::string> told(app.picked().begin(), app.picked().end());
+      for (const char* name : {"block", "level", "error", "kind", "normal", "position"}) {
+        CAPTURE(std::string(name));
+        CHECK_FALSE(told[name].empty());
+      }
+      CHECK(told["kind"] == "FN: one normal");
+      CHECK(told["part"] == (std::stod(told["position"]) < 1.5 ? "left" : "right"));
+      CHECK(told["error"].find("pixels") != std::string::npos);
+    }
+    CHECK(hits > 4);
+  }
+}
+
+TEST_CASE("beside the original the right half has all triangles, the left one what it is set to") {
+  const Folder folder;
+  ViewerOptions options = small_window(folder.crease_file("sphere.crease", smooth_sphere(48, 96)));
+  options.pixels = 8;
+  options.split = ViewSplit::Original;
+  for (const ViewMode mode : {ViewMode::Blocks, ViewMode::Vertices, ViewMode::Linear}) {
+    options.mode = mode;
+    Running viewer(options);
+    const App& app = *viewer.app;
+    viewer.until([&] { return app.right_frame().is_complete; });
+    viewer.until_complete();
+    CAPTURE(int(mode));
+    CHECK(app.right_frame().triangles == app.session().facts()->triangle_count);
+    CHECK(app.frame().triangles < app.right_frame().triangles / 2);
+    CHECK(app.frame().triangles > 10);
+  }
+}
+
+TEST_CASE("two halves have settings of their own, and keys are for one of them") {
+  const Folder folder;
+  ViewerOptions options = small_window(folder.crease_file("sphere.crease", smooth_sphere(48, 96)));
+  options.split = ViewSplit::Settings;
+  options.right.pixels = 8;
+  Running viewer(options);
+  App& app = *viewer.app;
+  viewer.until_complete();
+  CHECK(app.right_frame().triangles < app.frame().triangles);
+
+  app.act(Action::OtherHalf);
+  for (int i = 0; i < 4; ++i) app.act(Action::Finer);
+  CHECK(app.settings().pixels == 1);
+  CHECK(app.split().right.pixels == 0.5);
+  REQUIRE(app.step().ok());
+  viewer.until_complete();
+  CHECK(app.right_frame().triangles > app.frame().triangles);
+
+  app.act(Action::NextMode);  // of the right half; it loads, the left one stays
+  CHECK(app.split().right.mode == ViewMode::Vertices);
+  REQUIRE(app.step().ok());
+  viewer.until_complete();
+  CHECK(app.settings().mode == ViewMode::Blocks);
+  CHECK(app.frame().blocks > 0);
+  CHECK(app.right_frame().blocks == 0);
+  CHECK(app.right_frame().triangles > 100);
+  const std::uint64_t bytes = app.session().bytes_read();
+  app.act(Action::OtherHalf);
+  app.act(Action::NextMode);  // of the left half: the same one, out of the same arrays
+  REQUIRE(app.step().ok());
+  viewer.until_complete();
+  CHECK(app.frame().blocks == 0);
+  CHECK(app.frame().triangles > 100);
+  CHECK(app.session().bytes_read() == bytes);
+
+  app.act(Action::NextSplit);
+  CHECK(app.split().kind == ViewSplit::Off);
+  REQUIRE(app.step().ok());
+  viewer.until_complete();
+  CHECK(app.session().shown(1) == nullptr);
 }
 
 TEST_CASE("a window that is closed while a model is built ends the build") {

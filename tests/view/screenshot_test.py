@@ -144,6 +144,26 @@ class Screenshot(tool.Case):
         self.view(self.built(), "--view", self.path("camera.json"), "--screenshot", b)
         self.assertLess(picture.differing(picture.Picture(a), picture.Picture(b), 24), 0.002)
 
+    def halves_differ(self, *options):
+        """The share of pixels that differ from those a half picture further right."""
+        out = self.path("halves.png")
+        camera = self.camera([60, -160, 110], [0, 0, 0])
+        self.view(self.built(12000), "--view", camera, "--screenshot", out, *options)
+        seen = picture.Picture(out)
+        self.assertGreater(picture.covered(seen), 0.05)
+        columns = [x for x in range(2, 238)]
+        count = sum(max(abs(a - b) for a, b in zip(seen.pixel(x, y), seen.pixel(x + 240, y))) > 32
+                    for x in columns for y in range(seen.height))
+        return count / (len(columns) * seen.height)
+
+    def test_halves_show_what_they_are_set_to(self):
+        self.assertEqual(self.halves_differ("--split", "pixels=1"), 0)
+        self.assertEqual(self.halves_differ("--split", "mode=block", "--creases", "--degrees", "5",
+                                            "--ambient-occlusion", "--bandwidth", "10000"), 0)
+        self.assertGreater(self.halves_differ("--split", "original", "--triangles", "1000"), 0.01)
+        self.assertGreater(self.halves_differ("--split", "creases"), 0.01)
+        self.assertGreater(self.halves_differ("--split", "color=kind,mode=linear"), 0.1)
+
     def test_what_cannot_be_opened_is_told_with_its_exit_status(self):
         out = self.path("none.png")
         built = pathlib.Path(self.built()).read_bytes()
@@ -168,6 +188,8 @@ class Screenshot(tool.Case):
         self.view("--screenshot", self.path("a.png"), exit_status=1)
         self.view(self.built(), "--size", "big", exit_status=1)
         self.view(self.built(), "--mode", "magic", exit_status=1)
+        for split in ("magic", "pixels=many", "mode=magic", "color=", "creases=1"):
+            self.view(self.built(), "--split", split, exit_status=1)
         self.view(self.built(), "--path", self.write("f.json", "[]"), exit_status=2)
 
     def test_without_a_display_it_says_so(self):

@@ -182,6 +182,72 @@ class Window(tool.Case):
         self.assertGreater(report["median_frame_ms"], 0)
         self.assertGreater(report["bytes_read"], 0)
 
+    def halves(self, shot):
+        """The columns left and right of the divider, which is dark from top to bottom."""
+        for x in range(shot.width):
+            if all(max(shot.pixel(x, y)) < 160 for y in (0, shot.height // 2, shot.height - 1)):
+                return x, shot.width - x
+        self.fail("no divider")
+
+    def move_divider(self, to):
+        x = self.halves(self.shot())[0]
+        self.xdotool("mousemove", "--window", self.window, x, 440, "mousedown", 1)
+        for step in range(1, 5):
+            self.xdotool("mousemove", "--window", self.window, x + (to - x) * step // 4, 440)
+        self.xdotool("mouseup", 1)
+
+    def test_crease_lines_and_halves(self):
+        self.start(self.built(), "--size", "640x480")
+        first = self.shown()
+        self.key("l")
+        lines = self.settled()
+        self.assertGreater(picture.differing(first, lines, 32), 0.01)
+        self.key("l")
+        self.assertEqual(picture.differing(first, self.settled(), 8), 0)
+
+        self.key("v")  # beside the original
+        left, right = self.halves(self.settled())
+        self.assertLess(abs(left - right), 6)
+        self.move_divider(400)
+        divided = self.settled()
+        self.assertLess(abs(self.halves(divided)[0] - 400), 6)
+        self.drag(1, 60, 0)
+        moved = self.settled()
+        self.assertGreater(picture.differing(divided, moved, 16), 0.02)
+
+        self.key("v", "Tab", "c")  # two settings, and colours of the right one
+        colored = self.settled()
+        changed = [x for x in range(640) for y in range(0, 480, 3)
+                   if max(abs(a - b) for a, b in zip(moved.pixel(x, y), colored.pixel(x, y))) > 40]
+        self.assertGreater(len(changed), 50)
+        self.assertGreater(min(changed), 395)
+        self.key("v")
+        with self.assertRaises(AssertionError):
+            self.halves(self.settled())
+        self.close()
+
+    def press(self, x, y):
+        self.xdotool("mousemove", "--window", self.window, x, y, "mousedown", 1)
+        time.sleep(0.3)
+        self.xdotool("mouseup", 1)
+
+    def test_what_panels_set(self):
+        """Sliders are pressed at their ends."""
+        self.start(self.built(12000), "--size", "640x660")
+        first = self.shown()
+        self.press(264, 362)  # error: 64 pixels
+        coarse = self.settled()
+        self.assertGreater(picture.differing(first, coarse, 16), 0.01)
+        self.press(133, 314)  # creases
+        self.assertGreater(picture.differing(coarse, self.settled(), 16), 0.01)
+        self.press(133, 314)
+        self.press(30, 554)  # bandwidth: as little as can be
+        self.press(30, 362)  # error: as little as can be
+        self.press(264, 554)
+        fine = self.settled()
+        self.assertGreater(picture.differing(coarse, fine, 16), 0.01)
+        self.close()
+
     def test_frozen_the_cut_stays_while_the_camera_moves(self):
         self.start(self.built(), "--size", "640x480")
         first = self.shown()
