@@ -19,6 +19,7 @@ struct ViewSettings {
   double degrees = 0;  // of shading; 0: any
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
   std::size_t max_bytes = std::size_t(512) << 20;  // of resident blocks
+  double geomorph_seconds = 0.25;                  // by vertex and linear; 0: none
 
   bool operator==(const ViewSettings&) const = default;
 };
@@ -33,7 +34,8 @@ struct FrameFacts {
   std::size_t blocks = 0;         // resident; 0 where there are none
   std::size_t draw_calls = 0;
   bool has_changed = false;  // since the last frame
-  bool is_complete = false;  // all that the view wants is shown
+  bool is_complete = false;  // all that the view wants is shown, and nothing is on its way to it
+  bool is_moving = false;    // something is on its way
 };
 
 }  // namespace crease

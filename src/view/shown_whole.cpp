@@ -21,6 +21,20 @@ double seconds_now(void*) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// How long the last frame took, for what is on its way. A frame that took long is a short one: so
+// is what is seen of it.
+class FrameTime {
+ public:
+  double seconds() {
+    const double now = seconds_now(nullptr), last = std::exchange(last_, now);
+    return last < 0 ? 0 : std::min(now - last, kLongest);
+  }
+
+ private:
+  static constexpr double kLongest = 0.05;
+  double last_ = -1;
+};
+
 double distance_to(const Box& box, const Vec3d& eye) {
   double square = 0;
   for (int i = 0; i < 3; ++i) {
@@ -95,9 +109,12 @@ class ShownVertices final : public ShownWhole {
     view.max_triangles = settings.max_triangles;
     view.max_seconds = kUpdateSeconds;
     view.clock = seconds_now;
-    const UpdateReport report = mesh_->update(view);
+    mesh_->set_geomorph_seconds(settings.geomorph_seconds);
+    const UpdateReport report = mesh_->update(view, time_.seconds());
     FrameFacts facts;
-    facts.has_changed = report.splits + report.merges > 0;
+    facts.is_moving = report.moving > 0;
+    facts.has_changed = report.splits + report.merges > 0 || facts.is_moving || was_moving_;
+    was_moving_ = facts.is_moving;
     if (facts.has_changed) {
       facts.uploaded_bytes = scene_.update(mesh_->draw_list(), mesh_->changes());
       has_errors_ = false;
@@ -106,7 +123,7 @@ class ShownVertices final : public ShownWhole {
     facts.error_pixels = worst_error(camera, settings);
     facts.gpu_bytes = scene_.bytes();
     facts.resident_bytes = mesh_->active_bytes() + hierarchy_bytes_;
-    facts.is_complete = report.complete;
+    facts.is_complete = report.complete && !facts.is_moving;
     return facts;
   }
 
@@ -149,6 +166,8 @@ class ShownVertices final : public ShownWhole {
 
   std::unique_ptr<AdaptiveMesh> mesh_;
   const std::size_t hierarchy_bytes_;
+  FrameTime time_;
+  bool was_moving_ = false;
   bool has_errors_ = false;
   Camera errors_camera_;
 };
