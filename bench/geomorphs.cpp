@@ -1,5 +1,5 @@
-// What geomorphs cost: bytes that go to the GPU each frame, and time, along a flight over an adaptive
-// mesh, with them and without.
+// What geomorphs cost: bytes that go to the GPU each frame, and time, along a flight over an
+// adaptive mesh, with them and without.
 //
 //   bench_geomorphs --models bunny,city200k --frames 600 --seconds 0,0.25
 //
@@ -44,8 +44,7 @@ std::size_t elements(const std::vector<Range>& ranges) {
 std::size_t upload_bytes(const DrawList& list, const DrawChanges& c) {
   const std::size_t triangle = 12 + (list.materials.empty() ? 0 : 4);
   std::size_t bytes = 12 * (elements(c.positions) + elements(c.vertex_normals));
-  bytes += triangle *
-           (elements(c.sn_indices) + elements(c.fn_indices) + elements(c.nsn_indices));
+  bytes += triangle * (elements(c.sn_indices) + elements(c.fn_indices) + elements(c.nsn_indices));
   bytes += 12 * elements(c.fn_normals) + 36 * elements(c.nsn_normals);
   return bytes + 48 * (elements(c.sn_colors) + elements(c.fn_colors) + elements(c.nsn_colors));
 }
@@ -77,8 +76,8 @@ void fly(const std::string& name, const std::shared_ptr<const MeshHierarchy>& hi
     triangles.values.push_back(double(mesh.triangle_count()));
     moving.values.push_back(double(report.moving));
   }
-  std::printf("| %s | %g | %.1f | %.1f | %.1f | %.0f | %.0f | %.2f | %.2f |\n", name.c_str(), seconds,
-              kilobytes.of(0.5), kilobytes.of(0.95), kilobytes.of(1), triangles.of(0.5),
+  std::printf("| %s | %g | %.1f | %.1f | %.1f | %.0f | %.0f | %.2f | %.2f |\n", name.c_str(),
+              seconds, kilobytes.of(0.5), kilobytes.of(0.95), kilobytes.of(1), triangles.of(0.5),
               moving.of(0.5), ms.of(0.5), ms.of(1));
   std::fflush(stdout);
 }
@@ -111,8 +110,9 @@ int run(int argc, char** argv) {
   app.add_option("--pixels", options.pixels, "error allowed on the screen");
   app.add_option("--seconds", options.seconds, "that geomorphs take; 0: none")->delimiter(',');
   CLI11_PARSE(app, argc, argv);
-  std::printf("| model | geomorph s | kB a frame, median | 95 %% | most | triangles | on their way | "
-              "ms, median | most |\n|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| model | geomorph s | kB a frame, median | 95 %% | most | triangles | on their way | "
+      "ms, median | most |\n|---|---|---|---|---|---|---|---|---|\n");
   bool good = true;
   for (const ModelEntry& entry : all_models(models)) good = measure(entry, options) && good;
   return good ? 0 : 2;

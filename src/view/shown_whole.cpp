@@ -182,15 +182,23 @@ class ShownLinear final : public ShownWhole {
     const double distance = distance_to(box_, camera.position);
     const double wanted = settings.pixels * pixel_size(camera, distance);
     FrameFacts facts;
-    if (wanted != error_ || settings.max_triangles != max_triangles_) {
-      const std::size_t before = mesh_->applied();
-      move_to(wanted, settings.max_triangles, facts);
-      facts.has_changed = mesh_->applied() != before;
+    mesh_->set_geomorph_seconds(settings.geomorph_seconds);
+    const bool was_moving = mesh_->is_moving();
+    const std::size_t before = mesh_->applied();
+    const double seconds = time_.seconds();
+    if (was_moving) {
+      mesh_->advance(seconds);
+      take_changes(facts);
     }
+    if (wanted != error_ || settings.max_triangles != max_triangles_) {
+      move_to(wanted, settings.max_triangles, facts);
+    }
+    facts.is_moving = mesh_->is_moving();
+    facts.has_changed = mesh_->applied() != before || was_moving || facts.is_moving;
     facts.triangles = mesh_->triangle_count();
     facts.error_pixels = in_pixels(mesh_->error(), camera, std::max(distance, 1e-9));
     facts.gpu_bytes = facts.resident_bytes = scene_.bytes();
-    facts.is_complete = true;
+    facts.is_complete = !facts.is_moving;
     return facts;
   }
 
@@ -218,7 +226,7 @@ class ShownLinear final : public ShownWhole {
     max_triangles_ = max_triangles;
     mesh_->set_error(float(error));
     take_changes(facts);
-    if (mesh_->triangle_count() <= max_triangles) return;
+    if (mesh_->wanted_triangle_count() <= max_triangles) return;
     mesh_->set_triangle_count(max_triangles);
     take_changes(facts);
   }
@@ -228,6 +236,7 @@ class ShownLinear final : public ShownWhole {
   }
 
   std::unique_ptr<ProgressiveMesh> mesh_;
+  FrameTime time_;
   double error_ = -1;  // of the last update
   std::size_t max_triangles_ = 0;
 };

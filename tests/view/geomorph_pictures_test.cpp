@@ -19,9 +19,9 @@ constexpr double kFrameSeconds = 1.0 / 60;
 constexpr int kFrames = 60;
 constexpr double kMost = 0.7;  // measured: 0.13 to 0.51
 
-// How much of the picture a frame changes at the most: components of 255, mean of all pixels. Each is
-// compared with what the mesh of the frame before shows to the same camera, so that the camera's own
-// motion does not count.
+// How much of the picture a frame changes at the most: components of 255, mean of all pixels. Each
+// is compared with what the mesh of the frame before shows to the same camera, so that the camera's
+// own motion does not count.
 double largest_jump(const GlLimits& limits, const std::shared_ptr<const MeshHierarchy>& hierarchy,
                     const Box& box, const std::function<ViewParameters(double)>& path,
                     double geomorph_seconds) {

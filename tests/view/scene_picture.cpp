@@ -18,9 +18,8 @@ std::vector<std::uint8_t> picture(const GlLimits& limits, const GlScene& scene,
   DrawPass pass{.view = make_view(camera, 1), .up = camera.up};
   pass.depth = depth_range(pass.view, box.low, box.high);
   target->begin(kPicturePx, kPicturePx);
-  const DrawStyle style{.coloring = coloring,
-                        .wireframe = wireframe,
-                        .reversed_depth = limits.can_reverse_depth};
+  const DrawStyle style{
+      .coloring = coloring, .wireframe = wireframe, .reversed_depth = limits.can_reverse_depth};
   REQUIRE(scene.draw(programs, pass, style).ok());
   std::vector<std::uint8_t> rgba(4 * kPicturePx * kPicturePx);
   target->read(kPicturePx, kPicturePx, rgba);
