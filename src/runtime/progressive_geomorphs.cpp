@@ -1,6 +1,8 @@
 // Levels that are seen as geomorphs.
 #include "runtime/progressive_impl.h"
 
+#include <map>
+
 namespace crease {
 
 // What a coarser level will show, and of which slots and normals.

@@ -21,7 +21,6 @@
 #include "runtime/ways.h"
 
 #include <array>
-#include <map>
 #include <vector>
 
 namespace crease {
@@ -30,8 +29,6 @@ enum Section { kSn, kFn, kNsn, kSectionCount };
 
 struct ProgressiveMesh::Impl {
   explicit Impl(ProgressiveArraysPtr given);
-
-  using Places = std::map<std::uint32_t, Vec3f>;
 
   struct TrianglePart {
     std::uint32_t first = 0;                   // its first triangle
