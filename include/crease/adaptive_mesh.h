@@ -53,8 +53,10 @@ struct ViewParameters {
 
 struct UpdateReport {
   std::size_t splits = 0, merges = 0;
+  std::size_t moving = 0;     // vertices that are on their way
   std::size_t evaluated = 0;  // vertices and pairs of which it was asked whether they are wrong
-  bool complete = true;       // else time ran out
+  // Else time ran out, or merges whose vertices are on their way have to make room first.
+  bool complete = true;
 };
 
 class AdaptiveMesh {
@@ -63,11 +65,18 @@ class AdaptiveMesh {
   ~AdaptiveMesh();
   AdaptiveMesh(AdaptiveMesh&&) noexcept;
 
-  UpdateReport update(const ViewParameters& view);
+  // Geomorphs: how long a vertex is on its way from where its parent stood, and back before it is
+  // merged. 0, the default: moves are seen at once. While report.moving says that some are on their
+  // way, draw_list() and changes() show them there and merges wait, each for this long;
+  // max_triangles may be exceeded meanwhile if it was lowered. What is out of view does not wait.
+  void set_geomorph_seconds(double seconds);
+
+  // `seconds`: that have passed since the last time, for geomorphs.
+  UpdateReport update(const ViewParameters& view, double seconds = 0);
 
   // The same error everywhere: splits exactly the vertices with a larger surface or line error,
   // model units. Negative: all, which restores the snapped input. Time O(active vertices + moves).
-  UpdateReport set_error(float error);
+  UpdateReport set_error(float error, double seconds = 0);
 
   std::size_t triangle_count() const;
   std::size_t vertex_count() const;  // active ones that triangles of the input use

@@ -44,8 +44,8 @@ constexpr LevelError larger(const LevelError& a, const LevelError& b) {
 enum class Placement : std::uint8_t {
   Endpoint,  // at p or at q; the PM stores one bit (DB03 swapVectors), attributes are inherited
   Optimal,   // near where the error is least: between p and q in one of the ways that a file keeps
-             // for few bits (docs/format-block.md), or anywhere if that is far better; the PM stores
-             // a vector (DB03 delta) and new attribute values
+            // for few bits (docs/format-block.md), or anywhere if that is far better; the PM stores
+            // a vector (DB03 delta) and new attribute values
 };
 
 // At the corners of v_s, in one layer, attribute `from` becomes `to`. `to` may be a value that the

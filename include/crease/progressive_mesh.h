@@ -36,14 +36,24 @@ class ProgressiveMesh {
   // How many contractions that level has in force. Negative: 0.
   std::size_t applied_for_error(float surface_error) const;
 
+  // Geomorphs: how long a vertex is on its way from where the one stood that it comes out of, and
+  // back before it is contracted. 0, the default: levels are seen at once. While something is on
+  // its way draw_list() shows it there; a coarser level waits for its contractions, all of them go
+  // at once, and applied() and triangle_count() are still those of the finer one.
+  void set_geomorph_seconds(double seconds);
+  // So much time goes by; changes() has what moved. Time O(what is on its way).
+  void advance(double seconds);
+  bool is_moving() const;
+
   std::size_t triangle_count() const;
-  std::size_t vertex_count() const;  // active
+  std::size_t wanted_triangle_count() const;  // once nothing is on its way
+  std::size_t vertex_count() const;           // active
   std::size_t full_triangle_count() const;
   std::size_t base_triangle_count() const;
   LevelError error() const;  // the largest of each along the prefix in force
 
   DrawList draw_list() const;
-  const DrawChanges& changes() const;  // of the last set_ call
+  const DrawChanges& changes() const;  // of the last set_ call, or advance()
 
   // The level as a mesh of its own, all attribute layers, materials and parts; vertices and
   // attribute values that are used only. Time O(mesh).

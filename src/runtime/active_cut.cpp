@@ -333,6 +333,16 @@ void ActiveCut::touch_corners(std::uint32_t slot, bool had_one_normal) {
   }
 }
 
+void ActiveCut::touch_moving(std::uint32_t slot, bool with_normals) {
+  vertex_changes_.mark(slot);
+  if (!touches_triangles_) return;
+  for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
+    const std::uint32_t part = at.corner.part(), triangle = at.corner.triangle();
+    if (part == kSnPart) continue;
+    if (with_normals || parts_[part].is_derived[triangle] != 0) parts_[part].touched.mark(triangle);
+  }
+}
+
 // The corners at the children of s had their values at v_s.
 void ActiveCut::pass_down(SplitId s, std::uint32_t first, std::uint32_t second,
                           bool had_one_normal) {

@@ -122,6 +122,9 @@ class ActiveCut {
   }
   // Takes the triangle out of one part and into another one; nothing but its place changes.
   void move_triangle(Part from, std::uint32_t triangle, Part to);
+  // The vertex looks different though the cut has not moved: it is on its way (Geomorphs), and its
+  // normals are, if `with_normals`.
+  void touch_moving(std::uint32_t slot, bool with_normals);
   // No part has holes afterwards.
   void fill_holes();
 

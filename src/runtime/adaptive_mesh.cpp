@@ -4,6 +4,7 @@
 #include "runtime/active_cut.h"
 #include "runtime/cut_drawing.h"
 #include "runtime/extract_cut.h"
+#include "runtime/geomorphs.h"
 #include "runtime/refiner.h"
 
 #include <algorithm>
@@ -13,17 +14,20 @@ namespace crease {
 
 struct AdaptiveMesh::Impl {
   explicit Impl(std::shared_ptr<const MeshHierarchy> given)
-      : hierarchy(std::move(given)), cut(*hierarchy) {
-    drawing.arrive(cut);
+      : hierarchy(std::move(given)), cut(*hierarchy), geomorphs(*hierarchy), refiner(&geomorphs) {
+    drawing.arrive(cut, geomorphs);
   }
 
-  UpdateReport arrive(const UpdateReport& report) {
-    drawing.arrive(cut);
+  UpdateReport arrive(UpdateReport report) {
+    geomorphs.mark(cut);
+    drawing.arrive(cut, geomorphs);
+    report.moving = geomorphs.moving_count();
     return report;
   }
 
   std::shared_ptr<const MeshHierarchy> hierarchy;
   ActiveCut cut;
+  Geomorphs geomorphs;
   Refiner refiner;
   CutDrawing drawing;
 };
@@ -33,11 +37,17 @@ AdaptiveMesh::AdaptiveMesh(std::shared_ptr<const MeshHierarchy> hierarchy)
 AdaptiveMesh::~AdaptiveMesh() = default;
 AdaptiveMesh::AdaptiveMesh(AdaptiveMesh&&) noexcept = default;
 
-UpdateReport AdaptiveMesh::update(const ViewParameters& view) {
+UpdateReport AdaptiveMesh::update(const ViewParameters& view, double seconds) {
+  impl_->geomorphs.advance(seconds);
   return impl_->arrive(impl_->refiner.update(impl_->cut, view));
 }
-UpdateReport AdaptiveMesh::set_error(float error) {
+UpdateReport AdaptiveMesh::set_error(float error, double seconds) {
+  impl_->geomorphs.advance(seconds);
   return impl_->arrive(impl_->refiner.set_error(impl_->cut, error));
+}
+
+void AdaptiveMesh::set_geomorph_seconds(double seconds) {
+  impl_->geomorphs.set_seconds(seconds);
 }
 
 std::size_t AdaptiveMesh::triangle_count() const {
@@ -86,7 +96,8 @@ const MeshHierarchy& AdaptiveMesh::hierarchy() const {
   return *impl_->hierarchy;
 }
 std::size_t AdaptiveMesh::active_bytes() const {
-  return impl_->cut.bytes() + impl_->drawing.bytes() + impl_->refiner.bytes();
+  return impl_->cut.bytes() + impl_->drawing.bytes() + impl_->refiner.bytes() +
+         impl_->geomorphs.bytes();
 }
 
 }  // namespace crease

@@ -15,23 +15,17 @@ std::span<const float> value_at(const AttributeHierarchy& layer, std::size_t ind
   return std::span<const float>(layer.values).subspan(index * layer.dimension, layer.dimension);
 }
 
-Vec3f normal_of(const AttributeHierarchy& layer, std::size_t index) {
-  const std::span<const float> n = value_at(layer, index);
-  return {n[0], n[1], n[2]};
-}
-
-// Of a derived triangle its geometric normal.
-void show_normals(const ActiveCut& cut, const ActiveTriangles& part, std::uint32_t triangle,
-                  std::span<Vec3f> shown) {
-  if (part.is_derived[triangle] != 0) {
-    const Vec3f n = geometric_normal_of(cut, part, triangle);
-    std::fill(shown.begin(), shown.end(), n);
-    if (n != Vec3f{} || cut.normal_layer() == kNone) return;
+// Face normals that come from different ones are shown as three.
+Part shown_kind(const ActiveCut& cut, const Geomorphs& geomorphs, const ActiveTriangles& part,
+                std::uint32_t triangle) {
+  const Part kind = cut.kind_of(part, triangle);
+  if (kind != kFnPart || part.is_derived[triangle] != 0 || geomorphs.moving_count() == 0) {
+    return kind;
   }
-  const AttributeHierarchy& layer = cut.hierarchy().layers[cut.normal_layer()];
-  for (std::size_t k = 0; k < shown.size(); ++k) {
-    shown[k] = normal_of(layer, cut.normal_index(part, 3 * std::size_t(triangle) + k));
+  for (std::size_t c = 3 * std::size_t(triangle); c < 3 * std::size_t(triangle) + 3; ++c) {
+    if (geomorphs.moves_normal(part.slots[c], cut.normal_index(part, c))) return kNsnPart;
   }
+  return kind;
 }
 
 }  // namespace
@@ -44,14 +38,36 @@ Vec3f geometric_normal_of(const ActiveCut& cut, const ActiveTriangles& part,
                           vertices[slots[2]].position);
 }
 
-void CutDrawing::arrive(ActiveCut& cut) {
-  sort_touched(cut);
-  cut.fill_holes();
-  refresh_vertices(cut);
-  for (const Part p : {kSnPart, kFnPart, kNsnPart}) refresh_part(cut, p);
+// Of a derived triangle its geometric normal, as it is seen.
+void CutDrawing::show_normals(const ActiveCut& cut, const Geomorphs& geomorphs,
+                              const ActiveTriangles& part, std::uint32_t triangle,
+                              std::span<Vec3f> shown) const {
+  const std::uint32_t* const slots = &part.slots[3 * std::size_t(triangle)];
+  if (part.is_derived[triangle] != 0) {
+    Vec3f n = geometric_normal_of(cut, part, triangle);
+    const bool is_plain = n != Vec3f{} || cut.normal_layer() == kNone;
+    if (is_plain && std::any_of(slots, slots + 3,
+                                [&](std::uint32_t slot) { return geomorphs.is_moving(slot); })) {
+      const Vec3f& a = positions_[slots[0]];
+      const Vec3f now = normalized(cross(positions_[slots[1]] - a, positions_[slots[2]] - a));
+      if (now != Vec3f{}) n = now;
+    }
+    std::fill(shown.begin(), shown.end(), n);
+    if (is_plain) return;
+  }
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    shown[k] = geomorphs.normal(slots[k], cut.normal_index(part, 3 * std::size_t(triangle) + k));
+  }
 }
 
-void CutDrawing::sort_touched(ActiveCut& cut) {
+void CutDrawing::arrive(ActiveCut& cut, const Geomorphs& geomorphs) {
+  sort_touched(cut, geomorphs);
+  cut.fill_holes();
+  refresh_vertices(cut, geomorphs);
+  for (const Part p : {kSnPart, kFnPart, kNsnPart}) refresh_part(cut, geomorphs, p);
+}
+
+void CutDrawing::sort_touched(ActiveCut& cut, const Geomorphs& geomorphs) {
   for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
     touched_.clear();
     ActiveTriangles& part = cut.parts()[p];
@@ -61,7 +77,7 @@ void CutDrawing::sort_touched(ActiveCut& cut) {
       const std::uint32_t t = touched_[i];
       if (i + 8 < touched_.size()) cut.prefetch_vertices_of(part, touched_[i + 8]);
       if (part.ids[t] == kNoTriangle) continue;
-      const Part now = cut.kind_of(part, t);
+      const Part now = shown_kind(cut, geomorphs, part, t);
       if (now == p) {
         part.shaded.mark(t);
       } else {
@@ -71,22 +87,22 @@ void CutDrawing::sort_touched(ActiveCut& cut) {
   }
 }
 
-void CutDrawing::refresh_vertices(ActiveCut& cut) {
-  const MeshHierarchy& hierarchy = cut.hierarchy();
+void CutDrawing::refresh_vertices(ActiveCut& cut, const Geomorphs& geomorphs) {
   positions_.resize(cut.vertices().size());
   vertex_normals_.resize(cut.vertices().size());
   const auto refresh = [&](std::size_t slot) {
     const ActiveVertex& v = cut.vertices()[slot];
     if (v.node == kNoNode) return;
-    positions_[slot] = draw_position(hierarchy.vertices.grid, v.position);
+    const auto at = static_cast<std::uint32_t>(slot);
+    positions_[slot] = geomorphs.position(cut, at);
     if (v.normal >= ActiveVertex::kNoNormal) return;
-    vertex_normals_[slot] = normal_of(hierarchy.layers[cut.normal_layer()], v.normal);
+    vertex_normals_[slot] = geomorphs.normal(at, v.normal);
   };
   cut.vertex_changes().take(positions_.size(), changes_.positions, refresh);
   changes_.vertex_normals = changes_.positions;
 }
 
-void CutDrawing::refresh_part(ActiveCut& cut, Part p) {
+void CutDrawing::refresh_part(ActiveCut& cut, const Geomorphs& geomorphs, Part p) {
   const MeshHierarchy& hierarchy = cut.hierarchy();
   ActiveTriangles& part = cut.parts()[p];
   const std::size_t normal_count = kNormalsPerTriangle[p];
@@ -96,7 +112,7 @@ void CutDrawing::refresh_part(ActiveCut& cut, Part p) {
   const auto refresh_shading = [&](std::size_t t) {
     const auto corner = static_cast<std::uint32_t>(3 * t);
     if (normal_count > 0) {
-      show_normals(cut, part, static_cast<std::uint32_t>(t),
+      show_normals(cut, geomorphs, part, static_cast<std::uint32_t>(t),
                    std::span<Vec3f>(part.normals).subspan(normal_count * t, normal_count));
     }
     for (std::uint32_t k = 0; color_layer != kNone && k < 3; ++k) {

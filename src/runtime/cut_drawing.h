@@ -2,12 +2,14 @@
 //
 // The moves mark what they touch (ActiveCut). arrive() then sorts the touched triangles into the
 // three parts by what their corners have now, closes the holes, computes each changed float once,
-// and tells the ranges. Time O(what changed), however many moves led there.
+// and tells the ranges. What is on its way (Geomorphs) is shown where it is. Time O(what changed),
+// however many moves led there.
 #pragma once
 
 #include "crease/draw_changes.h"
 #include "crease/draw_list.h"
 #include "runtime/active_cut.h"
+#include "runtime/geomorphs.h"
 
 #include <vector>
 
@@ -15,15 +17,18 @@ namespace crease {
 
 class CutDrawing {
  public:
-  void arrive(ActiveCut& cut);
+  void arrive(ActiveCut& cut, const Geomorphs& geomorphs);
   DrawList draw_list(const ActiveCut& cut) const;
   const DrawChanges& changes() const { return changes_; }
   std::size_t bytes() const { return 12 * (positions_.capacity() + vertex_normals_.capacity()); }
 
  private:
-  void sort_touched(ActiveCut& cut);
-  void refresh_vertices(ActiveCut& cut);
-  void refresh_part(ActiveCut& cut, Part p);
+  void sort_touched(ActiveCut& cut, const Geomorphs& geomorphs);
+  void refresh_vertices(ActiveCut& cut, const Geomorphs& geomorphs);
+  void refresh_part(ActiveCut& cut, const Geomorphs& geomorphs, Part p);
+
+  void show_normals(const ActiveCut& cut, const Geomorphs& geomorphs, const ActiveTriangles& part,
+                    std::uint32_t triangle, std::span<Vec3f> shown) const;
 
   std::vector<Vec3f> positions_, vertex_normals_;
   DrawChanges changes_;

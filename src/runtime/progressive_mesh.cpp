@@ -1,93 +1,13 @@
-// The state of hierarchy/linear_state.h, with the float buffers of three draw calls beside it.
-// While the level moves, elements are only marked; when it has arrived, those that are active are
-// computed from the state. So a switch costs O(corners that change) however long it is.
-//
-// Memory beside the shared arrays: a vertex 24, an SN vertex 12, a triangle 12, an FN triangle 13,
-// an NSN triangle 49; 48 a triangle where there are colours; change sets of a bit an element.
 #include "crease/progressive_mesh.h"
 
 #include "base/assert.h"
 #include "hierarchy/geometric_normal.h"
-#include "hierarchy/linear_state.h"
-#include "runtime/change_set.h"
-#include "runtime/draw_values.h"
 #include "runtime/extract_level.h"
+#include "runtime/progressive_impl.h"
 
 #include <algorithm>
-#include <array>
 
 namespace crease {
-
-namespace {
-
-enum Section { kSn, kFn, kNsn, kSectionCount };
-
-}  // namespace
-
-struct ProgressiveMesh::Impl {
-  explicit Impl(ProgressiveArraysPtr given);
-
-  struct TrianglePart {
-    std::uint32_t first = 0;                   // its first triangle
-    std::vector<Vec3f> normals;                // FN: 1 a triangle, NSN: 3
-    std::vector<std::array<float, 4>> colors;  // 3 a triangle, or empty
-    ChangeSet index_changes, normal_changes, color_changes;
-    std::uint32_t normals_per_triangle = 0;
-  };
-
-  // What LinearState calls while the level moves.
-  struct Marks {
-    Impl& mesh;
-    void position(std::uint32_t slot) { mesh.position_changes.mark(slot); }
-    void own_normal(std::uint32_t slot) { mesh.own_normal_changes.mark(slot); }
-    void corner(std::uint32_t c) {
-      const std::uint32_t t = c / 3;
-      TrianglePart& part = mesh.part_of(t);
-      part.index_changes.mark(t - part.first);
-      touched(c);
-    }
-    void index(std::uint32_t layer, std::uint32_t c) {
-      TrianglePart& part = mesh.part_of(c / 3);
-      if (layer == 0) part.normal_changes.mark(c / 3 - part.first);
-      if (layer == mesh.color_layer + 1) part.color_changes.mark(c / 3 - part.first);
-    }
-    void derived(std::uint32_t t) {
-      TrianglePart& part = mesh.part_of(t);
-      part.normal_changes.mark(t - part.first);
-    }
-    void touched(std::uint32_t c) {
-      const std::uint32_t t = c / 3;
-      TrianglePart& part = mesh.part_of(t);
-      if (mesh.state.is_derived(t)) part.normal_changes.mark(t - part.first);
-      if (!part.colors.empty()) part.color_changes.mark(t - part.first);
-    }
-  };
-
-  TrianglePart& part_of(std::uint32_t t) {
-    return parts[t < parts[kFn].first ? kSn : t < parts[kNsn].first ? kFn : kNsn];
-  }
-  std::uint32_t active_of(int section) const {
-    const SectionCounts& active = state.active();
-    return section == kSn   ? active.sn_triangles
-           : section == kFn ? active.fn_triangles
-                            : active.nsn_triangles;
-  }
-  Vec3f shown_normal(std::uint32_t c) const;
-  void refresh_normals(TrianglePart& part, std::size_t t);
-  void refresh_colors(TrianglePart& part, std::size_t t);
-  void arrive();
-  void move_to(std::size_t count);
-  DrawPart draw_part(int section) const;
-
-  ProgressiveArraysPtr arrays;
-  LinearState state;
-  std::vector<Vec3f> positions;
-  std::array<TrianglePart, kSectionCount> parts;
-  std::uint32_t color_layer = kMaxLayers;  // of arrays->layers; kMaxLayers: none
-  ChangeSet position_changes, own_normal_changes;
-  DrawChanges changes;
-  std::size_t base_triangles = 0;
-};
 
 ProgressiveMesh::Impl::Impl(ProgressiveArraysPtr given) : arrays(std::move(given)), state(*arrays) {
   const SectionCounts& full = arrays->full;
@@ -138,7 +58,21 @@ Vec3f ProgressiveMesh::Impl::shown_normal(std::uint32_t c) const {
 void ProgressiveMesh::Impl::refresh_normals(TrianglePart& part, std::size_t t) {
   const std::uint32_t n = part.normals_per_triangle;
   const std::uint32_t first_corner = 3 * (part.first + static_cast<std::uint32_t>(t));
-  for (std::uint32_t k = 0; k < n; ++k) part.normals[t * n + k] = shown_normal(first_corner + k);
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const auto i = static_cast<std::uint32_t>(t * n + k);
+    Vec3f& drawn = part.normals[i];
+    const Vec3f own = shown_normal(first_corner + k);
+    const bool was_drawn = seconds > 0 && t < part.drawn;
+    const Way* const way = part.ways.find(i);
+    const bool is_known = way != nullptr && (way->is_leaving || way->to == own);
+    if (was_drawn && !is_known) {
+      part.ways.set(i, own, {drawn, own, now});
+    } else if (!was_drawn) {
+      part.ways.erase(i);
+    }
+    const Way* const now_on = part.ways.find(i);
+    drawn = now_on == nullptr ? own : part.ways.shown(*now_on, now, seconds);
+  }
 }
 
 void ProgressiveMesh::Impl::refresh_colors(TrianglePart& part, std::size_t t) {
@@ -156,9 +90,11 @@ void ProgressiveMesh::Impl::move_to(std::size_t count) {
 
 void ProgressiveMesh::Impl::arrive() {
   position_changes.take(positions.size(), changes.positions, [this](std::size_t v) {
-    positions[v] = draw_position(arrays->grid, state.positions[v]);
+    positions[v] = shown_position(static_cast<std::uint32_t>(v));
   });
-  own_normal_changes.take(state.own_normals.size(), changes.vertex_normals, [](std::size_t) {});
+  own_normal_changes.take(state.own_normals.size(), changes.vertex_normals, [this](std::size_t v) {
+    if (!own_normals.empty()) own_normals[v] = shown_own_normal(static_cast<std::uint32_t>(v));
+  });
   std::vector<Range> none;
   std::vector<Range>* const index_ranges[] = {&changes.sn_indices, &changes.fn_indices,
                                               &changes.nsn_indices};
@@ -177,6 +113,7 @@ void ProgressiveMesh::Impl::arrive() {
       part.color_changes.take(active, *color_ranges[s],
                               [&](std::size_t t) { refresh_colors(part, t); });
     }
+    part.drawn = active;
   }
 }
 
@@ -205,19 +142,22 @@ std::size_t ProgressiveMesh::applied() const {
 
 void ProgressiveMesh::set_applied(std::size_t count) {
   CREASE_ASSERT(count <= contraction_count());
-  impl_->move_to(count);
-  impl_->arrive();
+  impl_->want(count);
 }
 
 void ProgressiveMesh::set_triangle_count(std::size_t count) {
   LinearState& state = impl_->state;
-  Impl::Marks marks{*impl_};
-  while (triangle_count() > count && state.applied() < contraction_count()) state.apply(marks);
+  const std::size_t before = state.applied();
+  NoMarks none;
+  while (triangle_count() > count && state.applied() < contraction_count()) state.apply(none);
   // Contractions that lose no triangle are undone as well.
   while (state.applied() > 0 && triangle_count() + state.triangles_won_previous() <= count) {
-    state.undo(marks);
+    state.undo(none);
   }
-  impl_->arrive();
+  const std::size_t wanted = state.applied();
+  while (state.applied() < before) state.apply(none);
+  while (state.applied() > before) state.undo(none);
+  impl_->want(wanted);
 }
 
 void ProgressiveMesh::set_error(float surface_error) {
@@ -231,6 +171,20 @@ std::size_t ProgressiveMesh::applied_for_error(float surface_error) const {
       errors.begin(), errors.end(),
       [surface_error](const ErrorStep& step) { return step.error.surface <= surface_error; });
   return too_coarse == errors.end() ? contraction_count() : too_coarse->applied - 1;
+}
+
+void ProgressiveMesh::set_geomorph_seconds(double seconds) {
+  impl_->seconds = seconds;
+  if (seconds > 0 && impl_->own_normals.empty()) impl_->own_normals = impl_->state.own_normals;
+}
+void ProgressiveMesh::advance(double seconds) {
+  impl_->advance(seconds);
+}
+bool ProgressiveMesh::is_moving() const {
+  return impl_->is_moving();
+}
+std::size_t ProgressiveMesh::wanted_triangle_count() const {
+  return impl_->is_coarsening() ? impl_->wanted_triangles : triangle_count();
 }
 
 std::size_t ProgressiveMesh::triangle_count() const {
@@ -258,7 +212,7 @@ DrawList ProgressiveMesh::draw_list() const {
   DrawList list;
   list.origin = impl_->arrays->grid.origin;
   list.positions = impl_->positions;
-  list.vertex_normals = impl_->state.own_normals;
+  list.vertex_normals = impl_->own_normals.empty() ? impl_->state.own_normals : impl_->own_normals;
   list.sn = impl_->draw_part(kSn);
   list.fn = impl_->draw_part(kFn);
   list.nsn = impl_->draw_part(kNsn);

@@ -28,12 +28,14 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
   report_ = {};
   if (!has_view_ || !(view == view_)) {
     look_from(cut, view);
+    turn_back(cut);
     find_merges(cut);
     finds_splits_ = true;
   }
   stop_at_ = view.clock == nullptr ? std::numeric_limits<double>::infinity()
                                    : view.clock(view.clock_context) + view.max_seconds;
   moves_until_clock_ = 0;
+  merge_arrived(cut);
   if (cut.triangle_count() > view_.max_triangles) {
     keep_to_budget(cut, {std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot}, 0);
   }
@@ -55,6 +57,15 @@ UpdateReport Refiner::set_error(ActiveCut& cut, float error) {
     const SplitBounds& bounds = h.bounds[index_of(s)];
     return std::max(bounds.surface.value(), bounds.line.value()) > error || error < 0;
   };
+  if (geomorphs_ != nullptr) {
+    for (const Geomorphs::Leaving& l : geomorphs_->all_leaving()) {
+      if (is_coarse(l.split)) {
+        geomorphs_->stay(cut, l.split);
+      } else if (l.has_arrived && cut.can_merge(l.split)) {
+        move_up(cut, l.split, cut.children(l.split));
+      }
+    }
+  }
   for (std::uint32_t slot = 0; slot < cut.vertices().size(); ++slot) pending_.push_back(slot);
   while (!pending_.empty()) {
     const std::uint32_t slot = pending_.back();
@@ -62,8 +73,7 @@ UpdateReport Refiner::set_error(ActiveCut& cut, float error) {
     const NodeId node = cut.vertices()[slot].node;
     if (node == kNoNode) continue;
     if (const SplitId s = cut.vertices()[slot].split; s != kNoSplit && is_coarse(s)) {
-      const std::uint32_t other = cut.split(slot);
-      ++report_.splits;
+      const std::uint32_t other = move_down(cut, slot);
       if (other != kNoSlot) pending_.push_back(other);
       pending_.push_back(slot);
       continue;
@@ -72,8 +82,8 @@ UpdateReport Refiner::set_error(ActiveCut& cut, float error) {
     const SplitId above = h.split_above(node);
     if (is_coarse(above) || !cut.can_merge(above)) continue;
     const ActiveCut::Children children = cut.children(above);
-    cut.merge(above);
-    ++report_.merges;
+    if (waits(cut, above, children, false)) continue;
+    move_up(cut, above, children);
     pending_.push_back(children.first != kNoSlot ? children.first : children.second);
   }
   return report_;
@@ -123,7 +133,7 @@ void Refiner::do_merges(ActiveCut& cut) {
     const bool has_both = children.first != kNoSlot && children.second != kNoSlot;
     if (!has_both && !cut.can_merge(wish.split)) {
       drop_pair(wish.slot);
-    } else if (!is_needed(cut, wish.split)) {
+    } else if (!is_needed(cut, wish.split) && !waits(cut, wish.split, children, false)) {
       merge(cut, wish.split, children);
     }
   }
@@ -141,7 +151,11 @@ void Refiner::do_splits(ActiveCut& cut) {
         if (cut.triangle_count() + gain > view_.max_triangles) {
           keep_to_budget(cut, wish, gain);
           if (cut.triangle_count() + gain > view_.max_triangles) {
-            if (report_.complete) splits_.clear();  // nothing is less visible: this is it
+            if (leaving_triangles() > 0) {
+              report_.complete = false;  // there will be room
+            } else if (report_.complete) {
+              splits_.clear();  // nothing is less visible: this is it
+            }
             return;
           }
         }
@@ -174,7 +188,10 @@ void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t roo
     const NodeId node = h.node_of_split[index_of(wanted.split)];
     if (!h.is_root(node)) above = h.split_above(node);
   }
-  while (!least_visible_.empty() && cut.triangle_count() + room > view_.max_triangles) {
+  const auto is_full = [&] {
+    return cut.triangle_count() - leaving_triangles() + room > view_.max_triangles;
+  };
+  while (!least_visible_.empty() && is_full()) {
     const Wish wish = least_visible_.front();
     const bool is_least =
         static_cast<double>(wish.excess) * view_.hysteresis < static_cast<double>(wanted.excess);
@@ -182,9 +199,9 @@ void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t roo
     std::pop_heap(least_visible_.begin(), least_visible_.end(), more_visible);
     least_visible_.pop_back();
     if (wish.split == above) continue;
-    if (cut.can_merge(wish.split) && !is_needed(cut, wish.split)) {
-      merge(cut, wish.split, cut.children(wish.split));
-    }
+    if (!cut.can_merge(wish.split) || is_needed(cut, wish.split)) continue;
+    const ActiveCut::Children children = cut.children(wish.split);
+    if (!waits(cut, wish.split, children, true)) merge(cut, wish.split, children);
   }
 }
 
@@ -193,8 +210,7 @@ void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const SplitId s = cut.vertices()[slot].split;
   const Vec3f position = error_.position(cut.vertices()[slot].position);
-  const std::uint32_t other = cut.split(slot);
-  ++report_.splits;
+  const std::uint32_t other = move_down(cut, slot);
   if (cut.vertices().size() > pair_of_slot_.size()) {
     pair_of_slot_.resize(cut.vertices().size(), kNone);
     wrong_.resize(cut.vertices().size(), error_.uses_cones());
@@ -210,8 +226,7 @@ void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
 
 void Refiner::merge(ActiveCut& cut, SplitId s, const ActiveCut::Children& children) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
-  cut.merge(s, children);
-  ++report_.merges;
+  move_up(cut, s, children);
   for (const std::uint32_t slot : {children.first, children.second}) {
     if (slot == kNoSlot) continue;
     drop_pair(slot);

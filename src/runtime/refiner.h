@@ -15,6 +15,7 @@
 
 #include "crease/adaptive_mesh.h"
 #include "runtime/active_cut.h"
+#include "runtime/geomorphs.h"
 #include "runtime/watch_list.h"
 
 #include <cstdint>
@@ -24,6 +25,9 @@ namespace crease {
 
 class Refiner {
  public:
+  // It tells `geomorphs`, if there are, of its moves, and lets merges wait for them.
+  explicit Refiner(Geomorphs* geomorphs = nullptr) : geomorphs_(geomorphs) {}
+
   UpdateReport update(ActiveCut& cut, const ViewParameters& view);
   UpdateReport set_error(ActiveCut& cut, float error);
   std::size_t bytes() const {
@@ -77,11 +81,20 @@ class Refiner {
   void do_splits(ActiveCut& cut);
   void keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t room);
   void split(ActiveCut& cut, std::uint32_t slot);
+  std::uint32_t move_down(ActiveCut& cut, std::uint32_t slot);
+  void move_up(ActiveCut& cut, SplitId s, const ActiveCut::Children& children);
+  bool waits(const ActiveCut& cut, SplitId s, const ActiveCut::Children& children, bool for_room);
+  void turn_back(const ActiveCut& cut);
+  void merge_arrived(ActiveCut& cut);
+  std::size_t leaving_triangles() const {
+    return geomorphs_ == nullptr ? 0 : geomorphs_->leaving_triangles();
+  }
   void split_consistently(ActiveCut& cut, std::uint32_t slot);
   void merge(ActiveCut& cut, SplitId s, const ActiveCut::Children& children);
   bool needs_split(const ActiveCut& cut, SplitId s, std::uint32_t& third) const;
   bool is_needed(const ActiveCut& cut, SplitId s) const;
 
+  Geomorphs* geomorphs_;
   ViewParameters view_;
   ViewError error_;
   bool has_view_ = false;

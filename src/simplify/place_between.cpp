@@ -10,8 +10,8 @@ namespace crease::simplification {
 
 namespace {
 
-// A place costs a file more bits if it is not in the middle, and if its steps are not along the axis
-// that is nearest to the normal: then it must be cheaper by this.
+// A place costs a file more bits if it is not in the middle, and if its steps are not along the
+// axis that is nearest to the normal: then it must be cheaper by this.
 constexpr double kOffMiddle = 0.95, kOffAxis = 0.8;
 
 Vec3d half_gradient(const Quadric& q, const Vec3d& x) {
@@ -92,8 +92,8 @@ CREASE_WIDE PlaceBetween place_between(const Quadric& sum, const Vec3d& a, const
   }
   Vec3d place;
   for (int i = 0; i < 3; ++i) {
-    place[i] = static_cast<double>(between_ends(static_cast<std::int64_t>(a[i]),
-                                                static_cast<std::int64_t>(b[i]), eighths));
+    place[i] = static_cast<double>(
+        between_ends(static_cast<std::int64_t>(a[i]), static_cast<std::int64_t>(b[i]), eighths));
   }
   if (way.stiff[axis] > 0) place[int(axis)] += way.steps(eighths, axis) * way.step[axis];
   return {place, sum.at(place)};

@@ -185,7 +185,7 @@ Status App::step() {
 bool App::is_drawing_due() {
   if (!notice_.empty() && now() > notice_until_) say("");
   has_arrived_ |= frame_.has_changed || session_.is_busy();
-  if (has_arrived_ && (frame_.is_complete || now() >= stream_draw_at_)) {
+  if (has_arrived_ && (frame_.is_complete || frame_.is_moving || now() >= stream_draw_at_)) {
     draws_left_ = std::max(draws_left_, 1);
   }
   if (draws_left_ == 0) return false;
@@ -222,7 +222,7 @@ std::vector<Segment> App::lines() const {
 }
 
 double App::wait_seconds() const {
-  if (draws_left_ > 0 || input_.is_flying()) return 0;
+  if (draws_left_ > 0 || input_.is_flying() || frame_.is_moving) return 0;
   const bool is_streaming = session_.shown() != nullptr && !frame_.is_complete;
   return is_streaming || flight_began_ ? kBusySeconds : kIdleSeconds;
 }

@@ -5,12 +5,6 @@
 
 namespace crease {
 
-namespace {
-
-constexpr std::size_t kStep = 8192;  // contractions: some milliseconds
-
-}  // namespace
-
 bool LevelWalk::go(ProgressiveMesh& mesh, const LevelGoal& goal, double seconds,
                    const std::function<void()>& after_step) {
   if (!(goal == goal_)) {
@@ -22,6 +16,7 @@ bool LevelWalk::go(ProgressiveMesh& mesh, const LevelGoal& goal, double seconds,
   const Clock::time_point begin = Clock::now();
   while (!is_there_) {
     is_there_ = step(mesh, goal, after_step);
+    if (mesh.is_moving()) break;
     if (std::chrono::duration<double>(Clock::now() - begin).count() >= seconds) break;
   }
   return is_there_;

@@ -23,7 +23,10 @@ struct LevelGoal {
 
 class LevelWalk {
  public:
-  // True when the mesh is where it shall be. Goes on for `seconds`, one step at least;
+  static constexpr std::size_t kStep = 8192;  // contractions: some milliseconds
+
+  // True when the mesh is where it shall be. Goes on for `seconds`, one step at least, or until a
+  // geomorph has begun: a coarser level is reached when that is over, and asked for again.
   // `after_step` is called after each change of the mesh.
   bool go(ProgressiveMesh& mesh, const LevelGoal& goal, double seconds,
           const std::function<void()>& after_step);

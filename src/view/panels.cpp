@@ -63,6 +63,13 @@ void degrees_slider(double& degrees) {
                       degrees > 0 ? "%.1f degrees" : "any");
 }
 
+void geomorph_slider(double& seconds) {
+  constexpr double kLow = 0, kHigh = 2;
+  slider_above("geomorphs");
+  ImGui::SliderScalar("##geomorphs", ImGuiDataType_Double, &seconds, &kLow, &kHigh,
+                      seconds > 0 ? "%.2f seconds" : "none");
+}
+
 // The right end means no limit.
 void budget_slider(const char* label, const char* id, std::size_t& value, ImU64 unit, ImU64 low,
                    ImU64 high, const char* format) {
@@ -157,6 +164,8 @@ void settings_panel(const PanelContent& content, ViewSettings& settings, SplitSe
                 "%llu thousand");
   if (settings.mode == ViewMode::Blocks) {
     budget_slider("memory", "##memory", settings.max_bytes, ImU64(1) << 20, 8, 16'384, "%llu MiB");
+  } else {
+    geomorph_slider(settings.geomorph_seconds);
   }
   bandwidth_slider(stream.max_bytes_per_second);
   buttons(content.switches, pressed);

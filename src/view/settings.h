@@ -27,6 +27,7 @@ struct ViewSettings {
   bool is_original = false;
 
   double wanted_pixels() const { return is_original ? 1e-9 : pixels; }
+  double geomorph_seconds = 0.25;  // by vertex and linear; 0: none
 
   bool operator==(const ViewSettings&) const = default;
 };
@@ -57,7 +58,8 @@ struct FrameFacts {
   std::size_t blocks = 0;         // resident; 0 where there are none
   std::size_t draw_calls = 0;
   bool has_changed = false;  // since the last frame
-  bool is_complete = false;  // all that the view wants is shown
+  bool is_complete = false;  // all that the view wants is shown, and nothing is on its way to it
+  bool is_moving = false;    // something is on its way
 };
 
 }  // namespace crease

@@ -24,6 +24,20 @@ double seconds_now(void*) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// How long the last frame took, for what is on its way. A frame that took long is a short one: so
+// is what is seen of it.
+class FrameTime {
+ public:
+  double seconds() {
+    const double now = seconds_now(nullptr), last = std::exchange(last_, now);
+    return last < 0 ? 0 : std::min(now - last, kLongest);
+  }
+
+ private:
+  static constexpr double kLongest = 0.05;
+  double last_ = -1;
+};
+
 double distance_to(const Box& box, const Vec3d& eye) {
   double square = 0;
   for (int i = 0; i < 3; ++i) {
@@ -116,9 +130,12 @@ class ShownVertices final : public ShownWhole {
     view.max_triangles = settings.max_triangles;
     view.max_seconds = kUpdateSeconds;
     view.clock = seconds_now;
-    const UpdateReport report = mesh_->update(view);
+    mesh_->set_geomorph_seconds(settings.geomorph_seconds);
+    const UpdateReport report = mesh_->update(view, time_.seconds());
     FrameFacts facts;
-    facts.has_changed = report.splits + report.merges > 0;
+    facts.is_moving = report.moving > 0;
+    facts.has_changed = report.splits + report.merges > 0 || facts.is_moving || was_moving_;
+    was_moving_ = facts.is_moving;
     if (facts.has_changed) {
       facts.uploaded_bytes = scene_.update(mesh_->draw_list(), mesh_->changes());
       has_errors_ = false;
@@ -127,7 +144,7 @@ class ShownVertices final : public ShownWhole {
     facts.error_pixels = worst_error(camera, settings);
     facts.gpu_bytes = scene_.bytes();
     facts.resident_bytes = mesh_->active_bytes() + hierarchy_bytes_;
-    facts.is_complete = report.complete;
+    facts.is_complete = report.complete && !facts.is_moving;
     update_creases(settings, mesh_->draw_list(), facts);
     return facts;
   }
@@ -184,6 +201,8 @@ class ShownVertices final : public ShownWhole {
 
   std::unique_ptr<AdaptiveMesh> mesh_;
   const std::size_t hierarchy_bytes_;
+  FrameTime time_;
+  bool was_moving_ = false;
   bool has_errors_ = false;
   Camera errors_camera_;
 };
@@ -199,10 +218,22 @@ class ShownLinear final : public ShownWhole {
     const double wanted = settings.pixels * pixel_size(camera, distance);
     FrameFacts facts;
     const std::size_t before = mesh_->applied();
-    facts.is_complete = walk_.go(
-        *mesh_, {float(wanted), settings.max_triangles}, kUpdateSeconds,
-        [&] { facts.uploaded_bytes += scene_.update(mesh_->draw_list(), mesh_->changes()); });
-    facts.has_changed = mesh_->applied() != before;
+    const double seconds = time_.seconds();
+    bool has_moved = mesh_->is_moving();
+    if (has_moved) {
+      mesh_->advance(seconds);
+      take_changes(facts);
+    }
+    const LevelGoal goal{float(wanted), settings.max_triangles};
+    if (!mesh_->is_moving() || !(goal == goal_)) {
+      goal_ = goal;
+      mesh_->set_geomorph_seconds(is_near(goal) ? settings.geomorph_seconds : 0);
+      facts.is_complete = walk_.go(*mesh_, goal, kUpdateSeconds, [&] { take_changes(facts); });
+    }
+    facts.is_moving = mesh_->is_moving();
+    facts.is_complete &= !facts.is_moving;
+    has_moved |= facts.is_moving;
+    facts.has_changed = mesh_->applied() != before || has_moved;
     facts.triangles = mesh_->triangle_count();
     facts.error_pixels = in_pixels(mesh_->error(), camera, std::max(distance, 1e-9));
     facts.gpu_bytes = facts.resident_bytes = scene_.bytes();
@@ -241,8 +272,22 @@ class ShownLinear final : public ShownWhole {
   std::vector<Vec3f> outline() const override { return used_positions(mesh_->draw_list()); }
 
  private:
+  // Whether one step of the walk leads there: then it goes by a geomorph. A budget of triangles
+  // that may be met is looked for step by step.
+  bool is_near(const LevelGoal& goal) const {
+    if (goal.max_triangles < mesh_->full_triangle_count()) return false;
+    const std::size_t now = mesh_->applied(), there = mesh_->applied_for_error(goal.error);
+    return std::max(now, there) - std::min(now, there) <= LevelWalk::kStep;
+  }
+
+  void take_changes(FrameFacts& facts) {
+    facts.uploaded_bytes += scene_.update(mesh_->draw_list(), mesh_->changes());
+  }
+
   std::unique_ptr<ProgressiveMesh> mesh_;
   LevelWalk walk_;
+  LevelGoal goal_;
+  FrameTime time_;
 };
 
 std::size_t largest_array(const DrawList& list) {

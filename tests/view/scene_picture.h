@@ -1,0 +1,31 @@
+// Small pictures of a scene that changes.
+#pragma once
+
+#include "crease/decode_model.h"
+#include "crease/render.h"
+#include "render/gl_context.h"
+#include "render/gl_scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace crease {
+
+inline constexpr int kPicturePx = 120;  // wide and high
+
+// RGBA, bottom row first.
+std::vector<std::uint8_t> picture(const GlLimits& limits, const GlScene& scene,
+                                  const Camera& camera, const Box& box, bool wireframe,
+                                  Coloring coloring = Coloring::Kind);
+
+// That looks at the middle of the unit box.
+Camera camera_at(double angle, double distance);
+
+// A mesh as a file gives it back.
+struct Decoded {
+  DecodedModel model;
+  Box box;
+};
+Decoded decoded(const Mesh& mesh);
+
+}  // namespace crease
