@@ -17,11 +17,6 @@ constexpr double kLengthShare = 1e-10;
 // in the planes of their walls, and a vertex that has left them tears every later step.
 constexpr double kLeavesPlanes = 0.3;
 
-// A place between the ends is taken if it is this much cheaper than the better end, and the optimum
-// if it is this much cheaper than either: a file needs about 3 bits more for the one and 17 for the
-// other.
-constexpr double kLeavesEnds = 0.8, kLeavesPair = 0.5;
-
 // The optimum stays within this many pair lengths of the pair's middle.
 constexpr double kReach = 1.0;
 
@@ -261,11 +256,11 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
   if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
   x = rounded(x);
   const double cost_x = sum.at(x);
-  const double most = kLeavesEnds * share * best.cost - noise;
+  const double most = steering_.leaves_ends * share * best.cost - noise;
   if (cost_x < most) {  // or nothing is cheap enough
     const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
     if (between.cost < most) best = {between.cost, between.position};
-    if (cost_x < kLeavesPair * share * best.cost - noise) best = {cost_x, x};
+    if (cost_x < steering_.leaves_pair * share * best.cost - noise) best = {cost_x, x};
   }
   best.cost += tie;
   return best;

@@ -19,6 +19,10 @@ namespace crease {
 namespace simplification {
 namespace {
 
+// Below this share of the input's triangles places are chosen for their cost rather than for the bits
+// that a file takes: these vertices are few.
+constexpr double kCoarseShare = 0.1, kCoarseLeavesPair = 0.9;
+
 // A band should leave about this share of its triangles; its limit is steered towards that.
 constexpr double kBandShare = 0.6;
 
@@ -242,6 +246,10 @@ class Simplifier {
       Steering steering;
       steering.placement = options_.placement;
       steering.normal_scale = options_.normal_weight * edge;
+      if (double(before) < kCoarseShare * double(input_triangles)) {
+        steering.leaves_ends = 1;
+        steering.leaves_pair = kCoarseLeavesPair;
+      }
       const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= 3);
       if (band == 0) limit = first_limit(steering, triangle_area);
       steering.cost_limit = last ? kNoLimit : limit;
