@@ -19,8 +19,8 @@ namespace crease {
 namespace simplification {
 namespace {
 
-// Below this share of the input's triangles places are chosen for their cost rather than for the bits
-// that a file takes: these vertices are few.
+// Below this share of the input's triangles places are chosen for their cost rather than for the
+// bits that a file takes: these vertices are few.
 constexpr double kCoarseShare = 0.1, kCoarseLeavesPair = 0.9;
 
 // A band should leave about this share of its triangles; its limit is steered towards that.
