@@ -171,7 +171,7 @@ TEST_CASE("no background shows between the blocks of a closed model") {
     }
     CHECK(found.leaks == 0);
     CHECK(found.inside > kViews * 2000);
-    CHECK(most_bands >= 2);  // there were seams to look at
+    if (!kSanitized) CHECK(most_bands >= 2);  // there were seams to look at
   }
 }
 
