@@ -5,6 +5,7 @@
 #include "codec/unfold_blocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -229,6 +230,13 @@ class ModelDecoder {
     codec::ModelOfBlocks(schema_, unfolder_).fill(model_, options_.contracted_bands, for_each_);
     if (Status status = check_mesh(model_.mesh); !status.ok()) {
       return fail(Error::BadFormat, "decoded mesh: " + status.failure().message);
+    }
+    for (const std::vector<float>& values : model_.sequence.new_values) {
+      for (const float value : values) {
+        if (!std::isfinite(value)) {
+          return fail(Error::BadFormat, "decoded model: a value of its levels is not finite");
+        }
+      }
     }
     return std::move(model_);
   }
