@@ -111,8 +111,9 @@ std::array<std::optional<Vector>, kComponents> expected_places(const Surrounding
 PlaceModel::PlaceModel(Who who) {
   const PlaceStart& start = kPlaces[std::size_t(who)];
   for (std::size_t c = 0; c < weights_.size(); ++c) weights_[c].of = start.weights[c];
-  tangent_ = {start.tangent, start.tangent_slopes};
-  normal_ = {start.normal, start.normal_slopes};
+  const PlaceScales& scales = kPlaceScales[start.scales];
+  tangent_ = {scales.tangent, scales.tangent_slopes};
+  normal_ = {scales.normal, scales.normal_slopes};
 }
 
 std::size_t PlaceModel::weights_of(const Child& child) {
