@@ -1,8 +1,8 @@
 #include "runtime/geomorphs.h"
 
 #include "hierarchy/grid_sum.h"
-#include "runtime/between.h"
 #include "runtime/draw_values.h"
+#include "runtime/interpolate.h"
 
 #include <utility>
 
@@ -42,7 +42,7 @@ Vec3f Geomorphs::value(std::uint32_t index) const {
 
 Vec3f Geomorphs::normal_of(const Moving& m, std::uint32_t index) const {
   const Row* const row = row_of(m, index);
-  return row == nullptr ? value(index) : between_on_sphere(row->from, row->to, share(m));
+  return row == nullptr ? value(index) : slerp(row->from, row->to, share(m));
 }
 
 Vec3f Geomorphs::normal(std::uint32_t slot, std::uint32_t index) const {
@@ -53,7 +53,7 @@ Vec3f Geomorphs::normal(std::uint32_t slot, std::uint32_t index) const {
 Vec3f Geomorphs::position(const ActiveCut& cut, std::uint32_t slot) const {
   const std::uint32_t i = moving_of(slot);
   if (i == kNone) return draw_position(hierarchy_.vertices.grid, cut.vertices()[slot].position);
-  return between(moving_[i].from, moving_[i].to, share(moving_[i]));
+  return lerp(moving_[i].from, moving_[i].to, share(moving_[i]));
 }
 
 // What the corners that have attribute a of a child show once s is merged, or kNone.

@@ -15,9 +15,9 @@
 
 #include "crease/progressive_mesh.h"
 #include "hierarchy/linear_state.h"
-#include "runtime/between.h"
 #include "runtime/change_set.h"
 #include "runtime/draw_values.h"
+#include "runtime/interpolate.h"
 #include "runtime/ways.h"
 
 #include <array>
@@ -36,8 +36,8 @@ struct ProgressiveMesh::Impl {
     std::vector<std::array<float, 4>> colors;  // 3 a triangle, or empty
     ChangeSet index_changes, normal_changes, color_changes;
     std::uint32_t normals_per_triangle = 0;
-    std::size_t drawn = 0;         // triangles that were active when it last arrived
-    Ways ways{between_on_sphere};  // of `normals`
+    std::size_t drawn = 0;  // triangles that were active when it last arrived
+    Ways ways{slerp};       // of `normals`
   };
 
   // What LinearState calls while the level moves.
@@ -120,7 +120,7 @@ struct ProgressiveMesh::Impl {
 
   double seconds = 0, now = 0;     // of geomorphs
   std::vector<Vec3f> own_normals;  // as they are seen; empty before there are geomorphs
-  Ways position_ways{between}, own_normal_ways{between_on_sphere};
+  Ways position_ways{lerp}, own_normal_ways{slerp};
   std::size_t wanted = 0;    // contractions in force at last
   std::size_t taken_at = 0;  // that what is leaving leads to; else as applied
   double began_leaving = 0;

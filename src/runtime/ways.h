@@ -22,8 +22,8 @@ struct Way {
 
 class Ways {
  public:
-  using Between = Vec3f (*)(const Vec3f& from, const Vec3f& to, float share);
-  explicit Ways(Between between) : between_(between) {}
+  using Interpolate = Vec3f (*)(const Vec3f& from, const Vec3f& to, float share);
+  explicit Ways(Interpolate interpolate) : interpolate_(interpolate) {}
 
   bool empty() const { return ways_.empty(); }
   const Way* find(std::uint32_t i) const {
@@ -32,7 +32,7 @@ class Ways {
   }
   Vec3f shown(const Way& way, double now, double seconds) const {
     const float share = seconds > 0 ? static_cast<float>((now - way.began) / seconds) : 1.0f;
-    return between_(way.from, way.to, share);
+    return interpolate_(way.from, way.to, share);
   }
   // Of something whose own place is `own`; nothing is on a way to where it is.
   void set(std::uint32_t i, const Vec3f& own, const Way& way) {
@@ -53,7 +53,7 @@ class Ways {
   }
 
  private:
-  Between between_;
+  Interpolate interpolate_;
   std::unordered_map<std::uint32_t, Way> ways_;
 };
 
