@@ -10,13 +10,6 @@ namespace crease {
 
 namespace {
 
-// One triangle that covers the window.
-constexpr const char* kCoverVertexShader = R"(#version 330 core
-void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0.5, 1);
-}
-)";
-
 // As render_panels() does it: the background is linear in encoded values, what covers it is light,
 // and an ordered dither hides the steps.
 constexpr const char* kComposeFragmentShader = R"(#version 330 core

@@ -8,12 +8,6 @@ namespace {
 
 constexpr double kRadius = 0.035;  // of the picture's height
 
-constexpr const char* kOcclusionVertexShader = R"(#version 330 core
-void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1);
-}
-)";
-
 constexpr const char* kOcclusionFragmentShader = R"(#version 330 core
 uniform sampler2D depths;
 uniform ivec4 viewport;
@@ -76,7 +70,7 @@ void main() {
 Status draw_occlusion(ProgramCache& programs, const GlTexture& depth, const DrawPass& pass,
                       const DrawStyle& style) {
   const Result<const GlProgram*> got =
-      programs.get("occlusion", kOcclusionVertexShader, kOcclusionFragmentShader);
+      programs.get("occlusion", kCoverVertexShader, kOcclusionFragmentShader);
   if (!got.ok()) return got.failure();
   const GLuint program = (*got)->id();
   const auto at = [program](const char* name) { return glGetUniformLocation(program, name); };

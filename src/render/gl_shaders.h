@@ -35,6 +35,13 @@ struct ProgramKey {
   auto operator<=>(const ProgramKey&) const = default;
 };
 
+// One triangle that covers the picture, without attributes: for glDrawArrays(GL_TRIANGLES, 0, 3).
+inline constexpr const char* kCoverVertexShader = R"(#version 330 core
+void main() {
+  gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0.5, 1);
+}
+)";
+
 // Texture units of the buffer textures.
 namespace unit {
 enum : int { Positions, Indices, Normals, Materials, MaterialColors, CornerColors, Errors };
