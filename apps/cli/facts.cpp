@@ -60,13 +60,7 @@ Json attributes_json(const Mesh& mesh) {
 
 Json bounds_json(const Mesh& mesh) {
   if (mesh.positions.empty()) return nullptr;
-  Vec3d low = mesh.positions.front(), high = low;
-  for (const Vec3d& p : mesh.positions) {
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
-  }
+  const auto [low, high] = bounds_of(mesh);
   return {{"low", {low.x, low.y, low.z}}, {"high", {high.x, high.y, high.z}}};
 }
 
@@ -105,6 +99,17 @@ Json bands_json(const ModelFacts& facts, const std::vector<StreamBits>& bits) {
 }
 
 }  // namespace
+
+std::pair<Vec3d, Vec3d> bounds_of(const Mesh& mesh) {
+  Vec3d low = mesh.positions.front(), high = low;
+  for (const Vec3d& p : mesh.positions) {
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  }
+  return {low, high};
+}
 
 Json mesh_facts(const Mesh& mesh) {
   const ShadingKinds kinds = classify_shading(mesh);

@@ -7,9 +7,12 @@
 #include "crease/progressive_arrays.h"
 
 #include <cstddef>
+#include <utility>
 
 namespace crease::cli {
 
+// The corners of the box of a mesh that has vertices: low, high.
+std::pair<Vec3d, Vec3d> bounds_of(const Mesh& mesh);
 // Triangles and vertices by kind, attributes, materials, parts, bounds.
 Json mesh_facts(const Mesh& mesh);
 // The same of a whole file, decoded with DecodeOptions::count_bits, and what is of files alone.

@@ -159,16 +159,11 @@ ProgressiveMesh Model::levels() const {
   return ProgressiveMesh(build_progressive_arrays(decoded.mesh, decoded.sequence));
 }
 
-namespace {
-
-// The coarsest band whose fine end has as many triangles: what is finer is not needed.
 std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles) {
   std::uint16_t band = 0;
   while (band < facts.bands.size() && facts.bands[band].triangles_after >= triangles) ++band;
   return band;
 }
-
-}  // namespace
 
 // A host was asked for more than the head, a disk is as if it had not been.
 ModelFile::ModelFile(BlockFile blocks, std::vector<std::byte> built, const Common& common)

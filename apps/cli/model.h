@@ -47,6 +47,9 @@ struct Detail {
   bool is_mesh_only = false;               // the finest mesh of these blocks, and no level of it
 };
 
+// The coarsest band whose fine end has as many triangles: what is finer is not needed.
+std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles);
+
 struct Model {
   DecodedModel decoded;
   std::uint64_t bytes_read = 0;  // of the file, for this model

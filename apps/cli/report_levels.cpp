@@ -1,11 +1,11 @@
 #include "cli/report_levels.h"
 
 #include "cli/console.h"
+#include "cli/facts.h"
 #include "cli/text.h"
 #include "crease/render.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace crease::cli {
@@ -27,24 +27,6 @@ Result<std::vector<std::uint64_t>> bytes_by_band(const BlockFile& blocks) {
   }
   for (std::size_t b = bands; b-- > 0;) ends[b] = std::max(ends[b], ends[b + 1]);
   return ends;
-}
-
-// Of the coarsest band whose fine end has as many triangles.
-std::size_t band_needed(const ModelFacts& facts, std::size_t triangles) {
-  std::size_t band = 0;
-  while (band < facts.bands.size() && facts.bands[band].triangles_after >= triangles) ++band;
-  return band;
-}
-
-std::pair<Vec3d, Vec3d> box_of(const Mesh& mesh) {
-  Vec3d low = mesh.positions.front(), high = low;
-  for (const Vec3d& p : mesh.positions) {
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
-  }
-  return {low, high};
 }
 
 Result<std::vector<std::byte>> draw_level(const ProgressiveMesh& mesh, const Camera& camera,
@@ -81,7 +63,7 @@ Result<ReportLevels> make_report_levels(const ModelFile& file, const Mesh& full,
   const ModelFacts& facts = file.blocks().facts();
   const Result<std::vector<std::uint64_t>> bytes = bytes_by_band(file.blocks());
   if (!bytes.ok()) return bytes.failure();
-  const auto [low, high] = box_of(full);
+  const auto [low, high] = bounds_of(full);
   const Camera camera =
       options.view.value_or(fit_camera(low, high, options.width_px, options.height_px, options.up));
 
@@ -100,7 +82,7 @@ Result<ReportLevels> make_report_levels(const ModelFile& file, const Mesh& full,
                  : level.triangles == mesh.full_triangle_count() ? "original"
                                                                  : in_percent(ratio);
     level.stopped_by = chosen->stopped_by;
-    level.bytes_needed = (*bytes)[band_needed(facts, level.triangles)];
+    level.bytes_needed = (*bytes)[finest_band_for(facts, level.triangles)];
     log(common, "  " + level.name + ": " + grouped(level.triangles) + " triangles");
     if (mesh.applied() > 0 && options.samples > 0) {
       level.measured = measure_level(mesh, full, options.samples, common);
