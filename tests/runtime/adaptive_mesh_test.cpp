@@ -3,6 +3,7 @@
 #include "hierarchy/geometric_normal.h"
 #include "pipeline/hierarchy_case.h"
 #include "runtime/draw_values.h"
+#include "runtime/random_camera.h"
 #include "runtime/renderer_copy.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
@@ -21,20 +22,11 @@ std::shared_ptr<const MeshHierarchy> share(const HierarchyCase& c) {
   return std::make_shared<const MeshHierarchy>(c.hierarchy);
 }
 
-// A camera somewhere around the model, looking about at it.
 ViewParameters random_view(const MeshHierarchy& h, std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(-1, 1);
-  const auto point = [&] { return Vec3d{unit(random), unit(random), unit(random)}; };
   ViewParameters view;
-  double size = 2000 * h.vertices.grid.step;
-  for (const SplitBounds& bounds : h.vertices.bounds) {
-    size = std::max(size, double(bounds.radius.value()));
-  }
-  view.camera.position = h.vertices.grid.origin + point() * (2 * size);
-  view.camera.target = h.vertices.grid.origin + point() * (0.5 * size);
-  view.camera.up = normalized(point());
-  view.camera.width_px = 400, view.camera.height_px = 300;
-  view.camera.pixels = std::exp(3 * unit(random));
+  view.camera = random_camera(h, random);
+  view.camera.up = normalized(Vec3d{unit(random), unit(random), unit(random)});
   view.degrees = random() % 2 == 0 ? 0 : 5;
   view.coarse_outside = random() % 4 != 0;
   view.coarse_backfaces = random() % 2 == 0;

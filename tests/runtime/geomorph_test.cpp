@@ -6,6 +6,7 @@
 #include "runtime/cut_drawing.h"
 #include "runtime/draw_values.h"
 #include "runtime/geomorphs.h"
+#include "runtime/random_camera.h"
 #include "runtime/refiner.h"
 #include "runtime/renderer_copy.h"
 #include "runtime/seen_triangles.h"
@@ -24,17 +25,8 @@ namespace {
 constexpr double kSeconds = 0.25;
 
 ViewParameters view_all_round(const MeshHierarchy& h, std::mt19937_64& random) {
-  std::uniform_real_distribution<double> unit(-1, 1);
-  const auto point = [&] { return Vec3d{unit(random), unit(random), unit(random)}; };
   ViewParameters view;
-  double size = 2000 * h.vertices.grid.step;
-  for (const SplitBounds& bounds : h.vertices.bounds) {
-    size = std::max(size, double(bounds.radius.value()));
-  }
-  view.camera.position = h.vertices.grid.origin + point() * (2 * size);
-  view.camera.target = h.vertices.grid.origin + point() * (0.5 * size);
-  view.camera.width_px = 400, view.camera.height_px = 300;
-  view.camera.pixels = std::exp(3 * unit(random));
+  view.camera = random_camera(h, random);
   view.coarse_outside = false;
   view.hysteresis = 1;
   return view;

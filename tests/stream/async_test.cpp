@@ -27,23 +27,7 @@ TEST_CASE("each range is answered once, with its bytes, by every source") {
   const Everywhere everywhere;
   for (const AsyncSourcePtr& source : everywhere.sources()) {
     CAPTURE(source->name());
-    std::mt19937 random(7);
-    std::vector<RangeRequest> asked;
-    for (int i = 0; i < 300; ++i) {
-      const std::uint64_t offset = random() % everywhere.bytes.size();
-      const std::uint64_t room = everywhere.bytes.size() - offset;
-      asked.push_back({{offset, std::min<std::uint64_t>(random() % 5000, room)},
-                       static_cast<float>(random() % 3)});
-    }
-    const Ticket first = source->request(asked);
-    const auto answers = all_answers(*source);
-    REQUIRE(answers.size() == asked.size());
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      const auto& answer = answers.at(ticket_after(first, i));
-      REQUIRE(answer.ok());
-      CHECK(*answer == part_of(everywhere.bytes, asked[i].range));
-    }
-    CHECK(source->size() == everywhere.bytes.size());
+    check_random_ranges(*source, everywhere.bytes, 300);
     const AsyncStatistics told = source->statistics();
     CHECK(told.asked == 300);
     CHECK(told.answered == 300);

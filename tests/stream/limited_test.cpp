@@ -61,22 +61,7 @@ TEST_CASE("each range is answered once, with its bytes, at any limit") {
           open_async_http(server->url() + "model.crease", hasty())}) {
       const AsyncSourcePtr source = limited_source(beneath, std::make_shared<RateLimit>(rate));
       CAPTURE(source->name());
-      std::mt19937 random(7);
-      std::vector<RangeRequest> asked;
-      for (int i = 0; i < 100; ++i) {
-        const std::uint64_t offset = random() % bytes.size();
-        asked.push_back({{offset, std::min<std::uint64_t>(random() % 5000, bytes.size() - offset)},
-                         static_cast<float>(random() % 3)});
-      }
-      const Ticket first = source->request(asked);
-      const auto answers = all_answers(*source);
-      REQUIRE(answers.size() == asked.size());
-      for (std::size_t i = 0; i < asked.size(); ++i) {
-        const auto& answer = answers.at(ticket_after(first, i));
-        REQUIRE(answer.ok());
-        CHECK(*answer == part_of(bytes, asked[i].range));
-      }
-      CHECK(source->size() == bytes.size());
+      check_random_ranges(*source, bytes, 100);
       CHECK(source->statistics().asked == 100);
       CHECK(source->statistics().answered == 100);
     }

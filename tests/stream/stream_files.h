@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -101,6 +102,26 @@ inline std::vector<std::byte> read_all(const ByteSource& source, const FileRange
   const Status status = source.read(range.offset, bytes);
   CHECK_MESSAGE(status.ok(), (status.ok() ? "" : status.failure().message));
   return bytes;
+}
+
+// Asks for random ranges of `bytes`, all at once, and checks what comes.
+inline void check_random_ranges(AsyncSource& source, std::span<const std::byte> bytes, int count) {
+  std::mt19937 random(7);
+  std::vector<RangeRequest> asked;
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t offset = random() % bytes.size();
+    asked.push_back({{offset, std::min<std::uint64_t>(random() % 5000, bytes.size() - offset)},
+                     static_cast<float>(random() % 3)});
+  }
+  const Ticket first = source.request(asked);
+  const auto answers = all_answers(source);
+  REQUIRE(answers.size() == asked.size());
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const auto& answer = answers.at(ticket_after(first, i));
+    REQUIRE(answer.ok());
+    CHECK(*answer == part_of(bytes, asked[i].range));
+  }
+  CHECK(source.size() == bytes.size());
 }
 
 }  // namespace crease

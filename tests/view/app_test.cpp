@@ -5,6 +5,7 @@
 #include "crease/file.h"
 #include "support/mesh_zoo.h"
 #include "view/streamed_model.h"
+#include "view/two_part_city.h"
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -190,13 +191,7 @@ TEST_CASE("the error asked for and the triangles allowed decide what is shown") 
 }
 
 TEST_CASE("what is clicked on is told with block, level, error, kind and part in every mode") {
-  Mesh mesh = city_blocks(2, 2);
-  mesh.parts = {"left", "right"};
-  mesh.part_of_triangle.clear();
-  for (const Triangle& t : mesh.triangles) {
-    const bool is_left = mesh.positions[index_of(t[0])].x < 1.5;
-    mesh.part_of_triangle.push_back(PartId(is_left ? 0u : 1u));
-  }
+  const Mesh mesh = two_part_city();
   const Folder folder;
   ViewerOptions options = small_window(folder.crease_file("city.crease", mesh));
   options.pixels = 0.01;

@@ -4,6 +4,7 @@
 #include "crease/draw_list.h"
 #include "support/mesh_zoo.h"
 #include "view/streamed_model.h"
+#include "view/two_part_city.h"
 
 #include <doctest/doctest.h>
 
@@ -74,13 +75,7 @@ TEST_CASE("of blocks the same is met as of all their triangles") {
 }
 
 TEST_CASE("a triangle of a block knows its part") {
-  Mesh mesh = city_blocks(2, 2);
-  mesh.parts = {"left", "right"};
-  mesh.part_of_triangle.clear();
-  for (const Triangle& t : mesh.triangles) {
-    const bool is_left = mesh.positions[index_of(t[0])].x < 1.5;
-    mesh.part_of_triangle.push_back(PartId(is_left ? 0u : 1u));
-  }
+  const Mesh mesh = two_part_city();
   const StreamedModel model = streamed_model(mesh, 8000);
   BlockStreamer streamer = model.stream();
   BlockViewParameters parameters;
