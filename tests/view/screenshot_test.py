@@ -4,7 +4,6 @@ import http.server
 import json
 import os
 import pathlib
-import subprocess
 import sys
 import threading
 import unittest
@@ -53,10 +52,8 @@ class Screenshot(tool.Case):
         cls.screen.close()
 
     def view(self, *arguments, exit_status=0, environment=None):
-        done = subprocess.run([tool.BINARY, "view", *map(str, arguments)], capture_output=True,
-                              text=True, env=environment or self.screen.environment, timeout=600)
-        if tool.LEAK_CHECK_FAILED in done.stderr:
-            return done
+        done = tool.run([tool.BINARY, "view", *map(str, arguments)],
+                        environment or self.screen.environment, timeout=600)
         self.assertEqual(done.returncode, exit_status, done.stdout + done.stderr)
         return done
 
