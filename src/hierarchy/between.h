@@ -24,13 +24,14 @@ struct Between {
 };
 inline constexpr std::int32_t kMostSteps = 64;
 
+inline constexpr int kBetweenBits = 7;  // by which a step is shorter than the longer one
+
 // Of the grid, in units, where the ends are so far apart along the other two axes.
 inline std::int64_t between_step(std::int64_t apart_first, std::int64_t apart_second) {
-  constexpr int kBits = 7;  // by which a step is shorter than the longer one
   const std::uint64_t apart =
       static_cast<std::uint64_t>(std::max(std::abs(apart_first), std::abs(apart_second)));
   const int width = static_cast<int>(std::bit_width(apart));
-  return width > kBits ? std::int64_t(1) << (width - kBits) : 1;
+  return width > kBetweenBits ? std::int64_t(1) << (width - kBetweenBits) : 1;
 }
 
 // On one axis. |a|, |b| < 2^60.
