@@ -4,8 +4,8 @@
 //
 // The worst error is the largest of a million directions all over the sphere and of a million
 // around the place where the coding's cells are largest; the mean is that of the first million.
-#include "codec/octahedral.h"
 #include "codec/sextant.h"
+#include "mesh/octahedral.h"
 
 #include <algorithm>
 #include <cmath>

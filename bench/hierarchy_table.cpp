@@ -1,6 +1,7 @@
-// A line per model: what its hierarchy takes, and how many attributes pile up at its nodes.
+// A line per model: what its hierarchy takes that was built with the defaults and loaded whole, and
+// how many attributes pile up at its nodes.
 //
-//   hierarchy_table MODEL...      (prints CSV; see docs/hierarchy.md)
+//   bench_hierarchy MODEL...      (prints CSV; see docs/hierarchy.md)
 //
 // seconds: of all threads. bytes: per input vertex, whole, and by what they are. attributes a node:
 // mean and maximum over all nodes of the layer that has most. mapped: share of splits with a parent
@@ -8,15 +9,15 @@
 // (G03 3.5.1).
 #include "crease/build_hierarchy.h"
 #include "crease/import.h"
-#include "crease/simplify.h"
 #include "hierarchy/corner_subgraph.h"
+#include "opened.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <utility>
 
-namespace crease {
+namespace crease::bench {
 namespace {
 
 // Of this process, so that neighbours do not count; building and checking run on one thread.
@@ -60,13 +61,15 @@ int measure(const char* path) {
     std::fprintf(stderr, "%s\n", in.failure().message.c_str());
     return 1;
   }
-  Mesh mesh = std::move(in->mesh);
-  const Grid grid = make_grid(mesh, {});
-  snap(mesh, grid);
   const double begin = cpu_seconds();
-  const Result<ContractionSequence> sequence = simplify(mesh, grid, {});
-  const double simplified = cpu_seconds();
-  const Result<MeshHierarchy> hierarchy = build_hierarchy(mesh, *sequence, {});
+  const Result<Opened> opened = open_built(std::move(in->mesh));
+  if (!opened.ok()) {
+    std::fprintf(stderr, "%s: %s\n", path, opened.failure().message.c_str());
+    return 1;
+  }
+  const Mesh& mesh = opened->model.mesh;
+  const double opened_at = cpu_seconds();
+  const Result<MeshHierarchy> hierarchy = build_hierarchy(mesh, opened->model.sequence, {});
   const double built = cpu_seconds();
   if (!hierarchy.ok()) {
     std::fprintf(stderr, "%s: %s\n", path, hierarchy.failure().message.c_str());
@@ -81,7 +84,7 @@ int measure(const char* path) {
   const Attributes attributes = count_attributes(*hierarchy);
   const VertexHierarchy& h = hierarchy->vertices;
   std::printf("%s,%zu,%zu,%zu,%u,%.2f,%.2f,%.2f,", path, mesh.triangle_count(), mesh.vertex_count(),
-              mesh.layers.size(), h.root_count, simplified - begin, built - simplified,
+              mesh.layers.size(), h.root_count, opened_at - begin, built - opened_at,
               checked - built);
   std::printf("%.1f,%.1f,%.1f,%.1f,%.1f,%.1f,", double(bytes.total()) / vertices,
               double(bytes.triangles) / vertices, double(bytes.positions) / vertices,
@@ -95,15 +98,15 @@ int measure(const char* path) {
 }
 
 }  // namespace
-}  // namespace crease
+}  // namespace crease::bench
 
 int main(int argc, char** argv) {
   std::puts(
-      "model,triangles,vertices,layers,roots,simplify_cpu_s,build_cpu_s,check_cpu_s,bytes,triangle_"
+      "model,triangles,vertices,layers,roots,file_cpu_s,build_cpu_s,check_cpu_s,bytes,triangle_"
       "bytes,"
       "position_bytes,split_bytes,value_bytes,attribute_bytes,attributes_mean,attributes_max,"
       "mapped,runs,crossing");
   int failed = 0;
-  for (int i = 1; i < argc; ++i) failed |= crease::measure(argv[i]);
+  for (int i = 1; i < argc; ++i) failed |= crease::bench::measure(argv[i]);
   return failed;
 }

@@ -9,9 +9,9 @@
 // view.
 #include "crease/adaptive_mesh.h"
 #include "crease/build_hierarchy.h"
-#include "crease/simplify.h"
 #include "flight.h"
 #include "models.h"
+#include "opened.h"
 
 #include <CLI/CLI.hpp>
 
@@ -88,18 +88,19 @@ std::size_t uniform_triangles(const std::shared_ptr<const MeshHierarchy>& hierar
 }
 
 bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
-  Result<Model> model = load_model(entry, data_folder());
-  if (!model.ok()) {
-    std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), model.failure().message.c_str());
+  Result<Mesh> source = load_mesh(entry, data_folder());
+  if (!source.ok()) {
+    std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), source.failure().message.c_str());
     return false;
   }
-  const Box box = box_of(model->mesh.positions);
-  const std::size_t vertices = model->mesh.vertex_count(), triangles = model->mesh.triangle_count();
-  const Result<ContractionSequence> sequence = simplify(model->mesh, model->grid, {});
-  if (!sequence.ok()) return false;
-  Result<MeshHierarchy> built = build_hierarchy(model->mesh, *sequence, {});
+  Result<Opened> opened = open_built(*std::move(source));
+  if (!opened.ok()) return false;
+  const Mesh& decoded = opened->model.mesh;
+  const Box box = box_of(decoded.positions);
+  const std::size_t vertices = decoded.vertex_count(), triangles = decoded.triangle_count();
+  Result<MeshHierarchy> built = build_hierarchy(decoded, opened->model.sequence, {});
   if (!built.ok()) return false;
-  *model = {};
+  *opened = {};
   const auto hierarchy = std::make_shared<const MeshHierarchy>(*std::move(built));
   const bool is_city = entry.kind == "city";
   ViewParameters view;

@@ -6,10 +6,9 @@
 // Meta-nodes as in view-dependence trees before compression (El-Sana and Chiang 2000, which CAME
 // compares itself with), as we count them: 32 bits a number, nothing shared, nothing packed; see
 // kNode and the others.
-#include "crease/build.h"
 #include "crease/build_hierarchy.h"
-#include "crease/file.h"
 #include "models.h"
+#include "opened.h"
 
 #include <CLI/CLI.hpp>
 
@@ -43,14 +42,11 @@ struct Line {
 
 Result<Line> measure(Mesh mesh) {
   Line line{.vertices = mesh.vertex_count(), .triangles = mesh.triangle_count()};
-  const Result<Built> built = build_model(std::move(mesh), {});
-  if (!built.ok()) return built.failure();
-  line.file = built->file_bytes.size();
-  const Result<BlockFile> file = BlockFile::open(memory_source(built->file_bytes));
-  if (!file.ok()) return file.failure();
-  const Result<DecodedModel> model = decode_model(*file);
-  if (!model.ok()) return model.failure();
-  const Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
+  const Result<Opened> opened = open_built(std::move(mesh));
+  if (!opened.ok()) return opened.failure();
+  line.file = opened->file_bytes;
+  const DecodedModel& model = opened->model;
+  const Result<MeshHierarchy> hierarchy = build_hierarchy(model.mesh, model.sequence, {});
   if (!hierarchy.ok()) return hierarchy.failure();
   line.hierarchy = hierarchy_bytes(*hierarchy).total();
   line.meta_nodes = meta_node_bytes(*hierarchy, line.triangles);

@@ -50,9 +50,9 @@
 //   deltas      3 numbers a node, 18 and 10 bits        13.5   7.5
 //   splits      node 2.3, second wedge 2.1, bounds 14   18.4  17.4
 //   bits        is_split, wide, triangles, derived       1.5   1.5
-//   normals     12 a value, 2 n values, or an index     24.4  24.4
-//   sum                                                 70.6  60.6
-// Normals of 4 bytes, when the build rounds them, will take 16 off either.
+//   normals     4 a value, 2 n values, or an index       8.4   8.4
+//   sum                                                 54.6  44.6
+// Where the build did not round the normals they are 12 bytes each, 16 more a vertex.
 //
 // Room is left for one attribute at the children that becomes several at the parent (a bevel that
 // is better shown as a hard edge): above() takes the wedge, so runs by wedge can say it, as they do
@@ -67,6 +67,7 @@
 #include "crease/parent_maps.h"
 #include "crease/result.h"
 #include "crease/split_bounds.h"
+#include "crease/stored_values.h"
 #include "crease/vec.h"
 
 #include <algorithm>
@@ -196,8 +197,8 @@ struct AttributeHierarchy {
   Interpolation interpolation = Interpolation::Linear;
   std::uint32_t dimension = 1;
 
-  CompactRanges attribute_ranges{1};   // per node: its attributes
-  std::vector<float> values;           // dimension each
+  CompactRanges attribute_ranges{1};  // per node: its attributes
+  StoredValues values{{}, 1};
   PackedIndices<> value_of_attribute;  // or empty: attribute i has value i
   // Per attribute: it has its place in value_of_attribute; else its value is that of its parent. Or
   // empty: all have.
@@ -261,11 +262,8 @@ struct MeshHierarchy {
   // The number of an attribute's value in its layer, and the value. Time O(1), but O(depth) within
   // regions where values stay the same.
   std::uint32_t value_index(std::size_t layer, NodeId n, RelativeAttribute a) const;
-  std::span<const float> value(std::size_t layer, NodeId n, RelativeAttribute a) const {
-    const AttributeHierarchy& attributes = layers[layer];
-    return std::span<const float>(attributes.values)
-        .subspan(std::size_t(value_index(layer, n, a)) * attributes.dimension,
-                 attributes.dimension);
+  StoredValue value(std::size_t layer, NodeId n, RelativeAttribute a) const {
+    return layers[layer].values[value_index(layer, n, a)];
   }
 
  private:

@@ -42,8 +42,7 @@ std::vector<Extent> extents_of_leaves(const Mesh& snapped, const std::vector<Vec
 void add_normals(const MeshHierarchy& hierarchy, std::size_t layer, NodeId node,
                  GrowingCone& cone) {
   for (std::uint32_t a = 0; a < hierarchy.layers[layer].attribute_count(node); ++a) {
-    const std::span<const float> n =
-        hierarchy.value(layer, node, static_cast<RelativeAttribute>(a));
+    const StoredValue n = hierarchy.value(layer, node, static_cast<RelativeAttribute>(a));
     cone.add(GrowingCone::of({double(n[0]), double(n[1]), double(n[2])}));
   }
 }

@@ -90,9 +90,10 @@ class LeafChecker {
         const NodeId n = leaf(t, c);
         const RelativeAttribute a = hierarchy_.attribute_at(l, n, h_.triangles[place(t)][c]);
         const AttributeId id = source.of_corner[3 * t + c];
-        const std::span<const float> shown = hierarchy_.value(l, n, a), asked = source.value(id);
+        const StoredValue shown = hierarchy_.value(l, n, a);
+        const std::span<const float> asked = source.value(id);
         if (shown.size() != asked.size() ||
-            std::memcmp(shown.data(), asked.data(), asked.size_bytes()) != 0) {
+            std::memcmp(shown.begin(), asked.data(), asked.size_bytes()) != 0) {
           return not_the_mesh(t, "value of layer '" + source.name + "'");
         }
         AttributeId& noted = id_of[layer.attribute_ranges.begin(index_of(n)) + a];

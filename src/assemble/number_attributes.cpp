@@ -17,24 +17,29 @@ std::vector<std::uint32_t> store_values(const std::vector<AttributeId>& ids,
     id_count = std::max(id_count, static_cast<std::uint32_t>(index_of(id)) + 1);
   }
   std::vector<std::uint32_t> value_of_id(id_count, kNone);  // in the order of first use
+  std::vector<float> numbers;
   std::uint32_t used = 0;
   for (AttributeId id : ids) {
-    if (value_of_id[index_of(id)] == kNone) value_of_id[index_of(id)] = used++;
-  }
-  const std::size_t words = result.dimension;
-  const bool indexed = ids.size() + used * words < ids.size() * words;
-  result.values.reserve((indexed ? used : ids.size()) * words);
-  if (indexed) result.value_of_attribute = PackedIndices<>(bits_for(used));
-  std::uint32_t stored = 0;
-  for (AttributeId id : ids) {
-    const std::uint32_t value = value_of_id[index_of(id)];
-    if (indexed) result.value_of_attribute.push_back(value);
-    if (indexed && value != stored) continue;
+    std::uint32_t& value = value_of_id[index_of(id)];
+    if (value != kNone) continue;
+    value = used++;
     const std::span<const float> floats = values.value(id);
-    result.values.insert(result.values.end(), floats.begin(), floats.end());
-    ++stored;
+    numbers.insert(numbers.end(), floats.begin(), floats.end());
   }
-  if (!indexed) value_of_id.clear();
+  result.values = StoredValues(std::move(numbers), result.dimension);
+  if (result.interpolation == Interpolation::Direction) result.values.pack_directions();
+
+  std::vector<std::uint32_t> value_of_attribute;
+  value_of_attribute.reserve(ids.size());
+  for (AttributeId id : ids) value_of_attribute.push_back(value_of_id[index_of(id)]);
+  const std::size_t bits = bits_for(used);
+  if (result.values.bytes() + ids.size() * bits / 8 >=
+      ids.size() * result.values.bytes_per_value()) {
+    result.values = result.values.chosen(value_of_attribute);
+    return {};
+  }
+  result.value_of_attribute = PackedIndices<>(bits_for(used));
+  for (std::uint32_t value : value_of_attribute) result.value_of_attribute.push_back(value);
   return value_of_id;
 }
 
@@ -46,7 +51,7 @@ bool has_several(const AttributeHierarchy& layer) {
 void note_constants(const AttributeInput& input, std::size_t layer, const GrownAttributes& grown,
                     const std::vector<std::uint32_t>& value_of_id, AttributeHierarchy& result) {
   const LeafAttributes& leaves = input.wedges.layers[layer];
-  result.constant_of_wedge = PackedIndices<>(bits_for(result.values.size() / result.dimension + 1));
+  result.constant_of_wedge = PackedIndices<>(bits_for(result.values.size() + 1));
   for (std::size_t w = 0; w < leaves.of_wedge.size(); ++w) {
     const AttributeId id = leaves.attributes[leaves.of_wedge[w]].id;
     result.constant_of_wedge.push_back(grown.varies_of_wedge[w] ? 0

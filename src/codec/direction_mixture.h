@@ -8,8 +8,8 @@
 #pragma once
 
 #include "codec/mixture_model.h"
-#include "codec/octahedral.h"
 #include "codec/place_mixture.h"
+#include "mesh/octahedral.h"
 
 #include <array>
 #include <cstddef>

@@ -6,8 +6,8 @@
 #pragma once
 
 #include "codec/number_lattice.h"
-#include "codec/octahedral.h"
 #include "codec/sextant.h"
+#include "mesh/octahedral.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,8 +1,8 @@
 // What a block refines: the triangles of one patch at one end of its band.
 #pragma once
 
-#include "codec/octahedral.h"
 #include "crease/vec.h"
+#include "mesh/octahedral.h"
 
 #include <array>
 #include <cstdint>

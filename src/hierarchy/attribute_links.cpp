@@ -45,8 +45,8 @@ void AttributeLinks::link_equal_values(SplitId s) {
                             static_cast<RelativeAttribute>(second ? m - first_count_ : m));
   };
   const auto compare = [&](std::uint32_t a, std::uint32_t b) {
-    const std::span<const float> of_a = value(a);
-    return std::memcmp(of_a.data(), value(b).data(), of_a.size_bytes());
+    const StoredValue of_a = value(a), of_b = value(b);
+    return std::memcmp(of_a.begin(), of_b.begin(), of_a.size() * sizeof(float));
   };
   by_value_.resize(linked_to_.size());
   std::iota(by_value_.begin(), by_value_.end(), 0u);

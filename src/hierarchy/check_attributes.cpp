@@ -31,12 +31,10 @@ Broken check_layer_sizes(const VertexHierarchy& vertices, const AttributeHierarc
   if (layer.parents_of_split.size() != splits || layer.branches_of_split.size() != splits) {
     return broken_layer(layer, "a split lacks its parent map");
   }
-  if (layer.values.size() % layer.dimension != 0 ||
-      !std::all_of(layer.values.begin(), layer.values.end(),
-                   [](float f) { return std::isfinite(f); })) {
-    return broken_layer(layer, "its values are odd in number or not finite");
+  if (layer.values.dimension() != layer.dimension || !layer.values.is_finite()) {
+    return broken_layer(layer, "its values are not of its dimension or not finite");
   }
-  const std::size_t values = layer.values.size() / layer.dimension;
+  const std::size_t values = layer.values.size();
   const bool indexed = !layer.value_of_attribute.empty();
   const bool inherits = layer.has_value.size() != 0;
   const std::size_t own = inherits ? layer.has_value.set_count() : attributes;

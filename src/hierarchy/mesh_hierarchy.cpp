@@ -148,8 +148,8 @@ HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy) {
   bytes.splits = v.is_split.bytes() + stored_bytes(v.node_of_split) + stored_bytes(v.second_wedge) +
                  stored_bytes(v.bounds);
   for (const AttributeHierarchy& layer : hierarchy.layers) {
-    bytes.values += stored_bytes(layer.values) + stored_bytes(layer.value_of_attribute) +
-                    layer.has_value.bytes();
+    bytes.values +=
+        layer.values.bytes() + stored_bytes(layer.value_of_attribute) + layer.has_value.bytes();
     bytes.attributes += layer.attribute_ranges.bytes() + stored_bytes(layer.leaf_attribute) +
                         layer.parents_of_split.bytes() + layer.branches_of_split.bytes() +
                         stored_bytes(layer.constant_of_wedge) + layer.keeps_values.bytes();

@@ -11,10 +11,6 @@ namespace {
 
 constexpr std::size_t kNormalsPerTriangle[] = {0, 1, 3};
 
-std::span<const float> value_at(const AttributeHierarchy& layer, std::size_t index) {
-  return std::span<const float>(layer.values).subspan(index * layer.dimension, layer.dimension);
-}
-
 // Face normals that come from different ones are shown as three.
 Part shown_kind(const ActiveCut& cut, const Geomorphs& geomorphs, const ActiveTriangles& part,
                 std::uint32_t triangle) {
@@ -117,7 +113,8 @@ void CutDrawing::refresh_part(ActiveCut& cut, const Geomorphs& geomorphs, Part p
     }
     for (std::uint32_t k = 0; color_layer != kNone && k < 3; ++k) {
       const std::size_t value = cut.value_index(part, corner + k, color_layer);
-      part.colors[3 * t + k] = draw_color(value_at(hierarchy.layers[color_layer], value));
+      const StoredValue color = hierarchy.layers[color_layer].values[value];
+      part.colors[3 * t + k] = draw_color(color);
     }
   };
   std::vector<Range>* const index_ranges[] = {&changes_.sn_indices, &changes_.fn_indices,

@@ -4,6 +4,7 @@
 #include "runtime/layer_like.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace crease {
@@ -54,17 +55,17 @@ AttributeLayer extract_layer(const ActiveCut& cut, const std::vector<ActiveTrian
                              std::uint32_t l) {
   const AttributeHierarchy& source = cut.hierarchy().layers[l];
   AttributeLayer layer = layer_like(source);
-  const auto append = [&layer](std::span<const float> value) {
+  const auto append = [&layer](const auto& value) {
     layer.values.insert(layer.values.end(), value.begin(), value.end());
     return static_cast<std::uint32_t>(layer.value_count() - 1);
   };
-  std::vector<std::uint32_t> id_of_value(source.values.size() / source.dimension, kNone);
+  std::vector<std::uint32_t> id_of_value(source.values.size(), kNone);
   for (const ActiveTriangle& t : triangles) {
     const ActiveTriangles& part = cut.parts()[t.part];
     if (l == cut.normal_layer() && part.is_derived[t.place] != 0) {
       const Vec3f n = geometric_normal_of(cut, part, t.place);
       if (n != Vec3f{}) {
-        const float value[] = {n.x, n.y, n.z};
+        const std::array<float, 3> value{n.x, n.y, n.z};
         layer.of_corner.insert(layer.of_corner.end(), 3, AttributeId{append(value)});
         continue;
       }
@@ -72,8 +73,7 @@ AttributeLayer extract_layer(const ActiveCut& cut, const std::vector<ActiveTrian
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::size_t index = cut.value_index(part, 3 * t.place + k, l);
       if (id_of_value[index] == kNone) {
-        id_of_value[index] = append(std::span<const float>(source.values)
-                                        .subspan(index * source.dimension, source.dimension));
+        id_of_value[index] = append(source.values[index]);
       }
       layer.of_corner.push_back(AttributeId{id_of_value[index]});
     }

@@ -35,9 +35,7 @@ const Geomorphs::Row* Geomorphs::row_of(const Moving& m, std::uint32_t value) {
 }
 
 Vec3f Geomorphs::value(std::uint32_t index) const {
-  const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
-  const float* const v = &layer.values[std::size_t(index) * layer.dimension];
-  return {v[0], v[1], v[2]};
+  return hierarchy_.layers[normal_layer_].values.direction(index);
 }
 
 Vec3f Geomorphs::normal_of(const Moving& m, std::uint32_t index) const {

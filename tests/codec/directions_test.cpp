@@ -1,5 +1,5 @@
-#include "codec/octahedral.h"
 #include "codec/sextant.h"
+#include "mesh/octahedral.h"
 
 #include <doctest/doctest.h>
 
@@ -158,6 +158,17 @@ void check_mirrored_directions(const Coding& coding) {
     CHECK(coding.decode(coding.encode(Vec3d{d.y, d.x, d.z})) == Vec3f{n.y, n.x, n.z});
     CHECK(coding.decode(coding.encode(d * 3e-300)) == n);
     CHECK(coding.decode(coding.encode(d * 3e300)) == n);
+  }
+}
+
+TEST_CASE("an octahedral direction tells its code") {
+  for (const int bits : {4, 8, 9}) {
+    const OctahedralCoding coding(bits);
+    for (const OctahedralCode code : all_codes(coding)) {
+      REQUIRE(coding.exact_code(coding.decode(code)) == code);
+    }
+    CHECK(coding.exact_code({}) == OctahedralCoding::kZero);
+    CHECK(!coding.exact_code({0.36f, 0.48f, 0.8f}));
   }
 }
 

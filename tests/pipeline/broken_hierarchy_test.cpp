@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace crease {
 namespace {
@@ -24,6 +26,18 @@ void swap(PackedIndices<Index>& all, std::size_t i, std::size_t k) {
   const Index at_i = all[i];
   set(all, i, all[k]);
   set(all, k, at_i);
+}
+
+// Of the values, whose numbers `harm` changes.
+template <typename Harm>
+void change_numbers(AttributeHierarchy& layer, Harm harm) {
+  std::vector<float> numbers;
+  for (std::size_t i = 0; i < layer.values.size(); ++i) {
+    const StoredValue value = layer.values[i];
+    numbers.insert(numbers.end(), value.begin(), value.end());
+  }
+  harm(numbers);
+  layer.values = StoredValues(std::move(numbers), layer.values.dimension());
 }
 
 using ParentMap = std::vector<RelativeAttribute>;
@@ -145,13 +159,21 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
       {"a node lacks its range",
        [](MeshHierarchy& h) { h.layers[0].attribute_ranges = CompactRanges(); }},
       {"a split lacks its parent map", [](MeshHierarchy& h) { h.layers[0].parents_of_split = {}; }},
-      {"not finite", [](MeshHierarchy& h) { h.layers[0].values[0] = std::nanf(""); }},
-      {"odd in number", [](MeshHierarchy& h) { h.layers[0].values.pop_back(); }},
+      {"not finite",
+       [](MeshHierarchy& h) {
+         change_numbers(h.layers[0], [](auto& numbers) { numbers[0] = std::nanf(""); });
+       }},
+      {"not of its dimension",
+       [](MeshHierarchy& h) {
+         h.layers[0].values = {{}, 2};
+       }},
       {"an attribute lacks its value",
        [](MeshHierarchy& h) {
          AttributeHierarchy& layer = h.layers[0];
          layer.value_of_attribute = {};
-         layer.values.resize(layer.dimension * (layer.attribute_ranges.total() + 1));
+         layer.values = {std::vector<float>(layer.dimension *
+                                            (layer.attribute_ranges.total() + std::size_t(1))),
+                         layer.dimension};
        }},
       {"value out of range",
        [](MeshHierarchy& h) {
@@ -221,7 +243,9 @@ TEST_CASE("a hierarchy whose attributes are broken is refused, with the reason")
            ranges.push_back(layer.attribute_ranges.count(n) + (n == last ? 1 : 0));
          }
          if (layer.value_of_attribute.empty()) {
-           layer.values.resize(layer.values.size() + layer.dimension, 1.0f);
+           change_numbers(layer, [&](auto& numbers) {
+             numbers.resize(numbers.size() + layer.dimension, 1.0f);
+           });
          } else {
            layer.value_of_attribute.push_back(0);
            if (layer.has_value.size() != 0) layer.has_value.push_back(true);
@@ -266,7 +290,7 @@ TEST_CASE("a hierarchy that is wrong about values that stay is refused, with the
          for (std::size_t i = 0; i < layer.has_value.size(); ++i) none.push_back(false);
          layer.has_value = none;
          layer.value_of_attribute = PackedIndices<>(1);
-         layer.values = {};
+         layer.values = {{}, layer.dimension};
        }},
       {"an attribute lacks its value", [](MeshHierarchy& h) { h.layers[0].has_value = {}; }},
   };
@@ -312,7 +336,9 @@ TEST_CASE("leaves that are not the mesh are told from it") {
        }},
       {"value of layer",
        [](HierarchyCase& h) {
-         for (float& f : h.hierarchy.layers[1].values) f += 1;
+         change_numbers(h.hierarchy.layers[1], [](auto& numbers) {
+           for (float& f : numbers) f += 1;
+         });
        }},
       {"sharing of attributes",
        [](HierarchyCase& h) {
@@ -334,8 +360,9 @@ TEST_CASE("leaves that are not the mesh are told from it") {
          layer.values.resize(3);
          for (AttributeId& id : layer.of_corner) id = AttributeId{0};
          AttributeHierarchy& shown = h.hierarchy.layers[0];
-         for (std::size_t i = 0; i < shown.values.size(); ++i)
-           shown.values[i] = layer.values[i % 3];
+         change_numbers(shown, [&](auto& numbers) {
+           for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = layer.values[i % 3];
+         });
        }},
   };
   for (const Case& broken : cases) {

@@ -158,8 +158,8 @@ CutTriangle triangle_at_cut(const HierarchyCase& c, const Cut& cut, TriangleId t
   return result;
 }
 
-std::span<const float> value_at_cut(const HierarchyCase& c, const CutTriangle& triangle,
-                                    std::size_t layer, TriangleId t, std::size_t corner) {
+StoredValue value_at_cut(const HierarchyCase& c, const CutTriangle& triangle, std::size_t layer,
+                         TriangleId t, std::size_t corner) {
   const MeshHierarchy& h = c.hierarchy;
   const TriangleId n = c.maps.new_of_triangle[index_of(t)];
   const WedgeId wedge = h.vertices.triangles[index_of(n)][corner];
@@ -221,7 +221,7 @@ std::string difference_at_level(const HierarchyCase& c, std::size_t applied) {
         const auto got = c.hierarchy.value(l, node, c.hierarchy.attribute_at(l, node, wedge));
         const auto expected =
             attribute_value(c.mesh.layers[l], c.sequence, l, level.of_corner[l][3 * t + k]);
-        if (std::memcmp(got.data(), expected.data(), got.size_bytes()) != 0) {
+        if (std::memcmp(got.begin(), expected.data(), expected.size_bytes()) != 0) {
           return c.mesh.layers[l].name + at;
         }
       }

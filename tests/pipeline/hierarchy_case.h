@@ -53,8 +53,8 @@ struct CutTriangle {
   NodeId nodes[3];
 };
 CutTriangle triangle_at_cut(const HierarchyCase& c, const Cut& cut, TriangleId t);
-std::span<const float> value_at_cut(const HierarchyCase& c, const CutTriangle& triangle,
-                                    std::size_t layer, TriangleId t, std::size_t corner);
+StoredValue value_at_cut(const HierarchyCase& c, const CutTriangle& triangle, std::size_t layer,
+                         TriangleId t, std::size_t corner);
 
 // Empty if every triangle is active iff its leaf corners' active ancestors differ, stands at them,
 // and every attribute is the one found by walking up from the leaf.

@@ -26,6 +26,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace crease {
 
@@ -55,6 +56,8 @@ class OctahedralCoding {
   OctahedralCode encode(const Vec3f& d) const {
     return encode(Vec3d{double(d.x), double(d.y), double(d.z)});
   }
+  // The canonical code, or kZero, that decodes to just this vector, if there is one.
+  std::optional<OctahedralCode> exact_code(const Vec3f& direction) const;
   // Both components must be in range; the code need not be canonical.
   Vec3f decode(OctahedralCode code) const;
 

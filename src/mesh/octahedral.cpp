@@ -1,10 +1,11 @@
-#include "codec/octahedral.h"
+#include "mesh/octahedral.h"
 
 #include "base/assert.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 namespace crease {
 
@@ -12,6 +13,11 @@ namespace {
 
 std::int32_t with_sign_of(std::int32_t size, std::int64_t sign) {
   return sign < 0 ? -size : size;
+}
+
+// Tells zeros apart by their signs.
+bool has_bits_of(const Vec3f& a, const Vec3f& b) {
+  return std::memcmp(&a, &b, sizeof(Vec3f)) == 0;
 }
 
 // A vector as integers of up to 30 bits, which changes its direction by less than 1e-9.
@@ -109,6 +115,21 @@ OctahedralCode OctahedralCoding::encode(const Vec3d& direction) const {
     }
   }
   return best;
+}
+
+// What was decoded lies so near to its lattice point that rounding finds it.
+std::optional<OctahedralCode> OctahedralCoding::exact_code(const Vec3f& direction) const {
+  if (has_bits_of(direction, {})) return kZero;
+  const double x = double(direction.x), y = double(direction.y), z = double(direction.z);
+  const double sum = std::abs(x) + std::abs(y) + std::abs(z);
+  if (!(sum < 2)) return std::nullopt;  // no unit vector has more
+  const double scale = m_ / sum;
+  Point p{static_cast<std::int32_t>(std::lround(x * scale)),
+          static_cast<std::int32_t>(std::lround(y * scale))};
+  if (z < 0) p = {with_sign_of(m_ - std::abs(p.y), p.x), with_sign_of(m_ - std::abs(p.x), p.y)};
+  const OctahedralCode code = code_of(settled(p));
+  if (code == kZero || !has_bits_of(decode(code), direction)) return std::nullopt;
+  return code;
 }
 
 Vec3f OctahedralCoding::decode(OctahedralCode code) const {

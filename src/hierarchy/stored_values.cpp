@@ -1,0 +1,86 @@
+#include "crease/stored_values.h"
+
+#include "mesh/octahedral.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace crease {
+
+namespace {
+
+constexpr int kFewestBits = 8;
+constexpr int kShift = 16;
+
+OctahedralCode unpacked(std::uint32_t code) {
+  return {code & ((1u << kShift) - 1), code >> kShift};
+}
+
+// None if some value is of another lattice, or of none.
+std::optional<std::vector<std::uint32_t>> codes_of(std::span<const float> numbers, int bits) {
+  const OctahedralCoding coding(bits);
+  std::vector<std::uint32_t> codes;
+  for (std::size_t i = 0; i + 3 <= numbers.size(); i += 3) {
+    const auto code = coding.exact_code({numbers[i], numbers[i + 1], numbers[i + 2]});
+    if (!code) return std::nullopt;
+    if (codes.empty()) codes.reserve(numbers.size() / 3);
+    codes.push_back(code->u | code->v << kShift);
+  }
+  return codes;
+}
+
+}  // namespace
+
+bool StoredValues::is_finite() const {
+  return std::all_of(numbers_.begin(), numbers_.end(), [](float x) { return std::isfinite(x); });
+}
+
+Vec3f StoredValues::direction(std::size_t i) const {
+  if (bits_ != 0) return OctahedralCoding(bits_).decode(unpacked(codes_[i]));
+  const float* const n = &numbers_[3 * i];
+  return {n[0], n[1], n[2]};
+}
+
+StoredValue StoredValues::operator[](std::size_t i) const {
+  StoredValue value;
+  value.dimension = dimension_;
+  if (bits_ != 0) {
+    const Vec3f n = direction(i);
+    value.numbers = {n.x, n.y, n.z, 0};
+  } else {
+    std::copy_n(&numbers_[dimension_ * i], dimension_, value.numbers.begin());
+  }
+  return value;
+}
+
+StoredValues StoredValues::chosen(std::span<const std::uint32_t> which) const {
+  StoredValues result;
+  result.dimension_ = dimension_;
+  result.bits_ = bits_;
+  if (bits_ != 0) {
+    result.codes_.reserve(which.size());
+    for (const std::uint32_t i : which) result.codes_.push_back(codes_[i]);
+    return result;
+  }
+  result.numbers_.reserve(dimension_ * which.size());
+  for (const std::uint32_t i : which) {
+    const auto first = numbers_.begin() + static_cast<std::ptrdiff_t>(dimension_ * std::size_t(i));
+    result.numbers_.insert(result.numbers_.end(), first, first + dimension_);
+  }
+  return result;
+}
+
+void StoredValues::pack_directions() {
+  if (dimension_ != 3 || bits_ != 0 || numbers_.empty()) return;
+  for (int bits = kFewestBits; bits <= OctahedralCoding::kMaxBits; ++bits) {
+    auto codes = codes_of(numbers_, bits);
+    if (!codes) continue;
+    codes_ = *std::move(codes);
+    bits_ = bits;
+    numbers_ = {};
+    return;
+  }
+}
+
+}  // namespace crease
