@@ -14,7 +14,10 @@ LayerValues::LayerValues(const AttributeLayer& source, const ContractionSequence
     : source_(source),
       sequence_(sequence),
       layer_(layer),
-      known_count_(source.value_count() + new_value_count(source, sequence, layer)) {}
+      known_count_(source.value_count() + new_value_count(source, sequence, layer)) {
+  if (source.interpolation != Interpolation::Direction || source.dimension != 3) return;
+  if (const auto bits = octahedral_bits_of(source.values)) lattice_.emplace(*bits);
+}
 
 std::span<const float> LayerValues::value(AttributeId id) const {
   if (index_of(id) < known_count_) return attribute_value(source_, sequence_, layer_, id);
@@ -34,6 +37,11 @@ AttributeId LayerValues::blend(std::span<const AttributeId> ids) {
   if (source_.interpolation == Interpolation::Direction) {
     if (std::sqrt(square) < 1e-2 * double(ids.size())) return ids[0];  // opposite: no middle
     scale = 1.0 / std::sqrt(square);
+  }
+  if (lattice_) {
+    const Vec3f on_lattice = lattice_->decode(lattice_->encode(Vec3d{sum[0], sum[1], sum[2]}));
+    sum = {double(on_lattice.x), double(on_lattice.y), double(on_lattice.z), 0};
+    scale = 1;
   }
   const std::size_t id = known_count_ + blended_.size() / source_.dimension;
   for (std::size_t i = 0; i < source_.dimension; ++i) {

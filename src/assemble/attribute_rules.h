@@ -15,8 +15,10 @@
 
 #include "crease/contraction.h"
 #include "crease/mesh.h"
+#include "mesh/octahedral.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,8 +39,9 @@ class LayerValues {
   LayerValues(const AttributeLayer& source, const ContractionSequence& sequence, std::size_t layer);
 
   std::span<const float> value(AttributeId id) const;
-  // A new attribute between these: on the sphere, or component by component. Inherits the first
-  // one's, and its id, where placement is at endpoints or directions are opposite.
+  // A new attribute between these: on the sphere, and on the source's lattice if that has one, or
+  // component by component. Inherits the first one's, and its id, where placement is at endpoints
+  // or directions are opposite.
   AttributeId blend(std::span<const AttributeId> ids);
   bool can_blend() const { return source_.interpolation != Interpolation::Categorical; }
   const AttributeLayer& source() const { return source_; }
@@ -48,6 +51,7 @@ class LayerValues {
   const ContractionSequence& sequence_;
   const std::size_t layer_;
   const std::size_t known_count_;
+  std::optional<OctahedralCoding> lattice_;
   std::vector<float> blended_;
 };
 

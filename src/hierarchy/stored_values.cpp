@@ -10,24 +10,10 @@ namespace crease {
 
 namespace {
 
-constexpr int kFewestBits = 8;
 constexpr int kShift = 16;
 
 OctahedralCode unpacked(std::uint32_t code) {
   return {code & ((1u << kShift) - 1), code >> kShift};
-}
-
-// None if some value is of another lattice, or of none.
-std::optional<std::vector<std::uint32_t>> codes_of(std::span<const float> numbers, int bits) {
-  const OctahedralCoding coding(bits);
-  std::vector<std::uint32_t> codes;
-  for (std::size_t i = 0; i + 3 <= numbers.size(); i += 3) {
-    const auto code = coding.exact_code({numbers[i], numbers[i + 1], numbers[i + 2]});
-    if (!code) return std::nullopt;
-    if (codes.empty()) codes.reserve(numbers.size() / 3);
-    codes.push_back(code->u | code->v << kShift);
-  }
-  return codes;
 }
 
 }  // namespace
@@ -73,14 +59,16 @@ StoredValues StoredValues::chosen(std::span<const std::uint32_t> which) const {
 
 void StoredValues::pack_directions() {
   if (dimension_ != 3 || bits_ != 0 || numbers_.empty()) return;
-  for (int bits = kFewestBits; bits <= OctahedralCoding::kMaxBits; ++bits) {
-    auto codes = codes_of(numbers_, bits);
-    if (!codes) continue;
-    codes_ = *std::move(codes);
-    bits_ = bits;
-    numbers_ = {};
-    return;
+  const std::optional<int> bits = octahedral_bits_of(numbers_);
+  if (!bits) return;
+  const OctahedralCoding coding(*bits);
+  codes_.reserve(numbers_.size() / 3);
+  for (std::size_t i = 0; i < numbers_.size(); i += 3) {
+    const auto code = coding.exact_code({numbers_[i], numbers_[i + 1], numbers_[i + 2]});
+    codes_.push_back(code->u | code->v << kShift);
   }
+  bits_ = *bits;
+  numbers_ = {};
 }
 
 }  // namespace crease

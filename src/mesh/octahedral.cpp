@@ -213,4 +213,19 @@ OctahedralCode OctahedralCoding::restore(OctahedralResidual residual,
   return code_of(settled(p));
 }
 
+std::optional<int> octahedral_bits_of(std::span<const float> directions) {
+  constexpr int kFewestBits = 8;
+  if (directions.empty()) return std::nullopt;
+  for (int bits = kFewestBits; bits <= OctahedralCoding::kMaxBits; ++bits) {
+    const OctahedralCoding coding(bits);
+    std::size_t i = 0;
+    while (i < directions.size() &&
+           coding.exact_code({directions[i], directions[i + 1], directions[i + 2]})) {
+      i += 3;
+    }
+    if (i == directions.size()) return bits;
+  }
+  return std::nullopt;
+}
+
 }  // namespace crease

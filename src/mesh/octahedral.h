@@ -27,6 +27,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 namespace crease {
 
@@ -96,5 +97,9 @@ class OctahedralCoding {
 
   std::int32_t m_;
 };
+
+// The bits, 8 to 16, of the coarsest lattice that has each of these vectors of three exactly; none
+// if no lattice has them all. Time O(size), and little where there is none.
+std::optional<int> octahedral_bits_of(std::span<const float> directions);
 
 }  // namespace crease
