@@ -1,17 +1,26 @@
 #include "codec/model_of_blocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace crease::codec {
 
 namespace {
 
-// Between those at the two ends of a block.
-LevelError between(const LevelError& fine, const LevelError& coarse, float share) {
-  const auto mix = [share](float a, float b) { return a + (b - a) * share; };
-  return {mix(fine.surface, coarse.surface), mix(fine.line, coarse.line),
-          mix(fine.degrees, coarse.degrees), mix(fine.texture, coarse.texture)};
+// The errors of a contraction whose vertex has `base` at the fine end, as the simplifier adds them
+// up, but none above those of the block's coarse end, `most`.
+LevelError error_of(const LevelError& base, const LevelError& own, double step,
+                    const LevelError& most) {
+  const auto length = [step](float from, float by) {
+    return from + static_cast<float>(step * double(by));
+  };
+  const auto at_most = [](float x, float limit) { return x < limit ? x : limit; };  // or no number
+  const double from = double(base.degrees), by = double(own.degrees);
+  const float degrees = static_cast<float>(std::sqrt(from * from + by * by));
+  return {at_most(length(base.surface, own.surface), most.surface),
+          at_most(length(base.line, own.line), most.line), at_most(degrees, most.degrees),
+          at_most(base.texture + own.texture, most.texture)};
 }
 
 }  // namespace
@@ -84,6 +93,10 @@ struct ModelOfBlocks::Pending {
 void ModelOfBlocks::contract_band(std::span<const UnfoldedBlock> blocks,
                                   AttributeRejoiner& rejoiner, const ForEach& for_each,
                                   ContractionSequence& sequence) {
+  base_of_slot_.resize(error_of_slot_.size());
+  for (const UnfoldedBlock& block : blocks) {
+    for (const std::uint32_t v : block.vertices) base_of_slot_[v] = error_of_slot_[v];
+  }
   std::vector<ContractionOrder> orders(blocks.size());
   for_each(blocks.size(), [&](std::size_t b) {
     orders[b] =
@@ -103,21 +116,22 @@ void ModelOfBlocks::contract_band(std::span<const UnfoldedBlock> blocks,
     return a.contraction.cost < b.contraction.cost;
   });
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const float share = static_cast<float>(i + 1) / static_cast<float>(all.size());
-    append(blocks[all[i].block], all[i].contraction, *all[i].changes, share, sequence);
+    append(blocks[all[i].block], all[i].contraction, *all[i].changes, sequence);
   }
 }
 
 void ModelOfBlocks::append(const UnfoldedBlock& block, const OrderedContraction& contraction,
-                           CornerChanges& changes, float share, ContractionSequence& sequence) {
+                           CornerChanges& changes, ContractionSequence& sequence) {
   const Split& split = block.splits[contraction.split];
   Contraction c;
   c.kept = VertexId{block.vertices[split.vertex]};
   c.removed = VertexId{block.vertices[block.second_child(contraction.split)]};
   c.position = split.parent_position;
+  LevelError& base = base_of_slot_[index_of(c.kept)];
+  base = larger(base, base_of_slot_[index_of(c.removed)]);
   LevelError& error = error_of_slot_[index_of(c.kept)];
   error = larger(larger(error, error_of_slot_[index_of(c.removed)]),
-                 between(block.fine, block.coarse, share));
+                 error_of(base, contraction.own, schema_.facts.grid.step, block.coarse));
   c.error = error;
   Vec3i& kept = positions_[index_of(c.kept)];
   if (c.position != kept && c.position != positions_[index_of(c.removed)]) {

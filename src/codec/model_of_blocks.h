@@ -32,7 +32,7 @@ class ModelOfBlocks {
   void contract_band(std::span<const UnfoldedBlock> blocks, AttributeRejoiner& rejoiner,
                      const ForEach& for_each, ContractionSequence& sequence);
   void append(const UnfoldedBlock& block, const OrderedContraction& contraction,
-              CornerChanges& changes, float share, ContractionSequence& sequence);
+              CornerChanges& changes, ContractionSequence& sequence);
 
   const ModelSchema& schema_;
   std::span<const UnfoldedBlock> blocks_;
@@ -40,6 +40,7 @@ class ModelOfBlocks {
   LayerPools layers_;
   std::vector<Vec3i> positions_;  // per slot
   std::vector<LevelError> error_of_slot_;
+  std::vector<LevelError> base_of_slot_;  // at the present band's fine end
 };
 
 }  // namespace crease::codec

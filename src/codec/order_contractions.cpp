@@ -1,10 +1,12 @@
 #include "codec/order_contractions.h"
 
 #include "codec/contracting_patch.h"
+#include "codec/face_normals.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -32,8 +34,10 @@ Vec3d real(const Vec3i& p) {
 // The sum of weighted squared distances from planes (Garland and Heckbert 1997).
 struct PlaneQuadric {
   std::array<double, 10> a{};  // xx xy xz xw yy yz yw zz zw ww
+  double weight_sum = 0;
 
   void add(const Vec3d& normal, double offset, double weight) {
+    weight_sum += weight;
     const std::array<double, 4> p{normal.x, normal.y, normal.z, offset};
     std::size_t k = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -42,6 +46,11 @@ struct PlaneQuadric {
   }
   void add(const PlaneQuadric& other) {
     for (std::size_t k = 0; k < a.size(); ++k) a[k] += other.a[k];
+    weight_sum += other.weight_sum;
+  }
+  // The root of the mean.
+  double distance(const Vec3d& p) const {
+    return weight_sum > 0 ? std::sqrt(std::max(0.0, at(p)) / weight_sum) : 0;
   }
   double at(const Vec3d& p) const {
     return a[0] * p.x * p.x + a[4] * p.y * p.y + a[7] * p.z * p.z + a[9] +
@@ -57,7 +66,8 @@ class CostEstimator {
       : mesh_(block.end),
         coding_(coding),
         positions_(block.end.positions),
-        quadrics_(block.end.positions.size()),
+        surface_(block.end.positions.size()),
+        lines_(block.end.positions.size()),
         // Near, so that little is lost in differences.
         origin_(positions_.empty() ? Vec3d{} : real(positions_[0])),
         wedges_(block, layers, values, origin_) {
@@ -69,21 +79,24 @@ class CostEstimator {
       const double twice_area = length(n);
       if (twice_area == 0) continue;
       const Vec3d unit = n * (1 / twice_area);
-      for (const std::uint32_t v : t) quadrics_[v].add(unit, -dot(unit, p[0]), 0.5 * twice_area);
+      for (const std::uint32_t v : t) surface_[v].add(unit, -dot(unit, p[0]), 0.5 * twice_area);
     }
     find_faces();
+    faces_.emplace(block, coding, values, is_face_);
     add_lines();
     const double count = 3 * double(std::max<std::size_t>(1, mesh_.triangles.size()));
     turn_weight_ = kTurnWeight * edges / count;
     turn_weight_ *= turn_weight_;
   }
 
-  // Of contracting `second` into `first`, which then stands at `parent`.
+  // Of contracting `second` into `first`, which then stands at `parent`. See own() as well.
   double contract(ContractingPatch& patch, std::uint32_t first, std::uint32_t second,
                   const Vec3i& parent) {
-    quadrics_[first].add(quadrics_[second]);
+    surface_[first].add(surface_[second]);
+    lines_[first].add(lines_[second]);
     const Vec3d s = real(parent) - origin_, t = place(first), u = place(second);
-    double cost = std::max(0.0, quadrics_[first].at(s));
+    double cost = std::max(0.0, surface_[first].at(s) + lines_[first].at(s));
+    double surface = surface_[first].distance(s);
     const std::array<Vec3d, 2> before{t, u};
     const auto vanished = patch.contract(first, second);
     const std::span<const std::uint32_t> around = patch.around(first);
@@ -97,27 +110,41 @@ class CostEstimator {
       cost += vanishing_cost(patch, patch.corners(v), around, first, s);
     }
     if (around.empty()) {
-      for (const std::uint32_t v : vanished) cost += kPartWeight * part_cost(patch.corners(v));
+      double longest = 0;
+      for (const std::uint32_t v : vanished) {
+        cost += kPartWeight * part_cost(patch.corners(v));
+        longest = std::max(longest, longest_side2(patch.corners(v)));
+      }
+      surface += std::sqrt(longest);  // what it stood for is gone
     }
     cost += wedges_.contract(patch, vanished, first, second, s);
     positions_[first] = parent;
+    const float turned = faces_->contract(patch, vanished, first, positions_);
+    own_ = {static_cast<float>(surface), static_cast<float>(lines_[first].distance(s)),
+            std::max(wedges_.degrees(), turned), wedges_.texture()};
     return cost <= kMostCost ? cost : kMostCost;  // also if it is no number
   }
+
+  // Of the last contraction: see OrderedContraction.
+  const LevelError& own() const { return own_; }
 
   std::vector<WedgeValues> take_wedges() { return std::move(wedges_).take(); }
 
  private:
   Vec3d place(std::uint32_t v) const { return real(positions_[v]) - origin_; }
 
-  // Its area at its own length's distance.
-  double part_cost(const Corners& t) const {
-    const std::array<Vec3d, 3> p{place(t[0]), place(t[1]), place(t[2])};
+  double longest_side2(const Corners& t) const {
     double longest = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3d edge = p[(c + 1) % 3] - p[c];
+      const Vec3d edge = place(t[(c + 1) % 3]) - place(t[c]);
       longest = std::max(longest, dot(edge, edge));
     }
-    return 0.5 * length(cross(p[1] - p[0], p[2] - p[0])) * longest;
+    return longest;
+  }
+  // Its area at its own length's distance.
+  double part_cost(const Corners& t) const {
+    const Vec3d twice = cross(place(t[1]) - place(t[0]), place(t[2]) - place(t[0]));
+    return 0.5 * length(twice) * longest_side2(t);
   }
 
   double turning_cost(const Corners& corners, std::uint32_t moved, const Vec3d& from,
@@ -211,7 +238,7 @@ class CostEstimator {
     if (size == 0) return;
     const Vec3d unit = across * (1 / size);
     for (const std::uint32_t v : {edge.a, edge.b}) {
-      quadrics_[v].add(unit, -dot(unit, a), dot(along, along));
+      lines_[v].add(unit, -dot(unit, a), dot(along, along));
     }
   }
 
@@ -251,7 +278,9 @@ class CostEstimator {
   const PatchMesh& mesh_;
   const BlockCoding& coding_;
   std::vector<Vec3i> positions_;
-  std::vector<PlaneQuadric> quadrics_;  // per vertex, about origin_
+  std::vector<PlaneQuadric> surface_, lines_;  // per vertex, about origin_
+  LevelError own_;
+  std::optional<FaceNormals> faces_;
   Vec3d origin_;
   WedgeQuadrics wedges_;
   std::vector<char> is_face_;  // per triangle; see find_faces()
@@ -274,7 +303,7 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCodin
     const double cost = std::max({estimator.contract(patch, first, second, split.parent_position),
                                   cost_of_vertex[first], cost_of_vertex[second]});
     cost_of_vertex[first] = cost;
-    order.push_back({static_cast<std::uint32_t>(i), cost});
+    order.push_back({static_cast<std::uint32_t>(i), cost, estimator.own()});
   }
   std::stable_sort(
       order.begin(), order.end(),

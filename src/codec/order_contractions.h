@@ -1,10 +1,11 @@
-// In which order the vertices of a block are contracted. A block says which, not when: that follows
-// from what each contraction does to the shape, which is near to the order of the simplifier.
+// In which order the vertices of a block are contracted, and how wrong each is. A block says which,
+// not when: both follow from what a contraction does to the shape, nearly as in the simplifier.
 #pragma once
 
 #include "codec/layer_values.h"
 #include "codec/unfold_blocks.h"
 #include "codec/wedge_quadrics.h"
+#include "crease/contraction.h"
 
 #include <cstdint>
 #include <span>
@@ -15,6 +16,9 @@ namespace crease::codec {
 struct OrderedContraction {
   std::uint32_t split = 0;  // in UnfoldedBlock::splits
   double cost = 0;          // grid units^4; never below those before it
+  // What it adds to the errors that its vertex has at the fine end, as the simplifier counts them;
+  // lengths in grid units.
+  LevelError own;
 };
 
 struct ContractionOrder {

@@ -42,6 +42,7 @@ WedgeQuadrics::WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSc
     }
     Layer& layer = layers_[l];
     layer.dimension = schema.dimension;
+    layer.role = schema.role;
     layer.is_direction = schema.interpolation == Interpolation::Direction;
     load_wedges(block, values[l], l, schema.role == AttributeRole::Normal, layer);
     load_quadrics(block, layer);
@@ -143,8 +144,17 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
                                std::span<const std::uint32_t> vanished, std::uint32_t first,
                                std::uint32_t second, const Vec3d& at) {
   double cost = 0;
+  degrees_ = texture_ = 0;
   for (Layer& layer : layers_) {
-    if (!layer.wedges.empty()) cost += contract(patch, vanished, first, second, at, layer);
+    if (layer.wedges.empty()) continue;
+    worst_square_ = 0;
+    cost += contract(patch, vanished, first, second, at, layer);
+    const double own = std::sqrt(worst_square_);
+    if (layer.role == AttributeRole::Normal) {  // a chord on the unit sphere
+      degrees_ = static_cast<float>(crease::degrees(2 * std::asin(std::min(1.0, own / 2))));
+    } else if (layer.role == AttributeRole::TexCoord && is_float(own)) {
+      texture_ = std::max(texture_, static_cast<float>(own));
+    }
   }
   return cost;
 }
@@ -244,6 +254,10 @@ double WedgeQuadrics::join(std::span<const std::uint32_t> members, const Vec3d& 
     is_known = is_known && (!layer.is_direction || norm2 > 1e-4);
     const double size = layer.is_direction ? std::sqrt(norm2) : 1;
     for (std::size_t j = 0; j < 4 && is_known; ++j) value[j] = static_cast<float>(best[j] / size);
+  }
+  if (sum.own.weight > 0) {
+    const double square = wedge.is_pinned ? cost : sum.at(at, layer.dimension, value.data());
+    if (square / sum.own.weight > worst_square_) worst_square_ = square / sum.own.weight;
   }
   layer.wedges.push_back(wedge);
   all.into.push_back(kNone);

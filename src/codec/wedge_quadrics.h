@@ -43,6 +43,11 @@ class WedgeQuadrics {
   double contract(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
                   std::uint32_t first, std::uint32_t second, const Vec3d& at);
 
+  // How far, by the last contraction, smooth surfaces show other attributes than those that they
+  // stand for: the worst wedge's mean.
+  float degrees() const { return degrees_; }
+  float texture() const { return texture_; }
+
   // Per layer.
   std::vector<WedgeValues> take() &&;
 
@@ -54,6 +59,7 @@ class WedgeQuadrics {
   struct Layer {
     int dimension = 1;
     bool is_direction = false;
+    AttributeRole role = AttributeRole::Other;
     double scale = 0;  // squared grid units that one unit of error is worth
     WedgeValues values;
     std::vector<std::uint32_t> wedge_of_corner;  // as it is
@@ -73,6 +79,8 @@ class WedgeQuadrics {
   std::vector<Layer> layers_;
   std::vector<std::array<Vec3d, 3>> corners_;  // per triangle, about the origin
   double area_ = 0;                            // of all triangles
+  double worst_square_ = 0;                    // of one contraction and layer
+  float degrees_ = 0, texture_ = 0;
   // Scratch of one contraction: the wedges at its vertices, and by which of them each is joined.
   std::vector<std::uint32_t> members_, root_, group_;
 };
