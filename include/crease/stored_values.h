@@ -40,9 +40,9 @@ class StoredValues {
   StoredValues(std::vector<float> numbers, std::uint32_t dimension)
       : numbers_(std::move(numbers)), dimension_(dimension) {}
 
-  std::size_t size() const { return bits_ == 0 ? numbers_.size() / dimension_ : codes_.size(); }
+  std::size_t size() const { return !is_packed() ? numbers_.size() / dimension_ : codes_.size(); }
   std::uint32_t dimension() const { return dimension_; }
-  std::size_t bytes_per_value() const { return bits_ == 0 ? 4 * std::size_t(dimension_) : 4; }
+  std::size_t bytes_per_value() const { return is_packed() ? 4 : 4 * std::size_t(dimension_); }
   std::size_t bytes() const { return bytes_per_value() * size(); }
   bool is_finite() const;
 
@@ -57,10 +57,12 @@ class StoredValues {
   void pack_directions();
 
  private:
+  bool is_packed() const { return max_component_ != 0; }
+
   std::vector<float> numbers_;        // dimension_ a value; or empty:
   std::vector<std::uint32_t> codes_;  // the second component above the first
   std::uint32_t dimension_ = 1;
-  int bits_ = 0;  // of the lattice; 0: numbers
+  std::uint32_t max_component_ = 0;  // of a code; 0: numbers
 };
 
 }  // namespace crease

@@ -23,7 +23,7 @@ bool StoredValues::is_finite() const {
 }
 
 Vec3f StoredValues::direction(std::size_t i) const {
-  if (bits_ != 0) return OctahedralCoding(bits_).decode(unpacked(codes_[i]));
+  if (is_packed()) return octahedral_direction(max_component_, unpacked(codes_[i]));
   const float* const n = &numbers_[3 * i];
   return {n[0], n[1], n[2]};
 }
@@ -31,7 +31,7 @@ Vec3f StoredValues::direction(std::size_t i) const {
 StoredValue StoredValues::operator[](std::size_t i) const {
   StoredValue value;
   value.dimension = dimension_;
-  if (bits_ != 0) {
+  if (is_packed()) {
     const Vec3f n = direction(i);
     value.numbers = {n.x, n.y, n.z, 0};
   } else {
@@ -43,8 +43,8 @@ StoredValue StoredValues::operator[](std::size_t i) const {
 StoredValues StoredValues::chosen(std::span<const std::uint32_t> which) const {
   StoredValues result;
   result.dimension_ = dimension_;
-  result.bits_ = bits_;
-  if (bits_ != 0) {
+  result.max_component_ = max_component_;
+  if (is_packed()) {
     result.codes_.reserve(which.size());
     for (const std::uint32_t i : which) result.codes_.push_back(codes_[i]);
     return result;
@@ -58,7 +58,7 @@ StoredValues StoredValues::chosen(std::span<const std::uint32_t> which) const {
 }
 
 void StoredValues::pack_directions() {
-  if (dimension_ != 3 || bits_ != 0 || numbers_.empty()) return;
+  if (dimension_ != 3 || is_packed() || numbers_.empty()) return;
   const std::optional<int> bits = octahedral_bits_of(numbers_);
   if (!bits) return;
   const OctahedralCoding coding(*bits);
@@ -67,7 +67,7 @@ void StoredValues::pack_directions() {
     const auto code = coding.exact_code({numbers_[i], numbers_[i + 1], numbers_[i + 2]});
     codes_.push_back(code->u | code->v << kShift);
   }
-  bits_ = *bits;
+  max_component_ = coding.max_component();
   numbers_ = {};
 }
 

@@ -134,13 +134,7 @@ std::optional<OctahedralCode> OctahedralCoding::exact_code(const Vec3f& directio
 
 Vec3f OctahedralCoding::decode(OctahedralCode code) const {
   CREASE_ASSERT(code.u <= max_component() && code.v <= max_component());
-  if (code == kZero) return {};
-  const Vec3i n = vector_of(point_of(code));
-  const std::int64_t squared =
-      std::int64_t(n.x) * n.x + std::int64_t(n.y) * n.y + std::int64_t(n.z) * n.z;
-  const double size = std::sqrt(static_cast<double>(squared));
-  return {static_cast<float>(n.x / size), static_cast<float>(n.y / size),
-          static_cast<float>(n.z / size)};
+  return octahedral_direction(max_component(), code);
 }
 
 namespace {

@@ -25,7 +25,9 @@
 #include "crease/vec.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <span>
 
@@ -97,6 +99,24 @@ class OctahedralCoding {
 
   std::int32_t m_;
 };
+
+// decode() for those who keep no coding: max_component = 2 m.
+inline Vec3f octahedral_direction(std::uint32_t max_component, OctahedralCode code) {
+  if (code == OctahedralCoding::kZero) return {};
+  const auto m = static_cast<std::int32_t>(max_component / 2);
+  std::int32_t x = static_cast<std::int32_t>(code.u) - m, y = static_cast<std::int32_t>(code.v) - m;
+  const std::int32_t size_x = std::abs(x), size_y = std::abs(y), z = m - size_x - size_y;
+  if (z < 0) {  // folded
+    x = x < 0 ? size_y - m : m - size_y;
+    y = y < 0 ? size_x - m : m - size_x;
+  }
+  using Pair = double __attribute__((vector_size(16)));
+  const double zd = z;
+  Pair xy{double(x), double(y)};
+  const double size = std::sqrt(xy[0] * xy[0] + xy[1] * xy[1] + zd * zd);  // of a whole number
+  xy /= Pair{size, size};
+  return {static_cast<float>(xy[0]), static_cast<float>(xy[1]), static_cast<float>(zd / size)};
+}
 
 // The bits, 8 to 16, of the coarsest lattice that has each of these vectors of three exactly; none
 // if no lattice has them all. Time O(size), and little where there is none.
