@@ -56,8 +56,10 @@ class OctahedralCoding {
   // The canonical code whose direction is nearest, of any finite vector. Zero gives kZero, which
   // decodes to zero. Integers throughout but for the candidates' lengths.
   OctahedralCode encode(const Vec3d& direction) const;
+  // The same; less work where a code has just this direction.
   OctahedralCode encode(const Vec3f& d) const {
-    return encode(Vec3d{double(d.x), double(d.y), double(d.z)});
+    const std::optional<OctahedralCode> exact = exact_code(d);
+    return exact ? *exact : encode(Vec3d{double(d.x), double(d.y), double(d.z)});
   }
   // The canonical code, or kZero, that decodes to just this vector, if there is one.
   std::optional<OctahedralCode> exact_code(const Vec3f& direction) const;

@@ -165,7 +165,9 @@ TEST_CASE("an octahedral direction tells its code") {
   for (const int bits : {4, 8, 9}) {
     const OctahedralCoding coding(bits);
     for (const OctahedralCode code : all_codes(coding)) {
-      REQUIRE(coding.exact_code(coding.decode(code)) == code);
+      const Vec3f n = coding.decode(code);
+      REQUIRE(coding.exact_code(n) == code);
+      REQUIRE(coding.encode(to_double(n)) == code);
     }
     CHECK(coding.exact_code({}) == OctahedralCoding::kZero);
     CHECK(!coding.exact_code({0.36f, 0.48f, 0.8f}));
