@@ -52,9 +52,10 @@ struct ChainLevel {
   Json json;
 };
 
-Result<ChainLevel> make_level(ProgressiveMesh& mesh, const Mesh& full, std::size_t samples,
-                              const Common& common) {
-  const Mesh level = mesh.extract();
+Result<ChainLevel> make_level(ProgressiveMesh& mesh, const std::vector<ImageFile>& images,
+                              const Mesh& full, std::size_t samples, const Common& common) {
+  Mesh level = mesh.extract();
+  level.images = images;
   ChainLevel made;
   made.json = {{"triangles", level.triangle_count()},
                {"vertices", level.vertex_count()},
@@ -73,9 +74,9 @@ Result<ChainLevel> make_level(ProgressiveMesh& mesh, const Mesh& full, std::size
 
 }  // namespace
 
-Result<Report> extract_chain(ProgressiveMesh& mesh, const std::filesystem::path& output,
-                             const LodChainOptions& options, std::size_t samples,
-                             const Common& common) {
+Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>& images,
+                             const std::filesystem::path& output, const LodChainOptions& options,
+                             std::size_t samples, const Common& common) {
   const Mesh full = mesh.extract();
   std::vector<ChainLevel> levels;
   double asked = static_cast<double>(mesh.full_triangle_count());
@@ -89,7 +90,7 @@ Result<Report> extract_chain(ProgressiveMesh& mesh, const std::filesystem::path&
                       grouped(mesh.triangle_count()) + " triangles");
       break;
     }
-    Result<ChainLevel> level = make_level(mesh, full, samples, common);
+    Result<ChainLevel> level = make_level(mesh, images, full, samples, common);
     if (!level.ok()) return level.failure();
     levels.push_back(*std::move(level));
     if (interrupted()) return interrupted_failure();
