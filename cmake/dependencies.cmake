@@ -6,6 +6,7 @@
 #   embree                  measure: closest points
 #   zstd, lzma              io: compressed inputs (plain -l names)
 #   PNG::PNG                render: pictures
+#   PkgConfig::CREASE_JPEG  render: textures
 #   PkgConfig::CREASE_GL    render: epoxy and EGL
 #   CURL::libcurl           http: the client's side
 #   PkgConfig::CREASE_MHD   serve: libmicrohttpd, the host's side
@@ -17,6 +18,7 @@ macro(crease_find_dependencies)
   find_package(embree 3 CONFIG REQUIRED)
   find_package(PNG REQUIRED)
   find_package(CURL 7.85 REQUIRED)
+  pkg_check_modules(CREASE_JPEG REQUIRED IMPORTED_TARGET GLOBAL libturbojpeg)
   pkg_check_modules(CREASE_GL REQUIRED IMPORTED_TARGET GLOBAL epoxy egl)
   pkg_check_modules(CREASE_MHD REQUIRED IMPORTED_TARGET GLOBAL libmicrohttpd>=0.9.73)
 endmacro()

@@ -49,13 +49,14 @@ set(CREASE_HEADERS_view      viewer.h)
 set(CREASE_RUNTIME_FOLDERS base mesh hierarchy assemble codec stream runtime)
 
 # Third-party headers that live in one place only: <prefix...> may be included by these folders.
-set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h lzma.h tbb oneapi nlohmann CLI zstd.h
+set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h turbojpeg.h lzma.h tbb oneapi nlohmann CLI zstd.h
   curl microhttpd.h GLFW imgui.h backends)
 set(CREASE_THIRD_PARTY_embree3  measure)
 set(CREASE_THIRD_PARTY_epoxy    render)
 set(CREASE_THIRD_PARTY_EGL      render)
 set(CREASE_THIRD_PARTY_GL       render)
 set(CREASE_THIRD_PARTY_png.h    render)
+set(CREASE_THIRD_PARTY_turbojpeg.h render)
 set(CREASE_THIRD_PARTY_lzma.h   io)
 set(CREASE_THIRD_PARTY_zstd.h   io)
 set(CREASE_THIRD_PARTY_tbb      parallel)

@@ -74,6 +74,8 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
   const double import_seconds = watch.seconds();
   const std::size_t triangles = imported->mesh.triangle_count();
   const std::size_t vertices = imported->mesh.vertex_count();
+  std::size_t image_bytes = 0;
+  for (const ImageFile& image : imported->mesh.images) image_bytes += image.bytes->size();
   if (interrupted()) return interrupted_failure();
 
   const Result<Built> built = build_model(std::move(imported->mesh), *build);
@@ -85,7 +87,8 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
   if (!written.ok()) return written.failure();
 
   const std::size_t bytes = built->file_bytes.size();
-  const double bits = 8.0 * static_cast<double>(bytes) / static_cast<double>(vertices);
+  const double bits =
+      8.0 * static_cast<double>(bytes - image_bytes) / static_cast<double>(vertices);
   Report report;
   report.json = {{"output", options.output.string()},
                  {"triangles", triangles},
@@ -95,13 +98,15 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
                  {"build_seconds", build_seconds},
                  {"peak_memory", peak_memory()},
                  {"bytes", bytes},
+                 {"image_bytes", image_bytes},
                  {"bits_per_vertex", bits},
                  {"bands", built->statistics.bands.size()},
                  {"blocks", built->blocks},
                  {"snapped", snapped_json(built->snapped)},
                  {"import", to_json(imported->report)}};
   report.text = options.output.string() + ": " + grouped(triangles) + " triangles, " +
-                grouped(vertices) + " vertices, " + in_bytes(bytes) + ", " +
+                grouped(vertices) + " vertices, " + in_bytes(bytes) +
+                (image_bytes > 0 ? " (" + in_bytes(image_bytes) + " of images), " : ", ") +
                 in_seconds(watch.seconds()) + ", " + in_bytes(peak_memory()) + " of memory";
   return report;
 }

@@ -121,6 +121,16 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
   return level;
 }
 
+// Where the output has a place for them.
+Status add_images(const ExtractArguments& options, const ModelFile& file, Mesh& mesh) {
+  const std::string extension = options.output.extension().string();
+  if (extension != ".glb" && extension != ".obj") return Done{};
+  Result<std::vector<ImageFile>> images = file.images(mesh.materials);
+  if (!images.ok()) return images.failure();
+  mesh.images = *std::move(images);
+  return Done{};
+}
+
 // To measure what the level is off by takes all blocks.
 Result<Report> extract_one(const ExtractArguments& options, const ModelFile& file,
                            const Common& common) {
@@ -136,6 +146,8 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
   }
   const bool refused = options.strict && !chosen.target_met;
   if (!refused) {
+    const Status painted = add_images(options, file, extracted->mesh);
+    if (!painted.ok()) return painted.failure();
     const Status written = export_mesh(level, options.output);
     if (!written.ok()) return written.failure();
   }
@@ -175,7 +187,7 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
   Result<ViewedModel> model = load_viewed(file, *camera);
   if (!model.ok()) return model.failure();
 
-  const Mesh seen = model->mesh.extract();
+  Mesh seen = model->mesh.extract();
   std::optional<Comparison> measured;
   if (options.level.samples > 0 && seen.triangle_count() > 0) {
     const Result<Comparison> comparison = measure(file, seen, options.level, common);
@@ -183,6 +195,8 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
     measured = *comparison;
   }
   if (interrupted()) return interrupted_failure();
+  const Status painted = add_images(options, file, seen);
+  if (!painted.ok()) return painted.failure();
   const Status written = export_mesh(seen, options.output);
   if (!written.ok()) return written.failure();
 
@@ -209,8 +223,10 @@ Result<Report> extract_levels(const ExtractArguments& options, const ModelFile& 
   const Result<Model> model = file.load();
   if (!model.ok()) return model.failure();
   ProgressiveMesh mesh = model->levels();
+  const Result<std::vector<ImageFile>> images = file.images(mesh.arrays().materials);
+  if (!images.ok()) return images.failure();
   Result<Report> report =
-      extract_chain(mesh, options.output, options.chain, options.level.samples, common);
+      extract_chain(mesh, *images, options.output, options.chain, options.level.samples, common);
   if (!report.ok()) return report;
   report->json["asked"] = asked_json(options);
   report->json.update(read_json(file, *model));

@@ -58,6 +58,10 @@ Json attributes_json(const Mesh& mesh) {
   return attributes;
 }
 
+int version_of(const BlockFileHead& head) {
+  return head.images.bytes > 0 ? 3 : 2;
+}
+
 Json bounds_json(const Mesh& mesh) {
   if (mesh.positions.empty()) return nullptr;
   const auto [low, high] = bounds_of(mesh);
@@ -99,6 +103,22 @@ Json bands_json(const ModelFacts& facts, const std::vector<StreamBits>& bits) {
 }
 
 }  // namespace
+
+Json images_json(std::span<const ImageFile> images) {
+  Json all = Json::array();
+  for (const ImageFile& image : images) {
+    all.push_back({{"name", image.name}, {"bytes", image.bytes->size()}});
+  }
+  return all;
+}
+
+Json images_json(std::span<const ImageEntry> images) {
+  Json all = Json::array();
+  for (const ImageEntry& image : images) {
+    all.push_back({{"name", image.name}, {"bytes", image.range.bytes}});
+  }
+  return all;
+}
 
 std::pair<Vec3d, Vec3d> bounds_of(const Mesh& mesh) {
   Vec3d low = mesh.positions.front(), high = low;
@@ -145,20 +165,23 @@ BitsPerVertex per_vertex(const StreamBits& bits, std::size_t vertices) {
 BitsPerVertex whole_file_per_vertex(const ModelFile& file, const DecodedModel& model) {
   const std::size_t vertices = model.mesh.vertex_count();
   BitsPerVertex bits = per_vertex(sum_of(model.bits), vertices);
-  const double file_bits = 8.0 * static_cast<double>(file.blocks().head().file_bytes);
+  const BlockFileHead& head = file.blocks().head();
+  const double file_bits = 8.0 * static_cast<double>(head.file_bytes - head.images.bytes);
   bits.total = vertices > 0 ? file_bits / static_cast<double>(vertices) : 0;
   return bits;
 }
 
 Json file_facts(const ModelFile& file, const DecodedModel& model, const ProgressiveArrays& arrays) {
-  const std::uint64_t bytes = file.blocks().head().file_bytes;
+  const BlockFileHead& head = file.blocks().head();
+  const std::uint64_t bytes = head.file_bytes;
   const LinearBytes linear = linear_bytes(arrays);
   Json json = mesh_facts(model.mesh);
-  json.update(Json{{"version", 2},
+  json.update(Json{{"version", version_of(head)},
                    {"bytes", bytes},
                    {"bits_per_vertex", bits_json(whole_file_per_vertex(file, model))},
                    {"streams", streams_json(sum_of(model.bits))},
-                   {"container_bytes", bytes - model.payload_bytes},
+                   {"container_bytes", bytes - head.images.bytes - model.payload_bytes},
+                   {"image_bytes", head.images.bytes},
                    {"bands", bands_json(file.blocks().facts(), model.bits)},
                    {"base_bits", streams_json(model.bits.back())},
                    {"blocks", file.blocks().block_count()},
@@ -183,10 +206,15 @@ Json head_facts(const ModelFile& file) {
                      {"surface_error", band.error.surface},
                      {"error", to_json(band.error)}});
   }
-  return {{"triangles", facts.triangle_count},           {"vertices", facts.vertex_count},
-          {"attributes", attributes_json(facts.layers)}, {"version", 2},
-          {"bytes", file.blocks().head().file_bytes},    {"bands", bands},
-          {"blocks", file.blocks().block_count()},       {"precision", facts.grid.step},
+  return {{"triangles", facts.triangle_count},
+          {"vertices", facts.vertex_count},
+          {"attributes", attributes_json(facts.layers)},
+          {"version", version_of(file.blocks().head())},
+          {"bytes", file.blocks().head().file_bytes},
+          {"image_bytes", file.blocks().head().images.bytes},
+          {"bands", bands},
+          {"blocks", file.blocks().block_count()},
+          {"precision", facts.grid.step},
           {"bytes_read", file.bytes_to_open()}};
 }
 

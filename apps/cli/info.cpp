@@ -40,6 +40,15 @@ std::string mesh_text(const Json& json) {
   return text;
 }
 
+std::string images_text(const Json& images) {
+  std::string text;
+  for (const Json& image : images) {
+    text += "\nimage " + image["name"].get<std::string>() + ": " +
+            in_bytes(image["bytes"].get<std::uint64_t>());
+  }
+  return text;
+}
+
 std::string bits_text(const BitsPerVertex& bits) {
   char line[160];
   std::snprintf(line, sizeof line,
@@ -100,6 +109,11 @@ Result<Report> run_info(const InfoArguments& options, const Common& common) {
     const Result<DecodedModel> model = decode_model(file->blocks(), decode);
     if (!model.ok()) return model.failure();
     report = file_report(*file, *model);
+    const Result<std::vector<ImageEntry>> images = file->blocks().read_image_list();
+    if (!images.ok()) return images.failure();
+    if (!file->blocks().has_images()) return file->blocks().read_images().failure();
+    report.json["images"] = images_json(*images);
+    report.text += images_text(report.json["images"]);
     report.json["bytes_read"] = file->blocks().source().bytes_read();
   } else if (options.head_only) {
     return fail(Error::NotCrease, options.file.string() + ": --head is of .crease files");
@@ -110,7 +124,9 @@ Result<Report> run_info(const InfoArguments& options, const Common& common) {
     if (!imported.ok()) return imported.failure();
     report.json = mesh_facts(imported->mesh);
     report.json["import"] = to_json(imported->report);
-    report.text = mesh_text(report.json) + "\n" + lines_of(imported->report);
+    report.json["images"] = images_json(imported->mesh.images);
+    report.text = mesh_text(report.json) + images_text(report.json["images"]) + "\n" +
+                  lines_of(imported->report);
   }
   if (interrupted()) return interrupted_failure();
   report.text_is_answer = true;

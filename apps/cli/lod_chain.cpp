@@ -2,7 +2,6 @@
 
 #include "cli/console.h"
 #include "cli/fields.h"
-#include "cli/glb.h"
 #include "cli/level.h"
 #include "cli/text.h"
 #include "cli/write_file.h"
@@ -48,13 +47,16 @@ Status check_output(const std::filesystem::path& output, bool is_chain) {
 namespace {
 
 struct ChainLevel {
-  std::vector<std::byte> glb;
+  std::vector<std::byte> glb;  // of its own, or
+  Mesh mesh;                   // for one of all levels
   Json json;
 };
 
-Result<ChainLevel> make_level(ProgressiveMesh& mesh, const Mesh& full, std::size_t samples,
+Result<ChainLevel> make_level(ProgressiveMesh& mesh, const std::vector<ImageFile>& images,
+                              const Mesh& full, const LodChainOptions& options, std::size_t samples,
                               const Common& common) {
-  const Mesh level = mesh.extract();
+  Mesh level = mesh.extract();
+  level.images = images;
   ChainLevel made;
   made.json = {{"triangles", level.triangle_count()},
                {"vertices", level.vertex_count()},
@@ -65,17 +67,36 @@ Result<ChainLevel> make_level(ProgressiveMesh& mesh, const Mesh& full, std::size
     compare.threads = common.threads;
     made.json["error_measured"] = measured_json(compare_meshes(full, level, compare));
   }
+  if (options.one_glb) {
+    made.mesh = std::move(level);
+    return made;
+  }
   Result<std::vector<std::byte>> glb = export_bytes(level, ".glb");
   if (!glb.ok()) return glb.failure();
   made.glb = *std::move(glb);
   return made;
 }
 
+// A level is meant for half the screen height of the one before, and the coarsest is never culled.
+Status write_one_glb(std::vector<ChainLevel> levels, const std::filesystem::path& output) {
+  std::vector<Mesh> meshes;
+  std::vector<double> coverage;
+  for (ChainLevel& level : levels) {
+    meshes.push_back(std::move(level.mesh));
+    coverage.push_back(std::pow(0.5, static_cast<double>(meshes.size())));
+  }
+  coverage.back() = 0;
+  if (meshes.size() == 1) coverage.clear();
+  const Result<std::vector<std::byte>> glb = export_lod_glb(meshes, coverage);
+  if (!glb.ok()) return fail(glb.failure().error, output.string() + ": " + glb.failure().message);
+  return write_file(output, *glb);
+}
+
 }  // namespace
 
-Result<Report> extract_chain(ProgressiveMesh& mesh, const std::filesystem::path& output,
-                             const LodChainOptions& options, std::size_t samples,
-                             const Common& common) {
+Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>& images,
+                             const std::filesystem::path& output, const LodChainOptions& options,
+                             std::size_t samples, const Common& common) {
   const Mesh full = mesh.extract();
   std::vector<ChainLevel> levels;
   double asked = static_cast<double>(mesh.full_triangle_count());
@@ -89,7 +110,7 @@ Result<Report> extract_chain(ProgressiveMesh& mesh, const std::filesystem::path&
                       grouped(mesh.triangle_count()) + " triangles");
       break;
     }
-    Result<ChainLevel> level = make_level(mesh, full, samples, common);
+    Result<ChainLevel> level = make_level(mesh, images, full, options, samples, common);
     if (!level.ok()) return level.failure();
     levels.push_back(*std::move(level));
     if (interrupted()) return interrupted_failure();
@@ -118,11 +139,7 @@ Result<Report> extract_chain(ProgressiveMesh& mesh, const std::filesystem::path&
   }
 
   if (options.one_glb) {
-    std::vector<std::vector<std::byte>> glbs;
-    for (ChainLevel& level : levels) glbs.push_back(std::move(level.glb));
-    const Result<std::vector<std::byte>> merged = merge_lod_glb(glbs);
-    if (!merged.ok()) return merged.failure();
-    const Status written = write_file(output, *merged);
+    const Status written = write_one_glb(std::move(levels), output);
     if (!written.ok()) return written.failure();
     report.json["output"] = output.string();
   } else {

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <vector>
 
 namespace crease::cli {
 
@@ -23,8 +24,9 @@ Status check_output(const std::filesystem::path& output, bool is_chain);
 
 // Writes city_0.glb, city_1.glb, ... and city.json for the output city.glb; with one_glb city.glb.
 // Every level is measured against the full mesh, when `samples` is not 0.
-Result<Report> extract_chain(ProgressiveMesh& mesh, const std::filesystem::path& output,
-                             const LodChainOptions& options, std::size_t samples,
-                             const Common& common);
+// Each has the images.
+Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>& images,
+                             const std::filesystem::path& output, const LodChainOptions& options,
+                             std::size_t samples, const Common& common);
 
 }  // namespace crease::cli

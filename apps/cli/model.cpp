@@ -8,6 +8,7 @@
 #include "crease/http_source.h"
 #include "crease/threads.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace crease::cli {
@@ -199,6 +200,21 @@ Result<Model> ModelFile::load(const Detail& detail) const {
   model.bytes_read += bytes_to_open_;
   if (interrupted()) return interrupted_failure();
   return model;
+}
+
+// A mesh file's images were looked for when it was imported, and a host is not asked for others.
+Result<std::vector<ImageFile>> ModelFile::images(std::span<const Material> materials) const {
+  const bool has_textures = std::ranges::any_of(
+      materials, [](const Material& m) { return !m.base_color_texture.empty(); });
+  if (!has_textures) return std::vector<ImageFile>();
+  const std::string& name = blocks_.source().name();
+  Result<std::vector<ImageFile>> images = blocks_.read_images();
+  if (!images.ok() || was_built() || is_http_url(name)) return images;
+  const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+  for (const std::string& note : find_images(folder, materials, *images)) {
+    log(*common_, name + ": " + note);
+  }
+  return images;
 }
 
 namespace {

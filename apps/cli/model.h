@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +62,9 @@ struct Model {
 class ModelFile {
  public:
   Result<Model> load(const Detail& detail = {}) const;
+  // Of `materials`, read now: those in the file, and for others files beside it. What is missing is
+  // logged. For meshes that load() gave and for draw lists.
+  Result<std::vector<ImageFile>> images(std::span<const Material> materials) const;
   const BlockFile& blocks() const { return blocks_; }
   std::size_t triangle_count() const {
     return static_cast<std::size_t>(blocks_.facts().triangle_count);

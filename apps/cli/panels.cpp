@@ -109,6 +109,7 @@ void Panels::add(Source source, const std::string& title, Json json, const Panel
   panel.list = kept.progressive ? kept.progressive->draw_list()
                : kept.adaptive  ? kept.adaptive->draw_list()
                                 : kept.arrays->draw_list();
+  if (!kept.images.empty()) panel.list.images = kept.images;
   if (options.titles) panel.title = title;
   panel.level_share = share;
   panel.error_of_position = kept.errors;
@@ -121,6 +122,7 @@ void Panels::add_level(ProgressiveMesh mesh, const Mesh& full, std::size_t full_
                        const std::string& name, const PanelOptions& options, const Common& common) {
   Source source;
   source.progressive = std::make_unique<ProgressiveMesh>(std::move(mesh));
+  source.images = full.images;
   if (options.errors_of_positions) {
     const DrawList list = source.progressive->draw_list();
     std::vector<Vec3d> points;
@@ -152,11 +154,15 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
   Source source;
   source.adaptive = std::make_unique<AdaptiveMesh>(std::move(model->mesh));
   AdaptiveMesh& mesh = *source.adaptive;
+  Result<std::vector<ImageFile>> images = file->images(mesh.hierarchy().materials);
+  if (!images.ok()) return images.failure();
+  source.images = *std::move(images);
   if (options.errors_of_positions) source.errors = errors_in_pixels(mesh, *options.view);
   const std::size_t triangles = mesh.triangle_count();
   const std::size_t coarsest = mesh.hierarchy().vertices.coarse_triangles().size();
   const std::string name = file->name();
-  const Mesh shown = options.control ? mesh.extract() : Mesh{};
+  Mesh shown = options.control ? mesh.extract() : Mesh{};
+  shown.images = source.images;
   add(std::move(source), name + ": " + grouped(triangles) + " of " + grouped(full) + " triangles",
       {{"triangles", triangles}, {"full_triangles", full}, {"control", false}}, options,
       level_share(full, coarsest, triangles));
@@ -189,9 +195,12 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
   const std::size_t full_count = file->triangle_count();
   const std::vector<LevelOptions> levels = levels_of(options, full_count);
   const auto needed = options.errors_of_positions ? std::nullopt : triangles_needed(levels);
-  const Result<Model> model = file->load({.triangles = needed});
+  Result<Model> model = file->load({.triangles = needed});
   if (!model.ok()) return model.failure();
   bytes_read_ += model->bytes_read;
+  Result<std::vector<ImageFile>> images = file->images(model->decoded.mesh.materials);
+  if (!images.ok()) return images.failure();
+  model->decoded.mesh.images = *std::move(images);
   const Mesh& full = model->decoded.mesh;
   const ProgressiveArraysPtr arrays =
       build_progressive_arrays(model->decoded.mesh, model->decoded.sequence);
@@ -201,7 +210,10 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
     const Result<Chosen> chosen = choose_level(mesh, full, level, common);
     if (!chosen.ok()) return chosen.failure();
     const std::string name = level_name(mesh, full_count);
-    if (options.control) controls.emplace_back(name, mesh.extract());
+    if (options.control) {
+      controls.emplace_back(name, mesh.extract());
+      controls.back().second.images = full.images;
+    }
     add_level(std::move(mesh), full, full_count, name, options, common);
     if (interrupted()) return interrupted_failure();
   }

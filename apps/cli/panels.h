@@ -46,9 +46,11 @@ class Panels {
     std::unique_ptr<MeshDrawArrays> arrays;
     std::unique_ptr<AdaptiveMesh> adaptive;
     std::vector<float> errors;
+    std::vector<ImageFile> images;
   };
   Status add_view(const std::filesystem::path& path, const PanelOptions& options,
                   const Common& common);
+  // `full` has the images.
   void add_level(ProgressiveMesh mesh, const Mesh& full, std::size_t full_count,
                  const std::string& name, const PanelOptions& options, const Common& common);
   void add_control(const Mesh& level, const std::string& name, const PanelOptions& options);

@@ -99,6 +99,7 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
     if (!added.ok()) return added.failure();
     if (interrupted()) return interrupted_failure();
   }
+  render->on_note = [&common](const std::string& note) { log(common, note); };
   if (render->columns == 0 && options.panels.control) render->columns = panels.columns();
   const Result<Image> image = render_panels(panels.list(), *render);
   if (!image.ok()) return image.failure();

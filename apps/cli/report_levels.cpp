@@ -29,7 +29,8 @@ Result<std::vector<std::uint64_t>> bytes_by_band(const BlockFile& blocks) {
   return ends;
 }
 
-Result<std::vector<std::byte>> draw_level(const ProgressiveMesh& mesh, const Camera& camera,
+Result<std::vector<std::byte>> draw_level(const ProgressiveMesh& mesh,
+                                          std::span<const ImageFile> images, const Camera& camera,
                                           const ReportLevelOptions& options) {
   RenderOptions render;
   render.width_px = options.width_px;
@@ -38,6 +39,7 @@ Result<std::vector<std::byte>> draw_level(const ProgressiveMesh& mesh, const Cam
   render.up = options.up;
   Panel panel;
   panel.list = mesh.draw_list();
+  panel.list.images = images;
   const Result<Image> image = render_panels(std::span(&panel, 1), render);
   if (!image.ok()) return image.failure();
   return encode_png(*image);
@@ -67,6 +69,9 @@ Result<ReportLevels> make_report_levels(const ModelFile& file, const Mesh& full,
   const Camera camera =
       options.view.value_or(fit_camera(low, high, options.width_px, options.height_px, options.up));
 
+  const Result<std::vector<ImageFile>> images = file.images(arrays->materials);
+  if (!images.ok()) return images.failure();
+
   ReportLevels made;
   made.bytes_of_band.assign(bytes->begin() + 1, bytes->end());
   made.diagonal = length(high - low);
@@ -88,7 +93,7 @@ Result<ReportLevels> make_report_levels(const ModelFile& file, const Mesh& full,
       level.measured = measure_level(mesh, full, options.samples, common);
     }
     if (made.no_pictures.empty()) {
-      Result<std::vector<std::byte>> png = draw_level(mesh, camera, options);
+      Result<std::vector<std::byte>> png = draw_level(mesh, *images, camera, options);
       if (png.ok()) {
         level.png = *std::move(png);
       } else if (png.failure().error == Error::NotSupported) {

@@ -1,4 +1,5 @@
-// model.crease, version 2: blocks from coarse to fine and a directory of them (docs/format.md).
+// model.crease, versions 2 and 3: blocks from coarse to fine and a directory of them
+// (docs/format.md).
 //
 //   Result<ByteSourcePtr> source = open_file_source("city.crease");
 //   Result<BlockFile> file = BlockFile::open(*source);                  // one read of at most 64
@@ -107,6 +108,13 @@ struct DirectoryPage {
   }
 };
 
+// An image of a material, by the name that the material has for it.
+struct ImageEntry {
+  std::string name;
+  FileRange range;
+  std::uint64_t checksum = 0;
+};
+
 struct BlockFileHead {
   std::uint64_t file_bytes = 0;  // of the whole, however much of it is there
   std::uint32_t head_bytes = 0;
@@ -118,19 +126,23 @@ struct BlockFileHead {
     std::uint64_t checksum = 0;
   };
   Section materials, tables;
-  Section parts;  // the names: the last bytes of the file
+  Section parts;       // the names, behind all blocks
+  Section image_list;  // behind those
+  FileRange images;    // the last bytes of the file
   std::vector<FileRange> pages;
 };
 
 // Memory that one call may take. No call takes more than the bytes that there are can back: opening
-// less than 1 MiB, a page less than 3 times its bytes, names at most 12 times theirs.
+// less than 1 MiB, a page less than 3 times its bytes, names at most 12 times theirs, an image its
+// own.
 struct BlockFileLimits {
   std::uint64_t max_bytes = std::uint64_t(1) << 30;
 };
 
 class BlockFile {
  public:
-  // Version 2 only; version 1, from before the first release, fails with NotSupported.
+  // Versions 2 and 3, which has images; version 1, from before the first release, fails with
+  // NotSupported.
   static Result<BlockFile> open(ByteSourcePtr source, const BlockFileLimits& limits = {});
 
   const BlockFileHead& head() const { return head_; }
@@ -150,6 +162,14 @@ class BlockFile {
   Result<std::vector<std::string>> read_parts() const;
   bool has_parts() const;  // all that read_parts() reads is there
   Result<std::vector<std::byte>> read_tables() const;
+
+  // What images there are; empty where the file has none. They lie at its end, so that geometry
+  // comes first; Truncated while they have not arrived.
+  Result<std::vector<ImageEntry>> read_image_list() const;
+  Result<std::vector<std::byte>> read_image(const ImageEntry& entry) const;
+  // All of them.
+  Result<std::vector<ImageFile>> read_images() const;
+  bool has_images() const;  // all that read_images() reads is there
 
   // Blocks 0 .. n - 1 are there, of a file that was cut or is still arriving. Reads one page, or
   // none where the file is whole.
@@ -173,5 +193,6 @@ class BlockFile {
 
 // Of bytes that came another way, by a request for several blocks, say.
 Status check_payload(const BlockEntry& entry, std::span<const std::byte> payload);
+Status check_image(const ImageEntry& entry, std::span<const std::byte> bytes);
 
 }  // namespace crease

@@ -159,6 +159,7 @@ class BlockMesh {
   // At most so many bytes, if it becomes resident.
   std::size_t bytes_of(const BlockFacts& facts) const;
   const ModelFacts& facts() const;
+  std::span<const Material> materials() const;
 
   // What is shown as a mesh of its own, all attribute layers, materials and parts. Time O(shown).
   Mesh extract() const;

@@ -20,7 +20,8 @@ struct DrawChanges {
   std::vector<Range> positions, vertex_normals;
   std::vector<Range> sn_indices, fn_indices, nsn_indices;  // in triangles
   std::vector<Range> fn_normals, nsn_normals;              // in triangles
-  std::vector<Range> sn_colors, fn_colors, nsn_colors;     // in triangles
+  // Of colours and of texture coordinates, in triangles.
+  std::vector<Range> sn_colors, fn_colors, nsn_colors;
 };
 
 }  // namespace crease

@@ -24,6 +24,9 @@ struct DrawPart {
   std::span<const std::uint32_t> materials;  // triangle_count, or empty
   // Linear RGBA 0..1 per corner, 3 * triangle_count, or empty when the mesh has no colour layer.
   std::span<const std::array<float, 4>> colors;
+  // Per corner, v up, 3 * triangle_count, or empty where no material has a texture or the mesh no
+  // texture coordinates.
+  std::span<const std::array<float, 2>> texcoords{};
 
   std::size_t triangle_count() const { return indices.size() / 3; }
 };
@@ -35,9 +38,13 @@ struct DrawList {
   std::span<const Vec3f> vertex_normals;  // of the SN vertices: position v has normal v
   DrawPart sn, fn, nsn;
   std::span<const Material> materials;
+  // Of the materials' textures, as far as they are known; else base colours stand alone. Meshes for
+  // drawing have none: who draws adds them.
+  std::span<const ImageFile> images{};
 };
 
-// The arrays of a mesh that is not progressive, partitioned the same way. Needs a normal layer.
+// The arrays of a mesh that is not progressive, partitioned the same way, and the mesh's images.
+// Needs a normal layer.
 class MeshDrawArrays {
  public:
   explicit MeshDrawArrays(const Mesh& mesh);

@@ -5,7 +5,9 @@
 // Normals are always written. In OBJ hard edges are separate vn indices; in PLY and GLB they are
 // split vertices, as those formats want. Positions are written in double precision where the format
 // has text or doubles (OBJ, PLY), and in GLB as floats relative to a node translation, so that 10^6
-// m offsets lose nothing visible. The file appears under its name only when it is complete.
+// m offsets lose nothing visible. The mesh's images go into a GLB; beside level.obj they become
+// level_wood.png and the like, which level.mtl names; PLY and STL have none. The file appears under
+// its name only when it is complete.
 #pragma once
 
 #include "crease/mesh.h"

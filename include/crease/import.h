@@ -5,8 +5,9 @@
 //
 // The result keeps hard and soft edges as the file has them: OBJ's v/vt/vn indices and smoothing
 // groups are kept; formats that store split vertices (glTF, PLY, STL) are welded by bit-equal
-// positions and bit-equal attribute values. Scene transforms are baked, in doubles.
-// Input that cannot be meant is refused; input that is merely ugly is accepted and counted.
+// positions and bit-equal attribute values. Scene transforms are baked, in doubles. The images of
+// materials come along, from inside a glTF or from files beside it; one that is not found is a
+// note. Input that cannot be meant is refused; input that is merely ugly is accepted and counted.
 #pragma once
 
 #include "crease/mesh.h"
@@ -78,5 +79,14 @@ Result<Imported> import_bytes(std::span<const std::byte> bytes, std::string_view
 // Several files as one mesh: vertices at bit-equal positions are shared, each file is a part.
 Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
                                const ImportOptions& options);
+
+// Adds to `images` the files in `folder` that materials name as their textures and it lacks, and
+// returns a note for each that is not there. A name is a path that does not lead out of the folder;
+// what is not where it says is looked for in the folder itself. PNG and JPEG, 256 MiB each and 4096
+// of them at most.
+// import_mesh() does so; this is for images that a build did not find.
+std::vector<std::string> find_images(const std::filesystem::path& folder,
+                                     std::span<const Material> materials,
+                                     std::vector<ImageFile>& images);
 
 }  // namespace crease

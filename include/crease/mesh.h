@@ -14,9 +14,12 @@
 #include "crease/vec.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace crease {
@@ -54,9 +57,21 @@ struct AttributeLayer {
 struct Material {
   std::string name;
   std::array<float, 4> base_color{1, 1, 1, 1};  // linear RGBA
-  std::string base_color_texture;               // the source's reference to an image; may be empty
+  // The name of an image that multiplies the base colour, or empty. Where no image has it, it is
+  // the source's reference to one that was not found, and the base colour stands alone.
+  std::string base_color_texture;
   bool operator==(const Material&) const = default;
 };
+
+// An image file as the source has it, PNG or JPEG; nothing but a renderer looks inside. Its first
+// row is at v = 1.
+struct ImageFile {
+  std::string name;                                     // unique within a mesh
+  std::shared_ptr<const std::vector<std::byte>> bytes;  // not null; copies of a mesh share them
+};
+
+// The image of that name, or null. Time O(images).
+const ImageFile* find_image(std::span<const ImageFile> images, std::string_view name);
 
 using Triangle = std::array<VertexId, 3>;
 
@@ -68,6 +83,8 @@ struct Mesh {
   std::vector<PartId> part_of_triangle;          // triangle_count, or empty: one part
   std::vector<Material> materials;
   std::vector<std::string> parts;  // names of objects, groups or scene nodes
+  // Those that materials name, as far as they are known. Levels and cuts are extracted without.
+  std::vector<ImageFile> images;
 
   std::size_t vertex_count() const { return positions.size(); }
   std::size_t triangle_count() const { return triangles.size(); }

@@ -83,7 +83,8 @@ struct ErrorStep {
 // of the other layers change 4 a component, error grows 20, counts beyond the header 24, and a
 // block of 4 + 4 a group + 8 for every corner that changes an attribute index, 4 for every triangle
 // that becomes derived, 4 for every touched corner (DrawList would not notice otherwise: the corner
-// keeps its slot, but the slot moved under a derived triangle, or changed its colour).
+// keeps its slot, but the slot moved under a derived triangle, or changed its colour or, where
+// materials have textures, its texture coordinates).
 struct PackedContractions {
   std::vector<std::uint32_t> kept;  // slot of v_s; the slot removed is the last active one
   std::vector<std::uint32_t> headers;

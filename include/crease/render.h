@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,10 +37,12 @@ Camera fit_camera(const Vec3d& low, const Vec3d& high, int width_px, int height_
                   const Vec3d& up = {0, 0, 1});
 
 enum class Coloring : std::uint8_t {
-  Shaded,  // materials' base colours and vertex colours under a headlight and a hemisphere light
-  Kind,    // SN, FN and NSN triangles in three colours, shaded
-  Level,   // by `Panel::level_share`
-  Error,   // by `Panel::error_of_position` on one scale for all panels (blue small, red large)
+  // Materials' base colours, their textures and vertex colours under a headlight and a hemisphere
+  // light.
+  Shaded,
+  Kind,   // SN, FN and NSN triangles in three colours, shaded
+  Level,  // by `Panel::level_share`
+  Error,  // by `Panel::error_of_position` on one scale for all panels (blue small, red large)
 };
 
 struct Panel {
@@ -65,6 +68,8 @@ struct RenderOptions {
   // Coloring::Error: the error at the red end, or 0: nearly the largest one there is.
   double error_full = 0;
   std::string error_unit = "model units";
+  // Told what is left out: a texture that cannot be decoded. Its material has its base colour.
+  std::function<void(const std::string&)> on_note{};
 };
 
 struct Image {
@@ -77,6 +82,9 @@ struct Image {
 // of its triangle is turned round. A camera for another shape than the panel's shows at least
 // what it would show in its own. Pictures larger than the device can draw are put together from
 // tiles. The same input gives the same picture on one device and driver.
+//
+// Textures are PNG or JPEG of up to 64 Mi pixels; of more than 1 GiB together they are drawn
+// smaller. Their alpha and that of colours is not drawn: everything is opaque.
 //
 // Each list is uploaded once. llvmpipe on two cores, 1920 x 1080: 2 M triangles in 4 s. Fails with
 // NotSupported when no EGL device can draw, saying what was tried, and with BadValue for a size or

@@ -5,6 +5,7 @@
 #include "base/assert.h"
 #include "hierarchy/attribute_values.h"
 #include "hierarchy/packed_contraction.h"
+#include "mesh/painted_layer.h"
 
 #include <algorithm>
 #include <bit>
@@ -161,9 +162,9 @@ class Arranger {
               packed.corners.end());
     header.corner_changes = static_cast<std::uint32_t>(packed.corners.size() - first_corner);
 
-    const bool recolors = pack_own(header, step, keep_p, changes);
+    pack_own(header, step, keep_p, changes);
     items_.clear();
-    gather_touched(step, keep_p, c.position != before, recolors);
+    gather_touched(step, keep_p, c.position != before);
     gather_derived(c);
     for (std::uint32_t t : step.lost) add_lost_triangle(header.lost, parts_.kind_of_triangle[t]);
     replay_.contract(
@@ -194,11 +195,11 @@ class Arranger {
     }
   }
 
-  // Moves what the slots own along; true if the colours that a renderer sees at v_s change.
-  bool pack_own(PackedHeader& header, const Step& step, bool keep_p,
+  // Moves what the slots own along, and notes which layers that a renderer sees change at v_s.
+  void pack_own(PackedHeader& header, const Step& step, bool keep_p,
                 std::span<const AttributeChange> changes) {
     const std::uint32_t kept = keep_p ? step.p_slot : step.q_slot;
-    bool recolors = false;
+    repainted_.clear();
     own_words_.clear();
     for (std::size_t l = 0; l < mesh_.layers.size(); ++l) {
       const bool is_normal = l == parts_.normal_layer;
@@ -214,13 +215,12 @@ class Arranger {
       const bool changed = push_xor(l, before, after, own_words_);
       if (!changed) own_words_.insert(own_words_.end(), mesh_.layers[l].dimension, 0);
       header.own_values_change = header.own_values_change || changed;
-      recolors = recolors || (changed && l == color_layer());
+      if (changed && is_drawn(l)) repainted_.push_back(l);
     }
     if (header.own_values_change) {
       arrays_.contractions.own.insert(arrays_.contractions.own.end(), own_words_.begin(),
                                       own_words_.end());
     }
-    return recolors;
   }
 
   // Nothing where the bits stay the same.
@@ -246,12 +246,16 @@ class Arranger {
     return mesh_.layers.size();
   }
 
-  void gather_touched(const Step& step, bool keep_p, bool moves, bool recolors) {
-    if (!moves && !recolors) return;
+  bool is_drawn(std::size_t layer) const { return layer == color_layer() || layer == painted_; }
+
+  void gather_touched(const Step& step, bool keep_p, bool moves) {
+    if (!moves && repainted_.empty()) return;
     for (std::uint32_t corner : keep_p ? step.at_p : step.at_q) {
       const std::uint32_t t = corner / 3;
-      if ((moves && replay_.is_derived(t)) ||
-          (recolors && !parts_.sharing[color_layer()].is_explicit(t))) {
+      const bool is_repainted =
+          std::any_of(repainted_.begin(), repainted_.end(),
+                      [&](std::size_t l) { return !parts_.sharing[l].is_explicit(t); });
+      if ((moves && replay_.is_derived(t)) || is_repainted) {
         items_.push_back({BlockKind::Touched, 0, new_corner(corner), 0, 0, 0});
       }
     }
@@ -409,6 +413,8 @@ class Arranger {
   LevelError error_;
   std::vector<Item> items_;               // scratch of one contraction
   std::vector<std::uint32_t> own_words_;  // likewise
+  std::vector<std::size_t> repainted_;    // likewise
+  const std::uint32_t painted_ = painted_layer(mesh_.layers, mesh_.materials);
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "codec/file_version.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace crease {
@@ -137,6 +138,46 @@ Result<std::uint32_t> BlockFile::complete_blocks() const {
   return complete;
 }
 
+Result<std::vector<ImageEntry>> BlockFile::read_image_list() const {
+  const auto bytes = read_section(head_.image_list, "list of images", kNamesFactor);
+  if (!bytes.ok()) return bytes.failure();
+  auto images = decode_image_list(*bytes, head_);
+  if (!images.ok()) return named(images.failure());
+  return images;
+}
+
+Status check_image(const ImageEntry& entry, std::span<const std::byte> bytes) {
+  if (bytes.size() == entry.range.bytes && checksum(bytes) == entry.checksum) return Done{};
+  return fail(Error::BadChecksum, image_name(entry) + ": checksum differs" + kBuildAgain);
+}
+
+Result<std::vector<std::byte>> BlockFile::read_image(const ImageEntry& entry) const {
+  auto bytes = read_range(entry.range, image_name(entry), kBytesFactor);
+  if (!bytes.ok()) return bytes;
+  if (Status status = check_image(entry, *bytes); !status.ok()) return named(status.failure());
+  return bytes;
+}
+
+Result<std::vector<ImageFile>> BlockFile::read_images() const {
+  const Result<std::vector<ImageEntry>> entries = read_image_list();
+  if (!entries.ok()) return entries.failure();
+  std::vector<FileRange> ranges;
+  for (const ImageEntry& entry : *entries) ranges.push_back(entry.range);
+  source_->prefetch(ranges);
+  std::vector<ImageFile> images;
+  for (const ImageEntry& entry : *entries) {
+    Result<std::vector<std::byte>> bytes = read_image(entry);
+    if (!bytes.ok()) return bytes.failure();
+    images.push_back(
+        {entry.name, std::make_shared<const std::vector<std::byte>>(*std::move(bytes))});
+  }
+  return images;
+}
+
+bool BlockFile::has_images() const {
+  return source_->size() >= head_.file_bytes;
+}
+
 std::vector<std::string> BlockFile::validate() const {
   std::vector<std::string> wrong;
   const auto note = [&wrong](const auto& result) {
@@ -145,6 +186,11 @@ std::vector<std::string> BlockFile::validate() const {
   note(read_materials());
   note(read_parts());
   note(read_tables());
+  const Result<std::vector<ImageEntry>> images = read_image_list();
+  note(images);
+  if (images.ok()) {
+    for (const ImageEntry& entry : *images) note(read_image(entry));
+  }
   for (std::uint32_t p = 0; p < page_count(); ++p) {
     const Result<DirectoryPage> page = read_page(p);
     note(page);

@@ -11,14 +11,16 @@
 namespace crease::format {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'C', 'R', 'E', 'A', 'S', 'E', '\n'};
-inline constexpr std::uint16_t kContainerVersion = 2;
+// Version 3 is version 2 with images; a file without any is version 2.
+inline constexpr std::uint16_t kContainerVersion = 2, kVersionWithImages = 3;
 
 // The head; its first 32 bytes are read before any other.
 inline constexpr std::uint32_t kMaxHeadBytes = 65'536;
 inline constexpr std::uint32_t kHeadStartBytes = 32;
 inline constexpr std::uint32_t kHeadChecksumOffset = 24;
 inline constexpr std::uint32_t kFixedHeadBytes = 144;
-inline constexpr std::uint32_t kLayerBytes = 12;  // beside the name's bytes
+inline constexpr std::uint32_t kImageHeadBytes = 24;  // behind those, with images
+inline constexpr std::uint32_t kLayerBytes = 12;      // beside the name's bytes
 inline constexpr std::uint32_t kBandBytes = 36;
 inline constexpr std::uint32_t kPageReferenceBytes = 12;
 inline constexpr std::uint8_t kMaxGridBits = 31;
@@ -27,6 +29,7 @@ inline constexpr double kMostStepsToOrigin = 1125899906842624;  // 2^50
 // Names.
 inline constexpr std::uint32_t kMinMaterialBytes = 24;
 inline constexpr std::uint32_t kMinPartBytes = 4;
+inline constexpr std::uint32_t kImageEntryBytes = 20;  // beside the name's bytes
 
 // A page of the directory.
 inline constexpr std::uint32_t kMaxPageBytes = 4u << 20;

@@ -90,6 +90,14 @@ std::string broken_rule(const Material& material) {
   return all_finite(material.base_color) ? "" : "a colour is not finite";
 }
 
+std::string broken_rule(std::vector<std::string_view> names_of_images) {
+  std::vector<std::string_view>& names = names_of_images;
+  std::sort(names.begin(), names.end());
+  if (!names.empty() && names.front().empty()) return "one without a name";
+  const bool is_twice = std::adjacent_find(names.begin(), names.end()) != names.end();
+  return is_twice ? "two of one name" : "";
+}
+
 std::string broken_rule(const BlockFacts& block, std::size_t band_count) {
   if (block.band > band_count) return "there is no such band";
   const float most = format::error_of_code(format::kMaxErrorCode);

@@ -1,4 +1,4 @@
-// The parts of a version 2 file, from bytes that were read already. BlockFile reads them from a
+// The parts of a file, from bytes that were read already. BlockFile reads them from a
 // ByteSource; who fetches bytes another way calls these.
 #pragma once
 
@@ -27,7 +27,12 @@ Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes)
 Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes,
                                               std::uint32_t count);
 
+// `bytes`: all of head.image_list, whose checksum is right; none: there are no images.
+Result<std::vector<ImageEntry>> decode_image_list(std::span<const std::byte> bytes,
+                                                  const BlockFileHead& head);
+
 std::string page_name(const BlockFileHead& head, std::uint32_t page);  // "page 3 at byte 81920"
 std::string block_name(const BlockEntry& entry);                       // "block 17 at byte 81920"
+std::string image_name(const ImageEntry& entry);  // "image 'wood.png' at byte 81920"
 
 }  // namespace crease

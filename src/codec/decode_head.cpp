@@ -40,8 +40,19 @@ LayerSchema decode_layer(ByteReader& in, std::uint8_t& reserved) {
   return layer;
 }
 
+// From the file's end: images, their list, names of parts. False: they are longer than the file.
+bool place_last_sections(BlockFileHead& head) {
+  std::uint64_t end = head.file_bytes;
+  for (FileRange* range : {&head.images, &head.image_list.range, &head.parts.range}) {
+    if (range->bytes > end - head.head_bytes) return false;
+    end -= range->bytes;
+    range->offset = end;
+  }
+  return true;
+}
+
 // What is behind the first 32 bytes. `in` ends where the head does.
-Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head) {
+Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head, bool has_images) {
   ModelFacts& facts = head.facts;
   head.block_count = in.u32();
   const std::uint16_t band_count = in.u16(), layer_count = in.u16();
@@ -53,7 +64,9 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head) {
   std::uint8_t reserved = decode_reserved(in, 3);
   head.part_count = in.u32();
   std::uint64_t end = head.head_bytes, left = head.file_bytes - end;
-  for (auto* section : {&head.materials, &head.parts, &head.tables}) {
+  std::vector<BlockFileHead::Section*> sections = {&head.materials, &head.parts, &head.tables};
+  if (has_images) sections.push_back(&head.image_list);
+  for (BlockFileHead::Section* section : sections) {
     section->range.bytes = in.u64();
     section->checksum = in.u64();
     if (section->range.bytes > left) return bad_head("names or tables that end after the file");
@@ -66,8 +79,14 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head) {
     section->range.offset = end;
     end += section->range.bytes;
   }
-  const std::uint64_t blocks_end = head.file_bytes - head.parts.range.bytes;
-  head.parts.range.offset = blocks_end;
+  if (has_images) {
+    head.images.bytes = in.u64();
+    if (head.image_list.range.bytes == 0 || head.images.bytes == 0) {
+      return bad_head("version 3 without images");
+    }
+  }
+  if (!place_last_sections(head)) return bad_head("images that end after the file");
+  const std::uint64_t blocks_end = head.parts.range.offset;
   if (head.part_count == 0 ? head.parts.range.bytes != 0
                            : head.part_count > head.parts.range.bytes / format::kMinPartBytes) {
     return bad_head("there are not as many names as parts");
@@ -121,7 +140,7 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
                                   Checksums checksums) {
   const Result<std::uint16_t> version = decode_version(start);
   if (!version.ok()) return version.failure();
-  if (*version != format::kContainerVersion) {
+  if (*version < format::kContainerVersion) {
     return fail(Error::NotSupported,
                 "version " + std::to_string(*version) +
                     " is a layout from before the first release; build the file again");
@@ -137,7 +156,9 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
   head.file_bytes = in.u64();
   const std::uint64_t told = in.u64();
   if (in.truncated()) return cut();
-  if (head.head_bytes < format::kFixedHeadBytes || head.head_bytes > format::kMaxHeadBytes ||
+  const bool has_images = *version == format::kVersionWithImages;
+  const std::uint32_t least = format::kFixedHeadBytes + (has_images ? format::kImageHeadBytes : 0);
+  if (head.head_bytes < least || head.head_bytes > format::kMaxHeadBytes ||
       head.head_bytes > head.file_bytes) {
     return bad_head("its size at byte 12");
   }
@@ -151,7 +172,7 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
     return fail(Error::BadFormat, "bytes behind its end" + at_byte(head.file_bytes));
   }
   ByteReader rest(fields);
-  return decode_head_fields(rest, std::move(head));
+  return decode_head_fields(rest, std::move(head), has_images);
 }
 
 Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes) {

@@ -43,6 +43,26 @@ std::vector<std::byte> encode_parts(const std::vector<std::string>& parts) {
   return out.take();
 }
 
+std::vector<std::byte> encode_image_list(const std::vector<ImageFile>& images) {
+  ByteWriter out;
+  if (!images.empty()) out.u32(static_cast<std::uint32_t>(images.size()));
+  for (const ImageFile& image : images) {
+    out.text(image.name);
+    out.u64(image.bytes->size());
+    out.u64(checksum(*image.bytes));
+  }
+  return out.take();
+}
+
+std::string broken_rule_of_images(const std::vector<ImageFile>& images) {
+  std::vector<std::string_view> names;
+  for (const ImageFile& image : images) {
+    if (image.bytes == nullptr || image.bytes->empty()) return "one without bytes";
+    names.push_back(image.name);
+  }
+  return broken_rule(std::move(names));
+}
+
 void encode_layers_and_bands(ByteWriter& out, const ModelFacts& facts) {
   for (const LayerSchema& layer : facts.layers) {
     out.text(layer.name);
@@ -66,6 +86,8 @@ std::string broken_rule_of_content(const ContainerContent& content, std::size_t 
   for (const Material& material : content.materials) {
     if (std::string wrong = broken_rule(material); !wrong.empty()) return "materials: " + wrong;
   }
+  if (std::string wrong = broken_rule_of_images(content.images); !wrong.empty())
+    return "images: " + wrong;
   if (content.facts.layers.size() > kMaxCount16) return "too many layers";
   if (content.facts.bands.size() > kMaxCount16) return "too many bands";
   if (block_count > std::numeric_limits<std::uint32_t>::max()) return "too many blocks";
@@ -87,8 +109,9 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   ByteWriter lists;
   encode_layers_and_bands(lists, facts);
   const std::uint32_t page_count = format::page_count(writer.block_count_);
-  const std::uint64_t head_bytes = format::kFixedHeadBytes + lists.bytes().size() +
-                                   std::uint64_t(page_count) * format::kPageReferenceBytes;
+  const std::uint64_t head_bytes =
+      format::kFixedHeadBytes + (content.images.empty() ? 0 : format::kImageHeadBytes) +
+      lists.bytes().size() + std::uint64_t(page_count) * format::kPageReferenceBytes;
   if (head_bytes > format::kMaxHeadBytes) {
     return fail(Error::OverLimit, "layers, bands and pages take " + std::to_string(head_bytes) +
                                       " bytes of a head that has room for " +
@@ -123,9 +146,18 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   const std::vector<std::byte> materials = encode_materials(content.materials);
   writer.parts_ = encode_parts(content.parts);
   using Section = const std::vector<std::byte>*;
-  for (const Section section : {Section(&materials), Section(&writer.parts_), &content.tables}) {
+  writer.images_ = content.images;
+  writer.image_list_ = encode_image_list(content.images);
+  std::vector<Section> sections = {&materials, &writer.parts_, &content.tables};
+  if (!content.images.empty()) sections.push_back(&writer.image_list_);
+  for (const Section section : sections) {
     head.u64(section->size());
     head.u64(section->empty() ? 0 : checksum(*section));
+  }
+  if (!content.images.empty()) {
+    std::uint64_t bytes = 0;
+    for (const ImageFile& image : content.images) bytes += image.bytes->size();
+    head.u64(bytes);
   }
   for (const Section section : {Section(&materials), &content.tables}) {
     if (Status status = writer.write_section(*section); !status.ok()) return status.failure();
@@ -213,14 +245,19 @@ Status ContainerWriter::finish() {
     return fail(Error::Invalid, std::to_string(next_) + " of " + std::to_string(block_count_) +
                                     " blocks were written");
   }
-  if (Status status = write_section(parts_); !status.ok()) return status;
+  for (const std::vector<std::byte>* section : {&parts_, &image_list_}) {
+    if (Status status = write_section(*section); !status.ok()) return status;
+  }
+  for (const ImageFile& image : images_) {
+    if (Status status = write_section(*image.bytes); !status.ok()) return status;
+  }
   for (const Page& page : pages_) {
     head_.u64(page.offset);
     head_.u32(page.bytes);
   }
   ByteWriter out;
   for (std::uint8_t b : format::kMagic) out.u8(b);
-  out.u16(format::kContainerVersion);
+  out.u16(images_.empty() ? format::kContainerVersion : format::kVersionWithImages);
   out.u16(0);  // flags
   out.u32(head_bytes_);
   out.u64(position_);

@@ -1,4 +1,4 @@
-// Writes a version 2 file, block by block from coarse to fine.
+// Writes a file, block by block from coarse to fine.
 //
 //   Result<AtomicFile> file = AtomicFile::create("city.crease");
 //   Result<ContainerWriter> writer = ContainerWriter::begin(*file, {.facts = facts}, counts);
@@ -7,7 +7,8 @@
 //   file->commit();
 //
 // Every call may fail, and after a failure the file is not worth finishing. Memory: one page of the
-// directory, 16 bytes for each of the others, and the parts' names; no payload is kept.
+// directory, 16 bytes for each of the others, the parts' names and the images, which it shares; no
+// payload is kept.
 #pragma once
 
 #include "base/bytes.h"
@@ -27,6 +28,7 @@ struct ContainerContent {
   std::vector<Material> materials;
   std::vector<std::string> parts;
   std::vector<std::byte> tables;  // of primed models; may be empty
+  std::vector<ImageFile> images;  // each with a name of its own
 };
 
 class ContainerWriter {
@@ -61,7 +63,9 @@ class ContainerWriter {
   std::uint32_t head_bytes_ = 0;
   ByteWriter head_;  // from byte 32 up to the pages
   std::vector<Page> pages_;
-  std::vector<std::byte> parts_;       // the names, which come last
+  std::vector<std::byte> parts_;   // the names, which come behind the blocks
+  std::vector<ImageFile> images_;  // which come last
+  std::vector<std::byte> image_list_;
   std::uint64_t position_ = 0;         // where the next payload or page goes
   std::uint32_t next_ = 0;             // block
   ByteWriter entries_, dependencies_;  // of the page of block next_

@@ -1,12 +1,14 @@
 #include "crease/export.h"
 
 #include "io/formats.h"
+#include "io/images.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <memory>
+#include <deque>
 #include <string>
 #include <utility>
 
@@ -60,10 +62,9 @@ class AsideFile {
   bool written_ = false;
 };
 
-Result<std::vector<std::byte>> bytes_of(const Mesh& mesh, std::string_view extension,
-                                        std::string_view mtl_name) {
+Result<std::vector<std::byte>> bytes_of(const Mesh& mesh, std::string_view extension) {
   const std::string ending = lower_case(std::string(extension));
-  if (ending == ".obj") return write_obj(mesh, mtl_name);
+  if (ending == ".obj") return write_obj(mesh, {});
   if (ending == ".ply") return write_ply(mesh);
   if (ending == ".stl") return write_stl(mesh);
   if (ending == ".glb") return write_glb(mesh);
@@ -74,25 +75,66 @@ Result<std::vector<std::byte>> bytes_of(const Mesh& mesh, std::string_view exten
 }  // namespace
 
 Result<std::vector<std::byte>> export_bytes(const Mesh& mesh, std::string_view extension) {
-  return bytes_of(mesh, extension, {});
+  return bytes_of(mesh, extension);
 }
+
+namespace {
+
+// "level_wood.png" for the image "textures/wood.png" of level.obj: a name of letters, digits and
+// the like, which every reader of an MTL takes, and which no other model's file has.
+std::vector<std::string> image_files(const Mesh& mesh, const std::string& stem) {
+  std::vector<std::string> files;
+  for (const ImageFile& image : mesh.images) {
+    std::string name = image.name.substr(image.name.find_last_of("/\\") + 1);
+    for (char& c : name) {
+      const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-';
+      if (!plain) c = '_';
+    }
+    const std::string ending = image_type(*image.bytes) == "image/jpeg" ? ".jpg" : ".png";
+    const std::string lower = lower_case(name);
+    if (lower.ends_with(ending)) name.resize(name.size() - ending.size());
+    if (lower.ends_with(".jpeg") && ending == ".jpg") name.resize(name.size() - 5);
+    std::string file = stem + "_" + name + ending;
+    for (int i = 2; std::find(files.begin(), files.end(), file) != files.end(); ++i) {
+      file = stem + "_" + name + "_" + std::to_string(i) + ending;
+    }
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+// An OBJ, its library and its images: the OBJ last, so that whoever sees it finds the others.
+Status export_obj(const Mesh& mesh, const std::filesystem::path& path) {
+  const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
+  const std::vector<std::string> names = image_files(mesh, path.stem().string());
+  std::deque<AsideFile> files;
+  const auto write = [&](const std::filesystem::path& to, std::span<const std::byte> bytes) {
+    return files.emplace_back(to).write(bytes);
+  };
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Status done = write(path.parent_path() / names[i], *mesh.images[i].bytes);
+    if (!done.ok()) return done;
+  }
+  if (const Status done = write(library, write_mtl(mesh, names)); !done.ok()) return done;
+  const Status done = write(path, write_obj(mesh, library.filename().string()));
+  if (!done.ok()) return done;
+  for (AsideFile& file : files) {
+    if (const Status there = file.put_in_place(); !there.ok()) return there;
+  }
+  return Done{};
+}
+
+}  // namespace
 
 Status export_mesh(const Mesh& mesh, const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
-  const bool has_library = lower_case(extension) == ".obj" && !mesh.materials.empty();
-  const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
-  const Result<std::vector<std::byte>> bytes =
-      bytes_of(mesh, extension, has_library ? library.filename().string() : std::string());
+  if (lower_case(extension) == ".obj" && !mesh.materials.empty()) return export_obj(mesh, path);
+  const Result<std::vector<std::byte>> bytes = bytes_of(mesh, extension);
   if (!bytes.ok()) {
     return fail(bytes.failure().error, path.string() + ": " + bytes.failure().message);
   }
-  AsideFile file(path), library_file(library);
+  AsideFile file(path);
   if (Status done = file.write(*bytes); !done.ok()) return done;
-  // The library first: whoever sees the OBJ finds it.
-  if (has_library) {
-    if (Status done = library_file.write(write_mtl(mesh)); !done.ok()) return done;
-    if (Status done = library_file.put_in_place(); !done.ok()) return done;
-  }
   return file.put_in_place();
 }
 

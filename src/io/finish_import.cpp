@@ -5,6 +5,7 @@
 
 #include "base/assert.h"
 #include "io/formats.h"
+#include "io/images.h"
 
 #include <algorithm>
 #include <cmath>
@@ -258,6 +259,8 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
   mesh.part_of_triangle = std::move(raw.part_of_triangle);
   mesh.materials = std::move(raw.materials);
   mesh.parts = std::move(raw.parts);
+  mesh.images = std::move(raw.images);
+  settle_images(mesh.materials, mesh.images);
 
   drop_degenerate(mesh, raw, report);
   if (mesh.triangles.empty()) {

@@ -48,7 +48,8 @@ Result<RawMesh> read_cityjson(const Source& source);  // CityJSON and CityJSONSe
 
 // `mtl_name` is the material library that the OBJ refers to; empty: none.
 std::vector<std::byte> write_obj(const Mesh& mesh, std::string_view mtl_name);
-std::vector<std::byte> write_mtl(const Mesh& mesh);
+// `image_files`: what the mesh's images are called in the library.
+std::vector<std::byte> write_mtl(const Mesh& mesh, std::span<const std::string> image_files);
 std::vector<std::byte> write_ply(const Mesh& mesh);
 std::vector<std::byte> write_stl(const Mesh& mesh);
 Result<std::vector<std::byte>> write_glb(const Mesh& mesh);

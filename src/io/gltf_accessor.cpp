@@ -161,10 +161,15 @@ Result<std::span<const std::byte>> GltfReader::buffer(std::size_t index, const s
   return entry.bytes;
 }
 
-// `owner` has bufferView and byteOffset: an accessor, or one of the two parts of `sparse`.
-Result<GltfReader::View> GltfReader::view_of(const Json& owner, const std::string& place,
-                                             std::size_t count, std::size_t value_bytes) {
-  const auto index = as_index(at(owner, "bufferView"));
+std::size_t GltfReader::buffer_bytes() const {
+  std::size_t bytes = 0;
+  for (const Buffer& entry : buffers_) bytes += entry.bytes.size();
+  return bytes;
+}
+
+Result<std::span<const std::byte>> GltfReader::view_bytes(const Json& view_index,
+                                                          const std::string& place) {
+  const auto index = as_index(view_index);
   const Json& views = at(document_.json, "bufferViews");
   if (!index || *index >= size_of(views)) {
     return fail_at_place(Error::BadValue, source_, place, "no such bufferView");
@@ -174,14 +179,25 @@ Result<GltfReader::View> GltfReader::view_of(const Json& owner, const std::strin
   Result<std::span<const std::byte>> bytes =
       buffer(as_index(at(json, "buffer")).value_or(std::size_t(-1)), here + ".buffer");
   if (!bytes.ok()) return bytes.failure();
-  const std::size_t view_offset = as_index(at(json, "byteOffset")).value_or(0);
-  const std::size_t view_length = as_index(at(json, "byteLength")).value_or(0);
-  if (view_offset > bytes->size() || view_length > bytes->size() - view_offset) {
+  const std::size_t offset = as_index(at(json, "byteOffset")).value_or(0);
+  const std::size_t length = as_index(at(json, "byteLength")).value_or(0);
+  if (offset > bytes->size() || length > bytes->size() - offset) {
     return fail_at_place(Error::BadValue, source_, here,
-                         "reaches to byte " + std::to_string(view_offset) + " + " +
-                             std::to_string(view_length) + " of a buffer of " +
+                         "reaches to byte " + std::to_string(offset) + " + " +
+                             std::to_string(length) + " of a buffer of " +
                              std::to_string(bytes->size()));
   }
+  return bytes->subspan(offset, length);
+}
+
+// `owner` has bufferView and byteOffset: an accessor, or one of the two parts of `sparse`.
+Result<GltfReader::View> GltfReader::view_of(const Json& owner, const std::string& place,
+                                             std::size_t count, std::size_t value_bytes) {
+  const Json& index = at(owner, "bufferView");
+  const Result<std::span<const std::byte>> bytes = view_bytes(index, place);
+  if (!bytes.ok()) return bytes.failure();
+  const Json& json = at(at(document_.json, "bufferViews"), *as_index(index));
+  const std::string here = place_of("bufferViews", *as_index(index));
   View view;
   view.stride = as_index(at(json, "byteStride")).value_or(value_bytes);
   const std::size_t offset = as_index(at(owner, "byteOffset")).value_or(0);
@@ -191,6 +207,7 @@ Result<GltfReader::View> GltfReader::view_of(const Json& owner, const std::strin
                              std::to_string(value_bytes) + " bytes");
   }
   // offset + stride * (count - 1) + value_bytes <= view_length, without overflow.
+  const std::size_t view_length = bytes->size();
   if (count > 0 && (offset > view_length || view_length - offset < value_bytes ||
                     (count - 1) > (view_length - offset - value_bytes) / view.stride)) {
     return fail_at_place(Error::BadValue, source_, place,
@@ -198,7 +215,7 @@ Result<GltfReader::View> GltfReader::view_of(const Json& owner, const std::strin
                              " do not fit into " + here + " of " + std::to_string(view_length) +
                              " bytes");
   }
-  if (count > 0) view.bytes = bytes->subspan(view_offset + offset);
+  if (count > 0) view.bytes = bytes->subspan(offset);
   return view;
 }
 

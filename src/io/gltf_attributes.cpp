@@ -51,6 +51,23 @@ void widen(RawLayer& layer, std::size_t dimension, float fill) {
   layer.dimension = static_cast<std::uint32_t>(dimension);
 }
 
+// The set that a texture is painted by is set 0, if the primitive has it.
+std::string swapped(const std::string& semantic, const Json& attributes, const TextureUse& use) {
+  const std::string painted = "TEXCOORD_" + std::to_string(use.set);
+  if (at(attributes, painted.c_str()).is_null()) return semantic;
+  if (semantic == painted) return "TEXCOORD_0";
+  return semantic == "TEXCOORD_0" ? painted : semantic;
+}
+
+void transform(GltfReader::Floats& uv, const TextureUse& use) {
+  if (use.matrix == TextureUse{}.matrix && use.offset == TextureUse{}.offset) return;
+  for (std::size_t i = 0; i + 1 < uv.values.size(); i += 2) {
+    const float u = uv.values[i], v = uv.values[i + 1];
+    uv.values[i] = use.matrix[0] * u + use.matrix[1] * v + use.offset[0];
+    uv.values[i + 1] = use.matrix[2] * u + use.matrix[3] * v + use.offset[1];
+  }
+}
+
 float fill_of(const RawLayer& layer) {
   return layer.role == AttributeRole::Color ? 1.0f : 0.0f;
 }
@@ -108,7 +125,8 @@ void GltfLayers::append(Layer& layer, const GltfReader::Floats& floats,
 }
 
 Status GltfLayers::add(GltfReader& reader, const Json& attributes, const std::string& place,
-                       std::size_t vertex_count, const std::vector<Transform>& transforms) {
+                       std::size_t vertex_count, const std::vector<Transform>& transforms,
+                       const TextureUse& use) {
   const std::size_t total = vertex_count * transforms.size();
   std::vector<bool> present(layers_.size(), false);
   for (const auto& [semantic, accessor] : attributes.items()) {
@@ -133,7 +151,9 @@ Status GltfLayers::add(GltfReader& reader, const Json& attributes, const std::st
                            std::to_string(floats->count()) + " values for " +
                                std::to_string(vertex_count) + " vertices");
     }
-    Layer* layer = layer_of(semantic, floats->components, floats->integers);
+    const std::string becomes = swapped(semantic, attributes, use);
+    if (becomes == "TEXCOORD_0") transform(*floats, use);
+    Layer* layer = layer_of(becomes, floats->components, floats->integers);
     if (layer == nullptr) {
       ++ignored_[semantic];
       continue;

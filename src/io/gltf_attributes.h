@@ -10,6 +10,7 @@
 
 #include "crease/result.h"
 #include "io/gltf_document.h"
+#include "io/gltf_images.h"
 #include "io/gltf_scene.h"
 #include "io/raw_mesh.h"
 
@@ -27,9 +28,11 @@ class GltfLayers {
   explicit GltfLayers(const Source& source) : source_(source) {}
 
   // Reads every attribute of a primitive but POSITION and appends its values once for each
-  // transform.
+  // transform. The texture coordinates that `use` names become set 0, transformed, and set 0 takes
+  // their place.
   Status add(GltfReader& reader, const Json& attributes, const std::string& place,
-             std::size_t vertex_count, const std::vector<Transform>& transforms);
+             std::size_t vertex_count, const std::vector<Transform>& transforms,
+             const TextureUse& use);
 
   // Moves the layers and notes into `raw`, whose triangles are complete.
   void finish(RawMesh& raw);

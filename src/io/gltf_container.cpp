@@ -1,13 +1,13 @@
 // GLB and b3dm containers, "data:" URIs and files beside a .gltf.
 #include "base/bytes.h"
 #include "io/gltf_document.h"
+#include "io/read_beside.h"
 #include "io/text.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
-#include <system_error>
+#include <limits>
 
 namespace crease {
 namespace {
@@ -104,26 +104,6 @@ Result<GltfDocument> open_b3dm(const Source& source) {
   return document;
 }
 
-// "%20" and the like. A bad escape stays as it is.
-std::string percent_decoded(std::string_view uri) {
-  const auto digit = [](char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return -1;
-  };
-  std::string result;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
-      result += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
-      i += 2;
-    } else {
-      result += uri[i];
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 Result<GltfDocument> open_gltf(const Source& source) {
@@ -189,44 +169,36 @@ Result<std::vector<std::byte>> decode_data_uri(const Source& source, const std::
   return bytes;
 }
 
+// "%20" and the like. A bad escape stays as it is.
+std::string percent_decoded(std::string_view uri) {
+  const auto digit = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+  };
+  std::string result;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
+      result += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
+      i += 2;
+    } else {
+      result += uri[i];
+    }
+  }
+  return result;
+}
+
 Result<std::vector<std::byte>> read_beside(const Source& source, const std::string& place,
                                            std::string_view uri) {
-  namespace fs = std::filesystem;
   if (source.folder == nullptr) {
     return fail_at_place(Error::NotFound, source, place,
                          "refers to " + in_quotes(uri) + ", and there is no folder to look in");
   }
-  const std::string decoded = percent_decoded(uri);
-  const auto outside = [&] {
-    return fail_at_place(Error::BadValue, source, place,
-                         in_quotes(uri) + " is not a file beside the glTF");
-  };
-  if (decoded.empty() || decoded.find('\0') != std::string::npos ||
-      decoded.find("://") != std::string::npos || decoded.find('\\') != std::string::npos) {
-    return outside();
-  }
-  const fs::path relative(decoded);
-  if (relative.is_absolute()) return outside();
-  if (std::ranges::find(relative, fs::path("..")) != relative.end()) return outside();
-  // A symbolic link could still lead out of the folder.
-  std::error_code error;
-  const fs::path folder = fs::canonical(source.folder->empty() ? "." : *source.folder, error);
-  if (error) return fail_at_place(Error::NotFound, source, place, "no folder to look in");
-  const fs::path path = fs::canonical(folder / relative, error);
-  if (error) return fail_at_place(Error::NotFound, source, place, "no file " + in_quotes(decoded));
-  const auto [in_folder, in_path] = std::ranges::mismatch(folder, path);
-  if (in_folder != folder.end()) return outside();
-  if (!fs::is_regular_file(path, error)) return outside();
-
-  const std::uintmax_t size = fs::file_size(path, error);
-  std::ifstream file(path, std::ios::binary);
-  if (error || !file) {
-    return fail_at_place(Error::ReadFailed, source, place, "cannot read " + in_quotes(decoded));
-  }
-  std::vector<std::byte> bytes(size);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-  return bytes;
+  Result<std::vector<std::byte>> bytes =
+      read_in_folder(*source.folder, percent_decoded(uri), std::numeric_limits<std::size_t>::max());
+  if (bytes.ok()) return bytes;
+  return fail_at_place(bytes.failure().error, source, place, bytes.failure().message);
 }
 
 }  // namespace crease

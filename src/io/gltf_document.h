@@ -36,6 +36,9 @@ Result<GltfDocument> open_gltf(const Source& source);
 Result<std::vector<std::byte>> decode_data_uri(const Source& source, const std::string& place,
                                                std::string_view uri);
 
+// "%20" and the like replaced. A bad escape stays as it is.
+std::string percent_decoded(std::string_view uri);
+
 // A file beside the source, if it lies in the source's folder and nowhere else.
 Result<std::vector<std::byte>> read_beside(const Source& source, const std::string& place,
                                            std::string_view uri);
@@ -59,6 +62,12 @@ class GltfReader {
                         std::size_t max_components, const std::string& place);
 
   Result<std::vector<std::uint32_t>> indices(const Json& accessor_index, const std::string& place);
+
+  // All bytes of a bufferView; they stay as long as the reader.
+  Result<std::span<const std::byte>> view_bytes(const Json& view_index, const std::string& place);
+
+  // Of the buffers that were loaded so far.
+  std::size_t buffer_bytes() const;
 
   // Components a value of the accessor, 0 if there is no such accessor or it holds matrices.
   std::size_t components_of(const Json& accessor_index) const;

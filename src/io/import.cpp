@@ -112,7 +112,12 @@ Result<RawMesh> read_raw(std::span<const std::byte> bytes, const std::string& na
     return fail(Error::NotSupported,
                 name + ": byte 0: not a format known here (" + std::string(kKnown) + ")");
   }
-  return read(source);
+  Result<RawMesh> raw = read(source);
+  if (!raw.ok() || folder == nullptr) return raw;
+  for (std::string& note : find_images(*folder, raw->materials, raw->images)) {
+    raw->report.notes.push_back(std::move(note));
+  }
+  return raw;
 }
 
 Result<Imported> finish(Result<RawMesh> raw, const std::string& name,

@@ -1,6 +1,7 @@
 // Several files as one mesh.
 #include "crease/import.h"
 
+#include "io/images.h"
 #include "mesh/clean.h"
 #include "mesh/weld.h"
 
@@ -67,6 +68,7 @@ void append_materials(Mesh& to, const Mesh& from, std::size_t before, std::size_
 
 void append(Mesh& to, Mesh from, std::string part) {
   const std::size_t before = to.triangle_count(), added = from.triangle_count();
+  append_images(from.images, from.materials, to.images);
   append_materials(to, from, before, added);
   append_layers(to, std::move(from.layers), before, added);
   const auto first = static_cast<std::uint32_t>(to.vertex_count());
@@ -126,6 +128,7 @@ Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
     for (VertexId& v : triangle) v = VertexId{weld.new_of_old[index_of(v)]};
   }
   for (AttributeLayer& layer : mesh.layers) weld_layer(layer);
+  settle_images(mesh.materials, mesh.images);
   std::stable_partition(mesh.layers.begin(), mesh.layers.end(), [](const AttributeLayer& layer) {
     return layer.role == AttributeRole::Normal;
   });

@@ -66,6 +66,7 @@ struct RawMesh {
   std::vector<PartId> part_of_triangle;          // per triangle, or empty
   std::vector<Material> materials;
   std::vector<std::string> parts;
+  std::vector<ImageFile> images;  // from inside the file; import.cpp looks for others beside it
 
   // What normals are when the file has none, or lacks them at some corners, and the policy is Keep.
   // Smoothing groups, where there are any, go before this.

@@ -1,6 +1,7 @@
 // glTF 2.0: .gltf, .glb, and the GLB inside a .b3dm. Coordinates stay as they are (y up).
 #include "io/gltf_attributes.h"
 #include "io/gltf_document.h"
+#include "io/gltf_images.h"
 #include "io/gltf_scene.h"
 #include "io/text.h"
 
@@ -35,20 +36,7 @@ Status check_required_extensions(const Source& source, const Json& json) {
   return Done{};
 }
 
-// The image's name for people: its file, else its name, else its place.
-std::string texture_reference(const Json& json, const Json& texture_info) {
-  const auto texture = as_index(at(texture_info, "index"));
-  if (!texture) return {};
-  const auto image = as_index(at(at(at(json, "textures"), *texture), "source"));
-  if (!image) return place_of("textures", *texture);
-  const Json& entry = at(at(json, "images"), *image);
-  const std::string uri = as_text(at(entry, "uri"));
-  if (!uri.empty() && !uri.starts_with("data:")) return uri;
-  const std::string name = as_text(at(entry, "name"));
-  return name.empty() ? place_of("images", *image) : name;
-}
-
-std::vector<Material> read_materials(const Json& json) {
+std::vector<Material> read_materials(const Json& json, GltfImages& images) {
   std::vector<Material> materials;
   const Json& entries = at(json, "materials");
   for (std::size_t i = 0; i < size_of(entries); ++i) {
@@ -57,18 +45,17 @@ std::vector<Material> read_materials(const Json& json) {
     material.name = as_text(at(entry, "name"));
     if (material.name.empty()) material.name = "material " + std::to_string(i);
     const Json* model = &at(entry, "pbrMetallicRoughness");
-    const char *factor = "baseColorFactor", *texture = "baseColorTexture";
+    const char* factor = "baseColorFactor";
     const Json& older = at(at(entry, "extensions"), "KHR_materials_pbrSpecularGlossiness");
     if (!model->is_object() && older.is_object()) {
       model = &older;
       factor = "diffuseFactor";
-      texture = "diffuseTexture";
     }
     const Json& color = at(*model, factor);
     for (std::size_t k = 0; k < 4; ++k) {
       material.base_color[k] = static_cast<float>(as_number(at(color, k), 1));
     }
-    material.base_color_texture = texture_reference(json, at(*model, texture));
+    material.base_color_texture = images.take(base_color_texture(entry));
     if (material.base_color_texture.empty()) {  // where write_glb() puts it
       material.base_color_texture = as_text(at(at(entry, "extras"), "base_color_texture"));
     }
@@ -114,7 +101,10 @@ class MeshBuilder {
     Result<GltfScene> scene = walk_scene(source_, json_);
     if (!scene.ok()) return scene.failure();
     raw_.report.notes = std::move(scene->notes);
-    raw_.materials = read_materials(json_);
+    GltfImages images(source_, json_, reader_);
+    raw_.materials = read_materials(json_, images);
+    raw_.images = std::move(images.images);
+    raw_.report.notes.insert(raw_.report.notes.end(), images.notes.begin(), images.notes.end());
     raw_.default_normals = {NormalPolicy::Kind::Flat, 0};
     const bool has_parts = scene->instances.size() > 1;
 
@@ -213,7 +203,10 @@ class MeshBuilder {
       raw_.part_of_triangle.resize(raw_.triangles.size(), instance.part);
     }
     if (raw_.positions.size() == first_vertex) return Done{};
-    Status added = layers_.add(reader_, attributes, attributes_place, vertex_count, transforms);
+    const auto material = as_index(at(primitive, "material"));
+    const Json& entry = at(at(json_, "materials"), material.value_or(std::size_t(-1)));
+    Status added = layers_.add(reader_, attributes, attributes_place, vertex_count, transforms,
+                               texture_use(base_color_texture(entry)));
     if (!added.ok()) return added;
     return add_material(primitive, place, raw_.triangles.size() - first_triangle);
   }

@@ -3,6 +3,7 @@
 #include "io/text.h"
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <unordered_map>
 
@@ -35,7 +36,7 @@ float share(double x) {
 
 }  // namespace
 
-void read_mtl(std::string_view text, std::span<Material> materials) {
+void read_mtl(std::string_view text, const std::string& folder, std::span<Material> materials) {
   std::unordered_map<std::string_view, Material*> by_name;
   for (Material& m : materials) by_name.emplace(m.name, &m);
   Material* current = nullptr;
@@ -54,7 +55,11 @@ void read_mtl(std::string_view text, std::span<Material> materials) {
     } else if (current && (word == "d" || word == "Tr")) {
       if (double x; line.number(x)) current->base_color[3] = share(word == "d" ? x : 1 - x);
     } else if (current && word == "map_Kd") {
-      current->base_color_texture = texture_name(line);
+      const std::string name = texture_name(line);
+      current->base_color_texture =
+          folder.empty() || name.empty()
+              ? name
+              : (std::filesystem::path(folder) / name).lexically_normal().generic_string();
     }
   }
 }

@@ -363,7 +363,7 @@ class ObjReader {
       if (text.empty()) {
         raw_.report.notes.push_back("material library " + in_quotes(name) + " not found");
       } else {
-        read_mtl(text, raw_.materials);
+        read_mtl(text, relative.parent_path().generic_string(), raw_.materials);
       }
     }
   }

@@ -1,6 +1,8 @@
-// GLB: one primitive for every part and material, split vertices, floats around one translation.
+// GLB: one primitive for every part and material, split vertices, floats around one translation,
+// images behind them.
 #include "crease/export.h"
 #include "io/formats.h"
+#include "io/glb_materials.h"
 #include "io/split_vertices.h"
 
 #include <algorithm>
@@ -137,7 +139,7 @@ class GlbWriter {
     const SplitVertices split = split_vertices(mesh, layers);
     const std::vector<std::size_t> streams = streams_of(layers);
     const Vec3d origin = origin_of(mesh);
-    const std::vector<std::size_t> materials = add_materials(mesh);
+    const std::vector<std::size_t> materials = materials_.add(mesh);
 
     Json root = Json::object(), children = Json::array();
     if (origin != Vec3d{}) root["translation"] = std::array{origin.x, origin.y, origin.z};
@@ -197,7 +199,6 @@ class GlbWriter {
     json["scenes"].push_back(std::move(scene));
     json["nodes"] = std::move(nodes_);
     json["meshes"] = std::move(meshes_);
-    if (!materials_.empty()) json["materials"] = material_json();
 
     // Views of four-byte values first, so that each begins at a multiple of four (3.6.2.4).
     Json views = Json::array();
@@ -224,6 +225,7 @@ class GlbWriter {
                                     : stream == kWide ? wide_view
                                                       : view_of_stream[stream];
     }
+    materials_.write(json, views, length);
     json["accessors"] = std::move(accessors_);
     json["bufferViews"] = std::move(views);
     json["buffers"] = Json::array();
@@ -274,16 +276,6 @@ class GlbWriter {
       });
       result.push_back(static_cast<std::size_t>(found - streams_.begin()));
       if (found == streams_.end()) streams_.push_back({std::move(semantic), {}});
-    }
-    return result;
-  }
-
-  std::vector<std::size_t> add_materials(const Mesh& mesh) {
-    std::vector<std::size_t> result;
-    for (const Material& material : mesh.materials) {
-      const auto found = std::ranges::find(materials_, material);
-      result.push_back(static_cast<std::size_t>(found - materials_.begin()));
-      if (found == materials_.end()) materials_.push_back(material);
     }
     return result;
   }
@@ -365,26 +357,6 @@ class GlbWriter {
     return accessors_.size() - 1;
   }
 
-  // A texture's name goes into `extras`, where the reader finds it again: an image that is not
-  // there would make the file invalid.
-  Json material_json() const {
-    Json materials = Json::array();
-    for (const Material& material : materials_) {
-      std::array<float, 4> color = material.base_color;
-      for (float& c : color) c = std::clamp(c, 0.0f, 1.0f);
-      Json entry = Json::object();
-      if (!material.name.empty()) entry["name"] = material.name;
-      entry["pbrMetallicRoughness"] = {
-          {"baseColorFactor", color}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
-      if (color[3] < 1) entry["alphaMode"] = "BLEND";
-      if (!material.base_color_texture.empty()) {
-        entry["extras"] = {{"base_color_texture", material.base_color_texture}};
-      }
-      materials.push_back(std::move(entry));
-    }
-    return materials;
-  }
-
   Result<std::vector<std::byte>> put_together(const Json& json, std::size_t length) const {
     // Names may be in any encoding; what is not UTF-8 is replaced.
     std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -417,13 +389,16 @@ class GlbWriter {
     }
     put(wide_.data(), wide_.size() * 4);
     put(narrow_.data(), narrow_.size() * 2);
+    for (const ImageFile& image : materials_.images()) {
+      put(image.bytes->data(), image.bytes->size());
+    }
     return bytes;
   }
 
   std::vector<FloatStream> streams_;
   std::vector<std::uint32_t> wide_;
   std::vector<std::uint16_t> narrow_;
-  std::vector<Material> materials_;
+  GlbMaterials materials_;
   Json accessors_ = Json::array(), nodes_ = Json::array(), meshes_ = Json::array();
   std::vector<std::size_t> stream_of_accessor_;
   std::vector<std::string> extensions_;

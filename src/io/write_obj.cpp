@@ -102,7 +102,7 @@ std::vector<std::byte> write_obj(const Mesh& mesh, std::string_view mtl_name) {
   return out.take();
 }
 
-std::vector<std::byte> write_mtl(const Mesh& mesh) {
+std::vector<std::byte> write_mtl(const Mesh& mesh, std::span<const std::string> image_files) {
   ByteSink out;
   for (const Material& material : mesh.materials) {
     out.text("newmtl ");
@@ -116,8 +116,10 @@ std::vector<std::byte> write_mtl(const Mesh& mesh) {
     out.number(material.base_color[3]);
     out.text("\n");
     if (!material.base_color_texture.empty()) {
+      const ImageFile* image = find_image(mesh.images, material.base_color_texture);
       out.text("map_Kd ");
-      out.text(in_one_line(material.base_color_texture, ""));
+      out.text(image ? image_files[static_cast<std::size_t>(image - mesh.images.data())]
+                     : in_one_line(material.base_color_texture, ""));
       out.text("\n");
     }
   }

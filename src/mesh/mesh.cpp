@@ -16,6 +16,12 @@ AttributeLayer* Mesh::normals() {
   return const_cast<AttributeLayer*>(static_cast<const Mesh*>(this)->normals());
 }
 
+const ImageFile* find_image(std::span<const ImageFile> images, std::string_view name) {
+  const auto found = std::find_if(images.begin(), images.end(),
+                                  [&](const ImageFile& image) { return image.name == name; });
+  return name.empty() || found == images.end() ? nullptr : &*found;
+}
+
 namespace {
 
 Failure broken(std::string what) {
@@ -48,6 +54,16 @@ Status check_categories(const std::vector<Id>& of_triangle, std::size_t triangle
     return broken(std::string(what) + ": not one a triangle");
   for (Id id : of_triangle) {
     if (index_of(id) >= name_count) return broken(std::string(what) + " out of range");
+  }
+  return Done{};
+}
+
+Status check_images(const std::vector<ImageFile>& images) {
+  for (const ImageFile& image : images) {
+    if (image.bytes == nullptr) return broken("image '" + image.name + "' has no bytes");
+    if (find_image(images, image.name) != &image) {
+      return broken("an image without a name of its own: '" + image.name + "'");
+    }
   }
   return Done{};
 }
@@ -85,6 +101,7 @@ Status check_mesh(const Mesh& mesh) {
       !status.ok()) {
     return status;
   }
+  if (Status status = check_images(mesh.images); !status.ok()) return status;
   return check_categories(mesh.part_of_triangle, mesh.triangle_count(), mesh.parts.size(), "part");
 }
 

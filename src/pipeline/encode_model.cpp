@@ -65,6 +65,7 @@ Result<EncodedModel> encode_model(const Mesh& snapped, const ContractionSequence
   content.materials = snapped.materials;
   content.parts = snapped.parts;
   content.tables = encode_lattices(codings);
+  content.images = snapped.images;
 
   std::vector<CodedBlock> blocks =
       encode_blocks(plan_blocks(snapped, sequence, codings), block_coding(snapped, codings));

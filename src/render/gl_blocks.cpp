@@ -29,7 +29,6 @@ std::size_t GlBlocks::upload(std::span<const ShownRange> shown, const GlBlocks* 
       }
     }
     const DrawList list = range.block->draw_list();
-    if (!materials_) materials_ = upload_materials(list.materials);
     scene = std::make_shared<const GlScene>(list, std::span<const float>{}, materials_);
     uploaded += scene->bytes();
     bytes_ += scene->bytes();

@@ -33,6 +33,9 @@ class GlBlocks {
   // What a block is drawn in, all of it; empty: as the style says.
   using ColorOfBlock = std::function<ColorSrgb(const ResidentBlock&)>;
 
+  GlBlocks() : GlBlocks(std::make_shared<GlMaterials>()) {}
+  explicit GlBlocks(GlMaterialsPtr materials) : materials_(std::move(materials)) {}
+
   // What is shown and not here yet: all of it, since there is nothing to draw in its place. What
   // `other` has of it is shared instead. Returns the bytes.
   std::size_t upload(std::span<const ShownRange> shown, const GlBlocks* other = nullptr);
@@ -49,12 +52,13 @@ class GlBlocks {
                          const ColorOfBlock& color_of_block = {}) const;
 
   std::size_t block_count() const { return scenes_.size(); }
-  std::size_t bytes() const { return bytes_; }  // on the GPU, what is shared among it
+  // On the GPU, what is shared among it, and without materials.
+  std::size_t bytes() const { return bytes_; }
 
  private:
   const GlScene* find(const ResidentBlock& block) const;
 
-  GlMaterials materials_;
+  GlMaterialsPtr materials_;
   std::unordered_map<std::uint32_t, std::shared_ptr<const GlScene>> scenes_;  // by block
   std::size_t bytes_ = 0;
 };

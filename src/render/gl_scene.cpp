@@ -47,22 +47,18 @@ void add_attribute(GLuint location, const GlArray& array, int components) {
 
 }  // namespace
 
-GlMaterials upload_materials(std::span<const Material> materials) {
-  const auto colors = material_colors(materials);
-  return std::make_shared<const GlArray>(upload(std::span(colors), GL_RGBA32F));
-}
-
-GlScene::GlScene(const DrawList& list, std::span<const float> errors, GlMaterials materials)
+GlScene::GlScene(const DrawList& list, std::span<const float> errors, GlMaterialsPtr materials)
     : origin_(list.origin),
       box_(box_of_corners(list)),
       positions_(upload(list.positions, GL_RGB32F)),
       vertex_normals_(upload(list.vertex_normals, GL_RGB32F)),
       errors_(upload(errors, GL_R32F)),
-      material_colors_(materials ? std::move(materials) : upload_materials(list.materials)),
+      materials_(materials ? std::move(materials) : std::make_shared<GlMaterials>()),
       no_attributes_(GlVertexArray::make()),
       sn_(upload_part(list.sn)),
       fn_(upload_part(list.fn)),
       nsn_(upload_part(list.nsn)) {
+  if (!materials_->is_filled()) materials_->fill(list.materials);
   connect_all();
 }
 
@@ -73,6 +69,7 @@ GlScene::Part GlScene::upload_part(const DrawPart& list) {
   part.normals = upload(list.normals, GL_RGB32F);
   part.materials = upload(list.materials, GL_R32UI);
   part.colors = upload(list.colors, GL_RGBA32F);
+  part.texcoords = upload(list.texcoords, GL_RG32F);
   return part;
 }
 
@@ -104,6 +101,7 @@ std::size_t GlScene::update(const DrawList& list, const DrawChanges& changes) {
     bytes += refresh(part.materials, from.materials, GL_R32UI, indices);
     bytes += refresh(part.normals, from.normals, GL_RGB32F, normals, normals_each);
     bytes += refresh(part.colors, from.colors, GL_RGBA32F, colors, 3);
+    bytes += refresh(part.texcoords, from.texcoords, GL_RG32F, colors, 3);
   };
   update_part(sn_, list.sn, changes.sn_indices, {}, 1, changes.sn_colors);
   update_part(fn_, list.fn, changes.fn_indices, changes.fn_normals, 1, changes.fn_colors);
@@ -128,7 +126,8 @@ DrawRanges GlScene::all() const {
 std::size_t GlScene::bytes() const {
   std::size_t bytes = positions_.bytes + vertex_normals_.bytes + errors_.bytes;
   for (const Part* part : {&sn_, &fn_, &nsn_}) {
-    bytes += part->indices.bytes + part->normals.bytes + part->materials.bytes + part->colors.bytes;
+    bytes += part->indices.bytes + part->normals.bytes + part->materials.bytes +
+             part->colors.bytes + part->texcoords.bytes;
   }
   return bytes;
 }
@@ -151,10 +150,11 @@ Status GlScene::draw(ProgramCache& programs, const DrawPass& pass, const DrawSty
 
 ProgramKey GlScene::key_for(const Part& part, TriangleKind kind, const DrawStyle& style) const {
   const bool own_colors = style.coloring == Coloring::Shaded && !style.surface;
-  const bool has_materials = own_colors && part.materials && *material_colors_;
+  const bool has_materials = own_colors && part.materials && materials_->texels();
   ProgramKey key;
   key.normals = normal_source(kind);
   key.wireframe = style.wireframe;
+  key.textures = has_materials && part.texcoords && materials_->has_textures();
   if (own_colors && part.colors) {
     key.albedo = AlbedoSource::Corners;
     key.materials = has_materials;
@@ -167,7 +167,8 @@ ProgramKey GlScene::key_for(const Part& part, TriangleKind kind, const DrawStyle
   //   pulled, the normal fetched by the vertex shader and passed on flat      1.12   3.07
   //   indexed, the normal fetched for each fragment by gl_PrimitiveID         1.17   3.35
   //   pulled, the normal fetched for each fragment                            1.20   3.64
-  key.pulled = kind != TriangleKind::SN || key.wireframe || key.albedo == AlbedoSource::Corners;
+  key.pulled = kind != TriangleKind::SN || key.wireframe || key.textures ||
+               key.albedo == AlbedoSource::Corners;
   return key;
 }
 
@@ -206,8 +207,12 @@ Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind
   bind_texels(part.indices, unit::Indices);
   bind_texels(kind == TriangleKind::SN ? vertex_normals_ : part.normals, unit::Normals);
   bind_texels(part.materials, unit::Materials);
-  bind_texels(*material_colors_, unit::MaterialColors);
+  bind_texels(materials_->texels(), unit::MaterialColors);
   bind_texels(part.colors, unit::CornerColors);
+  if (key.textures) {
+    bind_texels(part.texcoords, unit::CornerTexcoords);
+    materials_->bind_textures(unit::Textures);
+  }
   bind_texels(errors_, unit::Errors);
 
   const GLsizei corner_count = GLsizei(3 * range.count);

@@ -9,6 +9,7 @@
 #include "crease/draw_list.h"
 #include "crease/shading.h"
 #include "render/draw_ranges.h"
+#include "render/gl_materials.h"
 #include "render/gl_objects.h"
 #include "render/gl_pass.h"
 #include "render/gl_shaders.h"
@@ -17,15 +18,11 @@
 
 namespace crease {
 
-// What to draw a model's materials in.
-using GlMaterials = std::shared_ptr<const GlArray>;
-GlMaterials upload_materials(std::span<const Material> materials);
-
 class GlScene {
  public:
-  // `errors` has one value per position, or none. `materials`: those of the list, if they are on
-  // the GPU already.
-  GlScene(const DrawList& list, std::span<const float> errors, GlMaterials materials = nullptr);
+  // `errors` has one value per position, or none. `materials`: those of the list, which are filled
+  // with its base colours if nobody has done so.
+  GlScene(const DrawList& list, std::span<const float> errors, GlMaterialsPtr materials = nullptr);
 
   // `list` is the one of the constructor after `changes`. Returns the bytes uploaded.
   std::size_t update(const DrawList& list, const DrawChanges& changes);
@@ -38,11 +35,11 @@ class GlScene {
 
   DrawRanges all() const;
   const Box& box() const { return box_; }  // of the triangles' corners when it was made
-  std::size_t bytes() const;               // that it takes on the GPU
+  std::size_t bytes() const;               // that it takes on the GPU, without materials
 
  private:
   struct Part {
-    GlArray indices, normals, materials, colors;
+    GlArray indices, normals, materials, colors, texcoords;
     GlVertexArray indexed;  // positions, SN normals and errors as attributes
     std::size_t triangle_count = 0;
   };
@@ -58,7 +55,7 @@ class GlScene {
   Vec3d origin_;
   Box box_;
   GlArray positions_, vertex_normals_, errors_;
-  GlMaterials material_colors_;
+  GlMaterialsPtr materials_;
   GlVertexArray no_attributes_;
   Part sn_, fn_, nsn_;
 };

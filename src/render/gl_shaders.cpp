@@ -1,6 +1,7 @@
 #include "render/gl_shaders.h"
 
 #include "render/palette.h"
+#include "render/textures.h"
 
 #include <cstdio>
 
@@ -49,7 +50,12 @@ layout(location = 2) in float a_error;
 #if MATERIALS && PULLED
 flat out vec3 v_material;
 uniform usamplerBuffer materials;
-uniform samplerBuffer material_colors;
+uniform samplerBuffer material_colors;  // two texels a material, see gl_materials.h
+#endif
+#if TEXTURES
+flat out ivec2 v_texture;  // array and layer
+centroid out vec2 v_texcoord;
+uniform samplerBuffer corner_texcoords;
 #endif
 
 #if WIREFRAME
@@ -83,7 +89,13 @@ void main() {
 #endif
 
 #if MATERIALS && PULLED
-  v_material = texelFetch(material_colors, int(texelFetch(materials, gl_VertexID / 3).r)).rgb;
+  int material = 2 * int(texelFetch(materials, gl_VertexID / 3).r);
+  v_material = texelFetch(material_colors, material).rgb;
+#endif
+#if TEXTURES
+  v_texture = ivec2(texelFetch(material_colors, material + 1).xy);
+  vec2 texcoord = texelFetch(corner_texcoords, gl_VertexID).xy;
+  v_texcoord = vec2(texcoord.x, 1 - texcoord.y);  // an image's first row is its top
 #endif
 
 #if WIREFRAME
@@ -126,6 +138,22 @@ uniform samplerBuffer material_colors;
 uniform int first_triangle;
 #endif
 
+#if TEXTURES
+flat in ivec2 v_texture;
+centroid in vec2 v_texcoord;
+uniform sampler2DArray textures_0, textures_1, textures_2, textures_3;
+
+vec3 texture_color() {
+  vec3 at = vec3(v_texcoord, v_texture.y);
+  vec2 dx = dFdx(v_texcoord), dy = dFdy(v_texcoord);  // neighbours may go another way
+  if (v_texture.x == 0) return textureGrad(textures_0, at, dx, dy).rgb;
+  if (v_texture.x == 1) return textureGrad(textures_1, at, dx, dy).rgb;
+  if (v_texture.x == 2) return textureGrad(textures_2, at, dx, dy).rgb;
+  if (v_texture.x == 3) return textureGrad(textures_3, at, dx, dy).rgb;
+  return vec3(1);
+}
+#endif
+
 #if WIREFRAME
 in vec3 v_corner;
 uniform float line_px;
@@ -152,7 +180,11 @@ vec3 surface_color() {
 #if MATERIALS && PULLED
   c = v_material;
 #elif MATERIALS
-  c = texelFetch(material_colors, int(texelFetch(materials, first_triangle + gl_PrimitiveID).r)).rgb;
+  int material = int(texelFetch(materials, first_triangle + gl_PrimitiveID).r);
+  c = texelFetch(material_colors, 2 * material).rgb;
+#endif
+#if TEXTURES
+  c *= texture_color();
 #endif
 #if ALBEDO == CORNERS
   c *= v_color;
@@ -219,7 +251,8 @@ std::string preamble(const ProgramKey& key) {
          define("CORNERS", int(AlbedoSource::Corners)) +
          define("ERRORS", int(AlbedoSource::Errors)) + define("NORMALS", int(key.normals)) +
          define("ALBEDO", int(key.albedo)) + define("MATERIALS", materials) +
-         define("WIREFRAME", key.wireframe) + define("PULLED", key.pulled);
+         define("TEXTURES", key.textures) + define("WIREFRAME", key.wireframe) +
+         define("PULLED", key.pulled);
 }
 
 Result<Program> build_program(const ProgramKey& key) {
@@ -242,6 +275,12 @@ Result<Program> build_program(const ProgramKey& key) {
   set_unit("material_colors", unit::MaterialColors);
   set_unit("corner_colors", unit::CornerColors);
   set_unit("errors", unit::Errors);
+  set_unit("corner_texcoords", unit::CornerTexcoords);
+  static_assert(kTextureArrays == 4);
+  set_unit("textures_0", unit::Textures);
+  set_unit("textures_1", unit::Textures + 1);
+  set_unit("textures_2", unit::Textures + 2);
+  set_unit("textures_3", unit::Textures + 3);
   p.clip_from_list = glGetUniformLocation(id, "clip_from_list");
   p.eye_in_list = glGetUniformLocation(id, "eye_in_list");
   p.albedo = glGetUniformLocation(id, "albedo");

@@ -27,6 +27,7 @@ struct ProgramKey {
   NormalSource normals = NormalSource::PerVertex;
   AlbedoSource albedo = AlbedoSource::Uniform;
   bool materials = false;  // with Corners
+  bool textures = false;   // times the materials' textures; needs `pulled`
   bool wireframe = false;
   // Vertices are fetched by the shader, three per triangle, so that each may have its own
   // attributes though positions are shared. Otherwise drawn indexed, positions being attributes.
@@ -42,9 +43,19 @@ void main() {
 }
 )";
 
-// Texture units of the buffer textures.
+// Texture units: buffer textures, then those of images.
 namespace unit {
-enum : int { Positions, Indices, Normals, Materials, MaterialColors, CornerColors, Errors };
+enum : int {
+  Positions,
+  Indices,
+  Normals,
+  Materials,
+  MaterialColors,
+  CornerColors,
+  Errors,
+  CornerTexcoords,
+  Textures,  // kTextureArrays of them
+};
 }  // namespace unit
 // Attribute locations when not pulled.
 namespace attribute {

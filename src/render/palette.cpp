@@ -102,7 +102,7 @@ ColorSrgb error_color(float share) {
 
 std::vector<std::array<float, 4>> material_colors(std::span<const Material> materials) {
   const bool only_names = std::ranges::all_of(materials, [](const Material& m) {
-    return m.base_color == std::array<float, 4>{1, 1, 1, 1};
+    return m.base_color == std::array<float, 4>{1, 1, 1, 1} && m.base_color_texture.empty();
   });
   std::vector<std::array<float, 4>> colors;
   for (std::size_t i = 0; i < materials.size(); ++i) {

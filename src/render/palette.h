@@ -37,8 +37,9 @@ inline constexpr std::size_t kErrorStopCount = 7;
 extern const std::array<ColorSrgb, kErrorStopCount> kErrorStops;
 ColorSrgb error_color(float share);
 
-// What to draw each material in. Files whose materials have names only (all of them white) get
-// colours by the names, in the words of cities (roof, wall, ground, glass, ...), then by order.
+// What to draw each material in. Files whose materials have names only (all of them white, without
+// textures) get colours by the names, in the words of cities (roof, wall, ground, glass, ...), then
+// by order.
 std::vector<std::array<float, 4>> material_colors(std::span<const Material> materials);
 
 }  // namespace crease

@@ -46,6 +46,9 @@ Status check_part(const DrawList& list, const DrawPart& part, std::size_t normal
   if (!part.colors.empty() && part.colors.size() != 3 * triangles) {
     return off("colours are not three a triangle");
   }
+  if (!part.texcoords.empty() && part.texcoords.size() != 3 * triangles) {
+    return off("texture coordinates are not three a triangle");
+  }
   for (std::uint32_t i : part.indices) {
     if (i >= position_count)
       return off("index " + std::to_string(i) + " of " + std::to_string(position_count));
@@ -239,6 +242,28 @@ std::vector<Vec3f> used_positions(const DrawList& list) {
   return used;
 }
 
+bool has_same_materials(const DrawList& a, const DrawList& b) {
+  const auto same = [](const ImageFile& x, const ImageFile& y) {
+    return x.name == y.name && x.bytes == y.bytes;
+  };
+  return std::ranges::equal(a.materials, b.materials) &&
+         std::ranges::equal(a.images, b.images, same);
+}
+
+GlMaterialsPtr upload_materials(const DrawList& list, const GlLimits& gl,
+                                const RenderOptions& options) {
+  Textures textures;
+  if (options.coloring == Coloring::Shaded) {
+    textures = decode_textures(list.materials, list.images, texture_limits(gl));
+  }
+  for (const std::string& note : textures.notes) {
+    if (options.on_note) options.on_note(note);
+  }
+  auto materials = std::make_shared<GlMaterials>();
+  materials->fill(list.materials, textures);
+  return materials;
+}
+
 Camera choose_camera(Scene scene, const RenderOptions& options, int width_px, int height_px) {
   if (options.camera) return *options.camera;
   if (options.frustum) return fit_outside(scene, *options.frustum, width_px, height_px);
@@ -296,6 +321,7 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
   fill_rect(image, {0, 0, image.width, image.height}, kPageColor);
   const ErrorScale scale = error_scale(panels, options);
   ProgramCache programs;
+  GlMaterialsPtr materials;  // of the panel before
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Status sound = check_panel(panels[i], gl->limits().max_texel_count);
     if (!sound.ok()) {
@@ -311,7 +337,10 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
                           .level_share = panels[i].level_share,
                           .error_full = float(scale.full),
                           .reversed_depth = gl->limits().can_reverse_depth};
-    const GlScene on_gpu(panels[i].list, panels[i].error_of_position);
+    if (i == 0 || !has_same_materials(panels[i].list, panels[i - 1].list)) {
+      materials = upload_materials(panels[i].list, gl->limits(), options);
+    }
+    const GlScene on_gpu(panels[i].list, panels[i].error_of_position, materials);
     const Status drawn =
         draw_view(image, layout.views[i], on_gpu, lines, camera, style, *target, tile_px, programs);
     if (!drawn.ok()) return drawn.failure();

@@ -1,6 +1,8 @@
 // The moves.
 #include "runtime/active_cut.h"
 
+#include "mesh/painted_layer.h"
+
 #include "base/assert.h"
 #include "hierarchy/grid_sum.h"
 
@@ -35,8 +37,9 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
     tracked_.push_back(l);
     tracks_others_ |= l != normal_layer_;
   }
+  texcoord_layer_ = painted_layer(hierarchy_.layers, hierarchy_.materials);
   arriving_.assign(3 * tracked_.size(), kNone);
-  touches_triangles_ = normal_layer_ == kNone || color_layer_ != kNone ||
+  touches_triangles_ = normal_layer_ == kNone || is_painted() ||
                        place_of_layer_[normal_layer_] != kNone || !h_.deriving_splits.empty();
   for (std::uint32_t r = 0; r < h_.root_count; ++r) {
     if (h_.root_wedges[r] == h_.root_wedges[r + 1]) continue;
@@ -284,7 +287,7 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
     lists_.push_back(vertices[slots[k]].corners, {CornerRef(kind, place, k), wedges[k]});
   }
   part.moved.mark(place);
-  if (kind != kSnPart || color_layer_ != kNone) part.shaded.mark(place);
+  if (kind != kSnPart || is_painted()) part.shaded.mark(place);
 }
 
 // What a corner that comes to v shows. Where the wedge varies, another corner of it often stands
@@ -316,12 +319,11 @@ void ActiveCut::touch_corners(std::uint32_t slot, bool had_one_normal) {
   if (!touches_triangles_) return;
   const bool has_one = vertices_[slot].has_one_normal();
   const bool only_derived = !has_one && !had_one_normal;
-  if (only_derived && color_layer_ == kNone && normal_layer_ != kNone &&
-      h_.deriving_splits.empty()) {
+  if (only_derived && !is_painted() && normal_layer_ != kNone && h_.deriving_splits.empty()) {
     return;
   }
   const std::span<const CornerAt> corners = lists_.of(vertices_[slot].corners);
-  if (color_layer_ != kNone) {
+  if (is_painted()) {
     for (const CornerAt& at : corners) parts_[at.corner.part()].touched.mark(at.corner.triangle());
     return;
   }

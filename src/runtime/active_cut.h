@@ -108,6 +108,7 @@ class ActiveCut {
 
   std::uint32_t normal_layer() const { return normal_layer_; }  // kNone: there is none
   std::uint32_t color_layer() const { return color_layer_; }
+  std::uint32_t texcoord_layer() const { return texcoord_layer_; }  // kNone: no textures
 
   // By DB03, of what the corners have now.
   Part kind_of(const ActiveTriangles& part, std::uint32_t triangle) const;
@@ -142,6 +143,7 @@ class ActiveCut {
   void stand_at_children(SplitId s, std::uint32_t first, std::uint32_t second,
                          const Vec3i& position);
   std::uint32_t normal_in(const CompactRanges::Range& attributes) const;
+  bool is_painted() const { return color_layer_ != kNone || texcoord_layer_ != kNone; }
   // `values`: per corner one for each tracked layer.
   Part kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
                std::span<const std::uint32_t> values) const;
@@ -198,7 +200,7 @@ class ActiveCut {
 
   const MeshHierarchy& hierarchy_;
   const VertexHierarchy& h_;
-  std::uint32_t normal_layer_ = kNone, color_layer_ = kNone;
+  std::uint32_t normal_layer_ = kNone, color_layer_ = kNone, texcoord_layer_ = kNone;
   std::vector<std::uint32_t> tracked_;         // layers that have nodes of several attributes
   std::vector<std::uint32_t> place_of_layer_;  // in tracked_, or kNone
   bool tracks_others_ = false;                 // layers beside normals

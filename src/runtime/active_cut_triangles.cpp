@@ -120,7 +120,8 @@ std::size_t ActiveCut::bytes() const {
   for (const ActiveTriangles& part : parts_) {
     sum += 4 * (part.ids.capacity() + part.slots.capacity() + part.holes.capacity() +
                 part.materials.capacity() + part.values.capacity()) +
-           part.is_derived.capacity() + 12 * part.normals.capacity() + 16 * part.colors.capacity();
+           part.is_derived.capacity() + 12 * part.normals.capacity() + 16 * part.colors.capacity() +
+           8 * part.texcoords.capacity();
   }
   return sum;
 }

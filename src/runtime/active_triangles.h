@@ -5,8 +5,8 @@
 // it merges moves no triangle in memory and uploads nothing but what changed.
 //
 // Memory per triangle: slots 12, id 4, a flag 1, 12 per attribute layer that ever has two
-// attributes at a vertex; for drawing FN normal 12, NSN normals 36, colours 48, material 4; 3 bits
-// of marks.
+// attributes at a vertex; for drawing FN normal 12, NSN normals 36, colours 48, texture coordinates
+// 24, material 4; 3 bits of marks.
 #pragma once
 
 #include "crease/mesh_hierarchy.h"
@@ -32,13 +32,14 @@ struct ActiveTriangles {
   std::vector<std::uint32_t> holes;      // may name triangles beyond the end
   std::size_t hole_count = 0;            // in front of the end
   ChangeSet moved;                       // slots changed
-  ChangeSet touched;                     // kind, normals or colours may have changed
-  ChangeSet shaded;                      // normals or colours did
+  ChangeSet touched;                     // kind, normals, colours may have changed
+  ChangeSet shaded;                      // normals, colours or texture coordinates did
 
   // What is drawn beside the slots; CutDrawing keeps it.
-  std::vector<Vec3f> normals;                // FN: 1 a triangle, NSN: 3
-  std::vector<std::array<float, 4>> colors;  // 3 a triangle, or empty
-  std::vector<std::uint32_t> materials;      // or empty
+  std::vector<Vec3f> normals;                   // FN: 1 a triangle, NSN: 3
+  std::vector<std::array<float, 4>> colors;     // 3 a triangle, or empty
+  std::vector<std::array<float, 2>> texcoords;  // the same
+  std::vector<std::uint32_t> materials;         // or empty
 
   std::size_t size() const { return ids.size(); }
   std::size_t count() const { return ids.size() - hole_count; }

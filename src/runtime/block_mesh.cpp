@@ -316,6 +316,10 @@ const ModelFacts& BlockMesh::facts() const {
   return impl_->schema->facts;
 }
 
+std::span<const Material> BlockMesh::materials() const {
+  return impl_->schema->materials;
+}
+
 Mesh BlockMesh::extract() const {
   std::vector<codec::PatchMesh> ends;
   std::vector<codec::EndPiece> pieces;

@@ -104,7 +104,9 @@ void CutDrawing::refresh_part(ActiveCut& cut, const Geomorphs& geomorphs, Part p
   const std::size_t normal_count = kNormalsPerTriangle[p];
   const std::uint32_t color_layer = cut.color_layer();
   part.normals.resize(normal_count * part.size());
+  const std::uint32_t texcoord_layer = cut.texcoord_layer();
   if (color_layer != kNone) part.colors.resize(3 * part.size());
+  if (texcoord_layer != kNone) part.texcoords.resize(3 * part.size());
   const auto refresh_shading = [&](std::size_t t) {
     const auto corner = static_cast<std::uint32_t>(3 * t);
     if (normal_count > 0) {
@@ -115,6 +117,11 @@ void CutDrawing::refresh_part(ActiveCut& cut, const Geomorphs& geomorphs, Part p
       const std::size_t value = cut.value_index(part, corner + k, color_layer);
       const StoredValue color = hierarchy.layers[color_layer].values[value];
       part.colors[3 * t + k] = draw_color(color);
+    }
+    for (std::uint32_t k = 0; texcoord_layer != kNone && k < 3; ++k) {
+      const std::size_t value = cut.value_index(part, corner + k, texcoord_layer);
+      const std::span<const float> uv = value_at(hierarchy.layers[texcoord_layer], value);
+      part.texcoords[3 * t + k] = {uv[0], uv[1]};
     }
   };
   std::vector<Range>* const index_ranges[] = {&changes_.sn_indices, &changes_.fn_indices,
@@ -131,7 +138,7 @@ void CutDrawing::refresh_part(ActiveCut& cut, const Geomorphs& geomorphs, Part p
   });
   part.shaded.take(part.size(), ranges_, refresh_shading);
   if (normal_ranges[p] != nullptr) *normal_ranges[p] = ranges_;
-  if (color_layer != kNone) *color_ranges[p] = ranges_;
+  if (color_layer != kNone || texcoord_layer != kNone) *color_ranges[p] = ranges_;
 }
 
 DrawList CutDrawing::draw_list(const ActiveCut& cut) const {
@@ -142,7 +149,7 @@ DrawList CutDrawing::draw_list(const ActiveCut& cut) const {
   DrawPart* const draw[] = {&list.sn, &list.fn, &list.nsn};
   for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
     const ActiveTriangles& part = cut.parts()[p];
-    *draw[p] = {part.slots, part.normals, part.materials, part.colors};
+    *draw[p] = {part.slots, part.normals, part.materials, part.colors, part.texcoords};
   }
   list.materials = cut.hierarchy().materials;
   return list;

@@ -1,4 +1,5 @@
-// The draw list of a cut: positions, normals and colours of what is active, kept while it moves.
+// The draw list of a cut: positions, normals, colours and texture coordinates of what is active,
+// kept while it moves.
 //
 // The moves mark what they touch (ActiveCut). arrive() then sorts the touched triangles into the
 // three parts by what their corners have now, closes the holes, computes each changed float once,

@@ -3,10 +3,12 @@
 
 #include "crease/mesh.h"
 #include "crease/vec.h"
+#include "mesh/painted_layer.h"
 
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace crease {
 

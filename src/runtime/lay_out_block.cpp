@@ -24,6 +24,8 @@ class BlockLayout {
       if (is_normal && !normals_) normals_.emplace(Layer{l, values_of(l)});
       if (layer.role == AttributeRole::Color && !colors_) colors_.emplace(Layer{l, values_of(l)});
     }
+    const std::uint32_t painted = painted_layer(schema_.facts.layers, schema_.materials);
+    if (painted != kNone) texcoords_.emplace(Layer{painted, values_of(painted)});
   }
 
   void run() {
@@ -116,6 +118,7 @@ class BlockLayout {
       to.normals.reserve(normals[std::size_t(k)] * n);
       if (!schema_.materials.empty()) to.materials.reserve(n);
       if (colors_) to.colors.reserve(3 * n);
+      if (texcoords_) to.texcoords.reserve(3 * n);
     }
   }
 
@@ -136,6 +139,11 @@ class BlockLayout {
     }
     if (!schema_.materials.empty()) {
       to.materials.push_back(mesh_.category[t] % schema_.coding.material_count);
+    }
+    for (std::size_t c = 0; texcoords_ && c < 3; ++c) {
+      std::array<float, 2> uv{};
+      texcoords_->values.read(codes(*texcoords_, t)[c], uv);
+      to.texcoords.push_back(uv);
     }
     if (!colors_) return;
     std::array<float, 4> value{};
@@ -158,7 +166,7 @@ class BlockLayout {
   ResidentBlock::Data& block_;
   const codec::ModelSchema& schema_;
   const codec::PatchMesh& mesh_;
-  std::optional<Layer> normals_, colors_;
+  std::optional<Layer> normals_, colors_, texcoords_;
   std::vector<char> is_shared_;  // per vertex: SN
 };
 

@@ -17,8 +17,9 @@ struct PartArrays {
   std::vector<Vec3f> normals;
   std::vector<std::uint32_t> materials;
   std::vector<std::array<float, 4>> colors;
+  std::vector<std::array<float, 2>> texcoords;
 
-  DrawPart view() const { return {indices, normals, materials, colors}; }
+  DrawPart view() const { return {indices, normals, materials, colors, texcoords}; }
 };
 
 Vec3d center_of(const Mesh& mesh) {
@@ -56,11 +57,18 @@ struct MeshDrawArrays::Impl {
   std::vector<Vec3f> positions, vertex_normals;
   std::vector<std::uint32_t> new_of_vertex;
   PartArrays sn, fn, nsn;
+  const AttributeLayer* colors = nullptr;     // of the mesh, while the arrays are made
+  const AttributeLayer* texcoords = nullptr;  // the same
   std::vector<Material> materials;
+  std::vector<ImageFile> images;
 };
 
-MeshDrawArrays::Impl::Impl(const Mesh& mesh) : origin(center_of(mesh)), materials(mesh.materials) {
+MeshDrawArrays::Impl::Impl(const Mesh& mesh)
+    : origin(center_of(mesh)), materials(mesh.materials), images(mesh.images) {
   CREASE_ASSERT(mesh.normals() != nullptr);
+  colors = color_layer(mesh);
+  const std::uint32_t painted = painted_layer(mesh.layers, materials);
+  if (painted != kNone) texcoords = &mesh.layers[painted];
   const ShadingKinds kinds = classify_shading(mesh);
   add_vertices(mesh, kinds);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -90,12 +98,15 @@ void MeshDrawArrays::Impl::add_vertices(const Mesh& mesh, const ShadingKinds& ki
 void MeshDrawArrays::Impl::add_triangle(const Mesh& mesh, std::size_t t, TriangleKind kind) {
   PartArrays& part = kind == TriangleKind::SN ? sn : kind == TriangleKind::FN ? fn : nsn;
   const std::size_t normal_count = kind == TriangleKind::SN ? 0 : kind == TriangleKind::FN ? 1 : 3;
-  const AttributeLayer* colors = color_layer(mesh);
   for (std::size_t c = 0; c < 3; ++c) {
     part.indices.push_back(new_of_vertex[index_of(mesh.triangles[t][c])]);
     if (c < normal_count) part.normals.push_back(normal_at(*mesh.normals(), 3 * t + c));
     if (colors != nullptr) {
       part.colors.push_back(draw_color(colors->value(colors->of_corner[3 * t + c])));
+    }
+    if (texcoords != nullptr) {
+      const std::span<const float> uv = texcoords->value(texcoords->of_corner[3 * t + c]);
+      part.texcoords.push_back({uv[0], uv[1]});
     }
   }
   if (!mesh.material_of_triangle.empty()) {
@@ -116,6 +127,7 @@ DrawList MeshDrawArrays::draw_list() const {
   list.fn = impl_->fn.view();
   list.nsn = impl_->nsn.view();
   list.materials = impl_->materials;
+  list.images = impl_->images;
   return list;
 }
 

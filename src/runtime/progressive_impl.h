@@ -10,7 +10,7 @@
 //
 // Memory beside the shared arrays: a vertex 24, an SN vertex 12, a triangle 12, an FN triangle 13,
 // an NSN triangle 49; where there are geomorphs an SN vertex 12 more; 48 a triangle where there are
-// colours; change sets of a bit an element.
+// colours, 24 where there are textures; change sets of a bit an element.
 #pragma once
 
 #include "crease/progressive_mesh.h"
@@ -31,13 +31,17 @@ struct ProgressiveMesh::Impl {
   explicit Impl(ProgressiveArraysPtr given);
 
   struct TrianglePart {
-    std::uint32_t first = 0;                   // its first triangle
-    std::vector<Vec3f> normals;                // FN: 1 a triangle, NSN: 3
-    std::vector<std::array<float, 4>> colors;  // 3 a triangle, or empty
-    ChangeSet index_changes, normal_changes, color_changes;
+    std::uint32_t first = 0;                      // its first triangle
+    std::vector<Vec3f> normals;                   // FN: 1 a triangle, NSN: 3
+    std::vector<std::array<float, 4>> colors;     // 3 a triangle, or empty
+    std::vector<std::array<float, 2>> texcoords;  // the same
+    ChangeSet index_changes, normal_changes;
+    ChangeSet color_changes;  // of both
     std::uint32_t normals_per_triangle = 0;
     std::size_t drawn = 0;  // triangles that were active when it last arrived
     Ways ways{slerp};       // of `normals`
+
+    bool is_painted() const { return !colors.empty() || !texcoords.empty(); }
   };
 
   // What LinearState calls while the level moves.
@@ -54,7 +58,9 @@ struct ProgressiveMesh::Impl {
     void index(std::uint32_t layer, std::uint32_t c) {
       TrianglePart& part = mesh.part_of(c / 3);
       if (layer == 0) part.normal_changes.mark(c / 3 - part.first);
-      if (layer == mesh.color_layer + 1) part.color_changes.mark(c / 3 - part.first);
+      if (layer == mesh.color_layer + 1 || layer == mesh.texcoord_layer + 1) {
+        part.color_changes.mark(c / 3 - part.first);
+      }
     }
     void derived(std::uint32_t t) {
       TrianglePart& part = mesh.part_of(t);
@@ -64,7 +70,7 @@ struct ProgressiveMesh::Impl {
       const std::uint32_t t = c / 3;
       TrianglePart& part = mesh.part_of(t);
       if (mesh.state.is_derived(t)) part.normal_changes.mark(t - part.first);
-      if (!part.colors.empty()) part.color_changes.mark(t - part.first);
+      if (part.is_painted()) part.color_changes.mark(t - part.first);
     }
   };
 
@@ -113,7 +119,8 @@ struct ProgressiveMesh::Impl {
   LinearState state;
   std::vector<Vec3f> positions;
   std::array<TrianglePart, kSectionCount> parts;
-  std::uint32_t color_layer = kMaxLayers;  // of arrays->layers; kMaxLayers: none
+  std::uint32_t color_layer = kMaxLayers;     // of arrays->layers; kMaxLayers: none
+  std::uint32_t texcoord_layer = kMaxLayers;  // the same
   ChangeSet position_changes, own_normal_changes;
   DrawChanges changes;
   std::size_t base_triangles = 0;

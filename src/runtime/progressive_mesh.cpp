@@ -22,6 +22,8 @@ ProgressiveMesh::Impl::Impl(ProgressiveArraysPtr given) : arrays(std::move(given
   for (std::uint32_t l = 0; l < arrays->layers.size() && color_layer == kMaxLayers; ++l) {
     if (arrays->layers[l].role == AttributeRole::Color) color_layer = l;
   }
+  const std::uint32_t painted = painted_layer(arrays->layers, arrays->materials);
+  if (painted != kNone) texcoord_layer = painted;
   position_changes.resize(full.vertices());
   own_normal_changes.resize(full.sn_vertices);
   const std::uint32_t counts[] = {full.sn_triangles, full.fn_triangles, full.nsn_triangles};
@@ -34,12 +36,13 @@ ProgressiveMesh::Impl::Impl(ProgressiveArraysPtr given) : arrays(std::move(given
     part.normals_per_triangle = normals_per_triangle[s];
     part.normals.resize(std::size_t(counts[s]) * part.normals_per_triangle);
     if (color_layer != kMaxLayers) part.colors.resize(3 * std::size_t(counts[s]));
+    if (texcoord_layer != kMaxLayers) part.texcoords.resize(3 * std::size_t(counts[s]));
     part.index_changes.resize(counts[s]);
     part.normal_changes.resize(part.normals.empty() ? 0 : counts[s]);
-    part.color_changes.resize(part.colors.empty() ? 0 : counts[s]);
+    part.color_changes.resize(part.is_painted() ? counts[s] : 0);
     for (std::uint32_t t = 0; t < counts[s]; ++t) {
       refresh_normals(part, t);
-      if (!part.colors.empty()) refresh_colors(part, t);
+      refresh_colors(part, t);
     }
   }
 }
@@ -77,8 +80,12 @@ void ProgressiveMesh::Impl::refresh_normals(TrianglePart& part, std::size_t t) {
 
 void ProgressiveMesh::Impl::refresh_colors(TrianglePart& part, std::size_t t) {
   const std::uint32_t first_corner = 3 * (part.first + static_cast<std::uint32_t>(t));
-  for (std::uint32_t k = 0; k < 3; ++k) {
+  for (std::uint32_t k = 0; k < 3 && !part.colors.empty(); ++k) {
     part.colors[3 * t + k] = draw_color(state.value_of_corner(color_layer, first_corner + k));
+  }
+  for (std::uint32_t k = 0; k < 3 && !part.texcoords.empty(); ++k) {
+    const std::span<const float> uv = state.value_of_corner(texcoord_layer, first_corner + k);
+    part.texcoords[3 * t + k] = {uv[0], uv[1]};
   }
 }
 
@@ -109,7 +116,7 @@ void ProgressiveMesh::Impl::arrive() {
       part.normal_changes.take(active, *normal_ranges[s],
                                [&](std::size_t t) { refresh_normals(part, t); });
     }
-    if (!part.colors.empty()) {
+    if (part.is_painted()) {
       part.color_changes.take(active, *color_ranges[s],
                               [&](std::size_t t) { refresh_colors(part, t); });
     }
@@ -125,6 +132,7 @@ DrawPart ProgressiveMesh::Impl::draw_part(int section) const {
   draw.normals = triangles_of(part.normals, 0, count, part.normals_per_triangle);
   draw.materials = triangles_of(arrays->material_of_triangle, part.first, count, 1);
   draw.colors = triangles_of(part.colors, 0, count, 3);
+  draw.texcoords = triangles_of(part.texcoords, 0, count, 3);
   return draw;
 }
 

@@ -1,5 +1,7 @@
 #include "runtime/resident_block.h"
 
+#include "mesh/painted_layer.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -45,13 +47,14 @@ constexpr std::size_t kBytesOfGroup = sizeof(BlockGroup);
 
 std::size_t BlockPart::bytes() const {
   return bytes_of_vector(indices) + bytes_of_vector(normals) + bytes_of_vector(materials) +
-         bytes_of_vector(colors);
+         bytes_of_vector(colors) + bytes_of_vector(texcoords);
 }
 
 std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema& schema) {
   const bool has_colors =
       std::any_of(schema.facts.layers.begin(), schema.facts.layers.end(),
                   [](const LayerSchema& layer) { return layer.role == AttributeRole::Color; });
+  const bool has_texcoords = painted_layer(schema.facts.layers, schema.materials) != kNone;
   const std::size_t layers = schema.facts.layers.size();
   const std::size_t of_vertex =
       sizeof(Vec3i) + sizeof(codec::VertexName) + sizeof(std::uint32_t) + 2 * sizeof(Vec3f);
@@ -59,7 +62,8 @@ std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema&
   // normals, material.
   const std::size_t of_triangle =
       sizeof(codec::Corners) + 9 + 3 * layers * (sizeof(codec::CodedValue) + 4) + kBytesOfGroup +
-      12 + 3 * sizeof(Vec3f) + 4 + (has_colors ? 3 * sizeof(std::array<float, 4>) : 0);
+      12 + 3 * sizeof(Vec3f) + 4 + (has_colors ? 3 * sizeof(std::array<float, 4>) : 0) +
+      (has_texcoords ? 3 * sizeof(std::array<float, 2>) : 0);
   return kBytesOfBlock + layers * sizeof(codec::CompactValues) + of_vertex * facts.vertices +
          of_triangle * facts.triangles_fine;
 }
@@ -85,7 +89,7 @@ std::size_t ResidentBlock::bytes() const {
 
 DrawList ResidentBlock::draw_list() const {
   const auto part = [](const BlockPart& p) -> DrawPart {
-    return {p.indices, p.normals, p.materials, p.colors};
+    return {p.indices, p.normals, p.materials, p.colors, p.texcoords};
   };
   DrawList list;
   list.origin = data_->schema->facts.grid.origin;

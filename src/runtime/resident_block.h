@@ -17,6 +17,7 @@ struct BlockPart {
   std::vector<Vec3f> normals;
   std::vector<std::uint32_t> materials;
   std::vector<std::array<float, 4>> colors;
+  std::vector<std::array<float, 2>> texcoords;
 
   std::size_t bytes() const;
 };

@@ -184,7 +184,7 @@ Status App::step() {
 
 bool App::is_drawing_due() {
   if (!notice_.empty() && now() > notice_until_) say("");
-  has_arrived_ |= frame_.has_changed || session_.is_busy();
+  has_arrived_ |= frame_.has_changed || session_.is_busy() || session_.has_repainted();
   if (has_arrived_ && (frame_.is_complete || frame_.is_moving || now() >= stream_draw_at_)) {
     draws_left_ = std::max(draws_left_, 1);
   }

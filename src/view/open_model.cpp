@@ -18,11 +18,7 @@ std::string last_part(const std::string& source) {
   return name.empty() ? path : name;
 }
 
-AsyncSourcePtr limited(AsyncSourcePtr source, const StreamLimit& limit) {
-  return limit ? limited_source(std::move(source), limit) : source;
-}
-
-Result<AsyncSourcePtr> source_of(const ModelSource& model) {
+Result<AsyncSourcePtr> unlimited_source_of(const ModelSource& model) {
   if (model.built) return async_memory_source(*model.built, model.source);
   if (is_http_url(model.source)) return open_async_http(model.source);
   return open_async_file(model.source);
@@ -30,11 +26,11 @@ Result<AsyncSourcePtr> source_of(const ModelSource& model) {
 
 Result<OpenedModel> stream(ModelSource model, const ViewerOptions& options,
                            const StreamLimit& limit, Note& note) {
-  Result<AsyncSourcePtr> source = source_of(model);
+  Result<AsyncSourcePtr> source = source_of(model, limit);
   if (!source.ok()) return source.failure();
   Result<BlockStreamer> streamer = BlockStreamer::open(
-      limited(*std::move(source), limit), {.decode_threads = std::max(1, options.decode_threads),
-                                           .stopped = [&note] { return note.is_stopped(); }});
+      *std::move(source), {.decode_threads = std::max(1, options.decode_threads),
+                           .stopped = [&note] { return note.is_stopped(); }});
   if (!streamer.ok()) return streamer.failure();
   if (streamer->mesh().facts().triangle_count == 0) {
     return fail(Error::NoTriangles, model.source + ": no triangles");
@@ -96,6 +92,12 @@ Result<ByteSourcePtr> bytes_again(const ModelSource& model, Note& note) {
 }
 
 }  // namespace
+
+Result<AsyncSourcePtr> source_of(const ModelSource& model, const StreamLimit& limit) {
+  Result<AsyncSourcePtr> source = unlimited_source_of(model);
+  if (!source.ok() || !limit) return source;
+  return limited_source(*std::move(source), limit);
+}
 
 Result<BlockFile> open_again(const ModelSource& model, Note& note) {
   Result<ByteSourcePtr> bytes = bytes_again(model, note);

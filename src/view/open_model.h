@@ -2,6 +2,7 @@
 // background.
 #pragma once
 
+#include "crease/async_source.h"
 #include "crease/block_file.h"
 #include "crease/block_streamer.h"
 #include "crease/limited_source.h"
@@ -35,6 +36,9 @@ using StreamLimit = std::shared_ptr<RateLimit>;
 // Interrupted soon after the note says to stop.
 Result<OpenedModel> open_model(const std::string& source, const ViewerOptions& options,
                                const StreamLimit& limit, Note& note);
+
+// The bytes once more, within what `limit` allows.
+Result<AsyncSourcePtr> source_of(const ModelSource& model, const StreamLimit& limit);
 
 // The bytes once more, for loading all of them: reading fails with Interrupted once the note says
 // to stop, and tells it how much is read.

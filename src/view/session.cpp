@@ -1,5 +1,6 @@
 #include "view/session.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace crease {
@@ -22,11 +23,17 @@ bool Session::take_opened() {
     return false;
   }
   leave(loading_, left_loadings_);
+  leave(painting_, left_paintings_);
   close_sides(0);
   data_ = {};
   whole_bytes_ = 0;
   source_ = std::move(opened->source);
   streamer_ = std::make_shared<BlockStreamer>(std::move(opened->streamer));
+  materials_ = std::make_shared<GlMaterials>();
+  const std::span<const Material> materials = streamer_->mesh().materials();
+  wants_textures_ = std::any_of(materials.begin(), materials.end(),
+                                [](const Material& m) { return !m.base_color_texture.empty(); });
+  texture_trouble_.clear();
   return true;
 }
 
@@ -43,7 +50,7 @@ void Session::set_side_count(std::size_t count) {
   while (sides_.size() < count) {
     const ShownBlocks* beside = sides_.empty() ? nullptr : sides_.front().blocks.get();
     Side side;
-    side.blocks = std::make_unique<ShownBlocks>(streamer_, sides_.size(), beside);
+    side.blocks = std::make_unique<ShownBlocks>(streamer_, sides_.size(), beside, materials_);
     sides_.push_back(std::move(side));
   }
 }
@@ -59,7 +66,7 @@ void Session::take_loaded(std::span<ViewSettings> sides, const GlLimits& limits)
   if (!loaded.ok()) return fall_back(loaded.failure());
   whole_bytes_ += loaded->bytes_read;
   data_[std::size_t(loading_mode_)] = loaded->data;
-  Result<std::unique_ptr<ShownMesh>> shown = show_whole(*std::move(loaded), limits);
+  Result<std::unique_ptr<ShownMesh>> shown = show_whole(*std::move(loaded), limits, materials_);
   if (!shown.ok()) return fall_back(shown.failure());
   sides_[loading_side_].whole[std::size_t(loading_mode_)] = *std::move(shown);
 }
@@ -73,9 +80,38 @@ void Session::load(std::size_t side, ViewMode mode) {
   });
 }
 
+// Textures wait until the first cut is there, so that geometry has the line.
+void Session::paint(const GlLimits& limits) {
+  has_repainted_ = false;
+  const auto is_whole = [](const Side& side) { return side.mode != ViewMode::Blocks; };
+  const bool has_cut = std::any_of(sides_.begin(), sides_.end(), is_whole) ||
+                       (streamer_ && !streamer_->mesh().shown().empty() &&
+                        streamer_->statistics().pending_bytes == 0);
+  if (wants_textures_ && has_cut) {
+    wants_textures_ = false;
+    painting_.emplace([source = source_, limit = limit_, most = texture_limits(limits)](
+                          Note& note) { return load_textures(source, limit, most, note); });
+  }
+  if (!painting_ || !painting_->is_done()) return;
+  const Result<ModelTextures> loaded = painting_->take();
+  painting_.reset();
+  if (!loaded.ok()) {
+    texture_trouble_ = "textures: " + loaded.failure().message;
+    return;
+  }
+  whole_bytes_ += loaded->bytes_read;
+  if (!loaded->textures.notes.empty()) {
+    texture_trouble_ = source_.name + ": " + loaded->textures.notes.front();
+  }
+  if (loaded->textures.empty()) return;
+  materials_->fill(loaded->materials, loaded->textures);
+  has_repainted_ = true;
+}
+
 bool Session::poll(std::span<ViewSettings> sides, const GlLimits& limits) {
   std::erase_if(left_openings_, [](const auto& work) { return work.is_done(); });
   std::erase_if(left_loadings_, [](const auto& work) { return work.is_done(); });
+  std::erase_if(left_paintings_, [](const auto& work) { return work.is_done(); });
   const bool is_new = opening_ && opening_->is_done() && take_opened();
   set_side_count(sides.size());
   if (loading_ && loading_->is_done()) take_loaded(sides, limits);
@@ -85,6 +121,7 @@ bool Session::poll(std::span<ViewSettings> sides, const GlLimits& limits) {
     if (!is_there && !loading_) load(i, mode);
     sides_[i].mode = is_there ? mode : ViewMode::Blocks;
   }
+  paint(limits);
   return is_new;
 }
 
@@ -126,6 +163,7 @@ std::optional<Failure> Session::stream_failure(std::size_t failed_blocks) const 
 void Session::forget_failures() {
   open_failure_.reset();
   trouble_.clear();
+  texture_trouble_.clear();
 }
 
 std::optional<Message> Session::message() const {
@@ -143,6 +181,11 @@ std::optional<Message> Session::message() const {
   if (const std::optional<Failure> trouble = stream_trouble()) {
     return Message{trouble->message, true};
   }
+  if (painting_ && streamer_->head().images.bytes > 0) {
+    const Note& note = painting_->note();
+    return Message{source_.name + ": " + note.stage(), false, note.share()};
+  }
+  if (!texture_trouble_.empty()) return Message{texture_trouble_, true};
   return std::nullopt;
 }
 

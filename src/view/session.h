@@ -15,6 +15,7 @@
 #pragma once
 
 #include "view/background.h"
+#include "view/model_textures.h"
 #include "view/open_model.h"
 #include "view/settings.h"
 #include "view/shown_blocks.h"
@@ -61,7 +62,9 @@ class Session {
 
   // What goes on, else what went wrong last.
   std::optional<Message> message() const;
-  bool is_busy() const { return opening_.has_value() || loading_.has_value(); }
+  bool is_busy() const { return opening_ || loading_ || wants_textures_ || painting_; }
+  // The last poll() has given the model its textures.
+  bool has_repainted() const { return has_repainted_; }
   // Of the last open(), if that failed and nothing was opened since.
   const std::optional<Failure>& failure() const { return open_failure_; }
   // What the stream cannot get over: as many blocks have failed.
@@ -80,6 +83,7 @@ class Session {
   void set_side_count(std::size_t count);
   void take_loaded(std::span<ViewSettings> sides, const GlLimits& limits);
   void load(std::size_t side, ViewMode mode);
+  void paint(const GlLimits& limits);
 
   // What nobody wants any more ends when it notices; no frame waits for it.
   template <typename T>
@@ -95,16 +99,22 @@ class Session {
   std::vector<Background<WholeModel>> left_loadings_;
   std::optional<Background<OpenedModel>> opening_;
   std::string opening_name_;
+  std::vector<Background<ModelTextures>> left_paintings_;
   std::optional<Background<WholeModel>> loading_;
   ViewMode loading_mode_{};
   std::size_t loading_side_ = 0;
   std::uint64_t whole_bytes_ = 0;
   std::optional<Failure> open_failure_;
   std::string trouble_;  // of loading
+  std::optional<Background<ModelTextures>> painting_;
+  bool wants_textures_ = false;  // which wait for the first cut
+  bool has_repainted_ = false;
+  std::string texture_trouble_;
 
   const StreamLimit limit_;
   ModelSource source_;
   std::shared_ptr<BlockStreamer> streamer_;  // a view for each side
+  GlMaterialsPtr materials_;                 // of all that show it
   std::array<WholeData, 3> data_;            // by mode: of what is loaded
   std::vector<Side> sides_;                  // one at least while something is open
 };

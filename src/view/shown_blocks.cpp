@@ -46,7 +46,7 @@ FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camer
   facts.error_pixels =
       std::min(std::max(1.0, double(mesh().view_error())) * settings.wanted_pixels(),
                double(camera.height_px));
-  facts.gpu_bytes = blocks_.bytes() + creases_.bytes();
+  facts.gpu_bytes = blocks_.bytes() + creases_.bytes() + materials_->bytes();
   facts.resident_bytes = mesh().resident_bytes();
   facts.pending_bytes = streamer_->statistics().pending_bytes;
   facts.blocks = mesh().resident_count();

@@ -14,8 +14,14 @@ namespace crease {
 class ShownBlocks final : public ShownMesh {
  public:
   // Of that view of the stream, which is there while this lives. `beside`: null, or outlives this.
-  ShownBlocks(std::shared_ptr<BlockStreamer> streamer, std::size_t view, const ShownBlocks* beside)
-      : streamer_(std::move(streamer)), view_(view), beside_(beside) {}
+  // `materials`: the model's, which all that show it share.
+  ShownBlocks(std::shared_ptr<BlockStreamer> streamer, std::size_t view, const ShownBlocks* beside,
+              GlMaterialsPtr materials)
+      : streamer_(std::move(streamer)),
+        view_(view),
+        beside_(beside),
+        materials_(std::move(materials)),
+        blocks_(materials_) {}
 
   FrameFacts update(const ViewSettings& settings, const Camera& camera) override;
   Result<DrawCount> draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
@@ -32,6 +38,7 @@ class ShownBlocks final : public ShownMesh {
   const std::shared_ptr<BlockStreamer> streamer_;
   const std::size_t view_;
   const ShownBlocks* const beside_;
+  const GlMaterialsPtr materials_;
   GlBlocks blocks_;
   GlBlockCreases creases_;
 };

@@ -77,8 +77,8 @@ std::string in_words(std::size_t shown, std::size_t full) {
 // What both have.
 class ShownWhole : public ShownMesh {
  public:
-  ShownWhole(const DrawList& list, const Box& box)
-      : scene_(list, {}), box_(box), origin_(list.origin) {}
+  ShownWhole(const DrawList& list, const Box& box, const GlMaterialsPtr& materials)
+      : scene_(list, {}, materials), box_(box), materials_(materials), origin_(list.origin) {}
 
   Vec3d origin() const override { return origin_; }
   Box box() const override { return box_; }
@@ -107,18 +107,22 @@ class ShownWhole : public ShownMesh {
     return DrawCount{std::size_t(calls), all.triangle_count()};
   }
 
+  // On the GPU, but for creases.
+  std::size_t scene_bytes() const { return scene_.bytes() + materials_->bytes(); }
+
   GlScene scene_;
   const Box box_;
 
  private:
+  const GlMaterialsPtr materials_;
   const Vec3d origin_;
   WholeCreases creases_;
 };
 
 class ShownVertices final : public ShownWhole {
  public:
-  ShownVertices(std::unique_ptr<AdaptiveMesh> mesh, const Box& box)
-      : ShownWhole(mesh->draw_list(), box),
+  ShownVertices(std::unique_ptr<AdaptiveMesh> mesh, const Box& box, const GlMaterialsPtr& materials)
+      : ShownWhole(mesh->draw_list(), box, materials),
         mesh_(std::move(mesh)),
         hierarchy_bytes_(hierarchy_bytes(mesh_->hierarchy()).total()) {}
 
@@ -142,7 +146,7 @@ class ShownVertices final : public ShownWhole {
     }
     facts.triangles = mesh_->triangle_count();
     facts.error_pixels = worst_error(camera, settings);
-    facts.gpu_bytes = scene_.bytes();
+    facts.gpu_bytes = scene_bytes();
     facts.resident_bytes = mesh_->active_bytes() + hierarchy_bytes_;
     facts.is_complete = report.complete && !facts.is_moving;
     update_creases(settings, mesh_->draw_list(), facts);
@@ -209,8 +213,9 @@ class ShownVertices final : public ShownWhole {
 
 class ShownLinear final : public ShownWhole {
  public:
-  ShownLinear(std::unique_ptr<ProgressiveMesh> mesh, const Box& box)
-      : ShownWhole(mesh->draw_list(), box), mesh_(std::move(mesh)) {}
+  ShownLinear(std::unique_ptr<ProgressiveMesh> mesh, const Box& box,
+              const GlMaterialsPtr& materials)
+      : ShownWhole(mesh->draw_list(), box, materials), mesh_(std::move(mesh)) {}
 
   // One level everywhere: as fine as the nearest point of the model's box needs it.
   FrameFacts update(const ViewSettings& settings, const Camera& camera) override {
@@ -236,7 +241,8 @@ class ShownLinear final : public ShownWhole {
     facts.has_changed = mesh_->applied() != before || has_moved;
     facts.triangles = mesh_->triangle_count();
     facts.error_pixels = in_pixels(mesh_->error(), camera, std::max(distance, 1e-9));
-    facts.gpu_bytes = facts.resident_bytes = scene_.bytes();
+    facts.gpu_bytes = scene_bytes();
+    facts.resident_bytes = scene_.bytes();
     update_creases(settings, mesh_->draw_list(), facts);
     return facts;
   }
@@ -328,7 +334,8 @@ WholeModel mesh_of(WholeData data) {
   return whole;
 }
 
-Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& limits) {
+Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& limits,
+                                              GlMaterialsPtr materials) {
   const std::size_t largest = model.linear
                                   ? largest_array(model.linear->draw_list())
                                   : 3 * model.vertices->hierarchy().vertices.triangles.size();
@@ -339,10 +346,10 @@ Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& 
   }
   if (model.linear) {
     return std::unique_ptr<ShownMesh>(
-        std::make_unique<ShownLinear>(std::move(model.linear), model.data.box));
+        std::make_unique<ShownLinear>(std::move(model.linear), model.data.box, materials));
   }
   return std::unique_ptr<ShownMesh>(
-      std::make_unique<ShownVertices>(std::move(model.vertices), model.data.box));
+      std::make_unique<ShownVertices>(std::move(model.vertices), model.data.box, materials));
 }
 
 }  // namespace crease

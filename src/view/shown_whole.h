@@ -3,6 +3,7 @@
 
 #include "crease/adaptive_mesh.h"
 #include "crease/progressive_mesh.h"
+#include "render/gl_materials.h"
 #include "view/open_model.h"
 #include "view/shown_mesh.h"
 
@@ -32,7 +33,9 @@ Result<WholeModel> load_whole(const ModelSource& model, ViewMode mode, Note& not
 // Another mesh of what is loaded.
 WholeModel mesh_of(WholeData data);
 
-// The largest of its arrays must fit the device: OverLimit. A context must be current.
-Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& limits);
+// The largest of its arrays must fit the device: OverLimit. `materials`: the model's, which all
+// that show it share. A context must be current.
+Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& limits,
+                                              GlMaterialsPtr materials);
 
 }  // namespace crease

@@ -6,13 +6,16 @@
 """
 
 import json
+import math
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 BINARY = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else "crease"
 SHARED = pathlib.Path(
@@ -38,6 +41,20 @@ def run(command, environment=None, timeout=None):
         options = environment.get("ASAN_OPTIONS")
         environment["ASAN_OPTIONS"] = (options + ":" if options else "") + "detect_leaks=0"
     return done
+
+
+def quarters_png(side=32):
+    """A picture whose quarters are red, green, then blue, yellow below."""
+    palette = bytes([220, 30, 30, 30, 180, 30, 40, 60, 220, 240, 220, 40])
+    rows = b"".join(b"\0" + bytes(x * 2 // side + 2 * (y * 2 // side) for x in range(side))
+                    for y in range(side))
+
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data +
+                struct.pack(">I", zlib.crc32(kind + data)))
+    head = struct.pack(">IIBBBBB", side, side, 8, 3, 0, 0, 0)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"PLTE", palette) +
+            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 class Case(unittest.TestCase):
@@ -71,6 +88,24 @@ class Case(unittest.TestCase):
         if not os.path.exists(path):
             self.json("generate", "city", "-o", path, "--triangles", triangles)
         return path
+
+    def painted(self, cells=20, texture="quarters.png"):
+        """A wavy sheet in an OBJ with a picture on it, which lies beside it."""
+        lines = ["mtllib painted.mtl", "usemtl paint"]
+        for j in range(cells + 1):
+            for i in range(cells + 1):
+                x, y = i / cells, j / cells
+                lines.append(f"v {x} {y} {0.01 * math.sin(9 * x) * math.cos(7 * y)}")
+                lines.append(f"vt {x} {y}")
+        for j in range(cells):
+            for i in range(cells):
+                a = j * (cells + 1) + i + 1
+                corners = (a, a + 1, a + cells + 2, a + cells + 1)
+                lines.append("f " + " ".join(f"{c}/{c}" for c in corners))
+        self.write("painted.mtl", f"newmtl paint\nKd 1 1 1\nmap_Kd {texture}\n")
+        if texture == "quarters.png":
+            self.write(texture, quarters_png())
+        return self.write("painted.obj", "\n".join(lines) + "\n")
 
     def built(self, triangles=4000):
         path = self.path("city.crease")

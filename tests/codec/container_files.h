@@ -1,4 +1,4 @@
-// Files of version 2 for tests and fuzzers: random ones, read back and written again.
+// Files of versions 2 and 3 for tests and fuzzers: random ones, read back and written again.
 #pragma once
 
 #include "codec/encode_container.h"
@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -46,7 +47,8 @@ inline std::vector<std::byte> bytes_of(const WrittenFile& file) {
 // What a file says, as if it had not been written yet. The file must be valid.
 inline WrittenFile read_whole(const BlockFile& file) {
   WrittenFile result;
-  result.content = {file.facts(), *file.read_materials(), *file.read_parts(), *file.read_tables()};
+  result.content = {file.facts(), *file.read_materials(), *file.read_parts(), *file.read_tables(),
+                    *file.read_images()};
   for (std::uint32_t p = 0; p < file.page_count(); ++p) {
     const DirectoryPage page = *file.read_page(p);
     for (const BlockEntry& entry : page.blocks) {
@@ -75,6 +77,16 @@ inline ContainerContent some_content() {
   content.parts = {"house", "", "shed"};
   content.tables = {std::byte{1}, std::byte{2}, std::byte{3}};
   return content;
+}
+
+inline ImageFile some_image(std::string name, std::size_t bytes) {
+  std::vector<std::byte> all(bytes);
+  for (std::size_t i = 0; i < bytes; ++i) all[i] = std::byte(7 * i & 0xff);
+  return {std::move(name), std::make_shared<const std::vector<std::byte>>(std::move(all))};
+}
+
+inline std::vector<ImageFile> some_images() {
+  return {some_image("brick.png", 40), some_image("wood.jpg", 1)};
 }
 
 // Numbers of every size, among them the largest.

@@ -41,6 +41,12 @@ Bytes small_file() {
   return bytes_of(random_file(3, 4, 24));
 }
 
+Bytes small_file_with_images() {
+  WrittenFile file = random_file(3, 4, 24);
+  file.content.images = some_images();
+  return bytes_of(file);
+}
+
 // Where the head says that pages lie.
 BlockFileHead head_of(const Bytes& bytes) {
   return *decode_head(bytes, bytes.size(), Checksums::Ignore);
@@ -61,13 +67,14 @@ void put_u32(Bytes& bytes, std::uint64_t at, std::uint32_t value) {
 }
 
 TEST_CASE("every flipped bit of a file of blocks is noticed") {
-  const Bytes whole = small_file();
-  REQUIRE(failure_of(whole).message.empty());
-  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
-    Bytes flipped = whole;
-    flipped[bit / 8] ^= std::byte(1 << (bit % 8));
-    CAPTURE(bit);
-    REQUIRE(!failure_of(flipped).message.empty());
+  for (const Bytes& whole : {small_file(), small_file_with_images()}) {
+    REQUIRE(failure_of(whole).message.empty());
+    for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+      Bytes flipped = whole;
+      flipped[bit / 8] ^= std::byte(1 << (bit % 8));
+      CAPTURE(bit);
+      REQUIRE(!failure_of(flipped).message.empty());
+    }
   }
 }
 
@@ -250,6 +257,67 @@ TEST_CASE("hostile counts are refused without the memory that they ask for") {
   }
 }
 
+TEST_CASE("what a file says of its images is looked at behind the checksums") {
+  const Bytes whole = small_file_with_images();
+  const BlockFileHead head = head_of(whole);
+  const std::uint64_t list = head.image_list.range.offset;
+  const std::uint64_t first = list + 4, second = first + 4 + 9 + 16;  // "brick.png"
+  struct Lie {
+    std::uint64_t at;
+    std::uint32_t value;
+    const char* message;
+  };
+  const Lie lies[] = {
+      {8, 2, "head"},  // then its layers begin elsewhere
+      {144, 0xffffffff, "head: names or tables that end after the file"},
+      {144, 0, "head"},
+      {160, 0xffffffff, "head: images that end after the file"},
+      {160, 0, "head: version 3 without images"},
+      {160, 40, "behind"},
+      {list, 0xffffffff, "list of images: their number is not as many as there are"},
+      {list, 0, "list of images: their number is not as many as there are"},
+      {list, 1, "list of images: it does not end with its bytes"},
+      {first, 0xffffffff, "list of images"},
+      {first + 4 + 9, 0, "list of images: one ends after the others"},
+      {first + 4 + 9, 42, "list of images: one ends after the others"},
+      {first + 4 + 9, 39, "list of images: bytes of no image"},
+      {first + 4 + 9 + 4, 1, "list of images: one ends after the others"},
+      {second + 4 + 8, 2, "list of images: one ends after the others"},
+  };
+  for (const Lie& lie : lies) {
+    CAPTURE(lie.message);
+    CAPTURE(lie.at);
+    Bytes harmed = whole;
+    put_u32(harmed, lie.at, lie.value);
+    repair_checksums(harmed);
+    largest_allocation = 0;
+    const Failure failure = failure_of(harmed);
+    CHECK(largest_allocation <= 20 * whole.size());
+    CHECK(!failure.message.empty());
+    CAPTURE(failure.message);
+    if (lie.value != 40) CHECK(failure.message.find(lie.message) != std::string::npos);
+  }
+  // Names that are one name would make a texture's image depend on the reader.
+  WrittenFile twice = random_file(3, 4, 24);
+  twice.content.images = {some_image("a", 3), some_image("a", 4)};
+  CHECK(bytes_of(twice).empty());
+  twice.content.images = {some_image("", 3)};
+  CHECK(bytes_of(twice).empty());
+  twice.content.images = {some_image("a", 0)};
+  CHECK(bytes_of(twice).empty());
+
+  Bytes harmed = whole;
+  harmed[static_cast<std::size_t>(head.images.offset) + 40] ^= std::byte{1};
+  CHECK(failure_of(harmed).message ==
+        "image 'wood.jpg' at byte " + std::to_string(head.images.offset + 40) +
+            ": checksum differs; the file was cut or changed, build it again");
+  const BlockFileLimits few{.max_bytes = 39};
+  const Result<BlockFile> file = BlockFile::open(memory_source(whole), few);
+  REQUIRE(file.ok());
+  const ImageEntry entry{"brick.png", {head.images.offset, 40}, 0};
+  CHECK(file->read_image(entry).failure().error == Error::OverLimit);
+}
+
 TEST_CASE("what the container promises is looked at behind the checksums") {
   const Bytes whole = small_file();
   const BlockFileHead head = head_of(whole);
@@ -264,6 +332,7 @@ TEST_CASE("what the container promises is looked at behind the checksums") {
   };
   const Lie lies[] = {
       {8, 0x00010002, "version or flags at byte 8"},
+      {8, 3, "head"},         // whose layers begin later
       {80, 0, "head: grid"},  // the step's lower half; its upper one follows
       {88, 32, "head: grid: more than 31 bits"},
       {89, 0x03000001, "head: a reserved byte is not 0"},  // and three parts

@@ -82,6 +82,39 @@ TEST_CASE("blocks and what is said of them come back, and the file opens with on
   check_round_trip(100'000, 12);
 }
 
+TEST_CASE("images come back, behind everything else, and are read when they are asked for") {
+  WrittenFile file = random_file(1, 600, 20);
+  const std::vector<std::byte> without = bytes_of(file);
+  file.content.images = some_images();
+  const std::vector<std::byte> bytes = bytes_of(file);
+  CHECK(without[8] == std::byte{2});
+  CHECK(bytes[8] == std::byte{3});
+  const Result<BlockFile> read = BlockFile::open(memory_source(bytes));
+  REQUIRE_MESSAGE(read.ok(), (read.ok() ? "" : read.failure().message));
+  CHECK(read->validate().empty());
+  const FileRange& names = read->head().parts.range;
+  CHECK(read->head().image_list.range.offset == names.offset + names.bytes);
+  CHECK(read->head().images.offset + read->head().images.bytes == bytes.size());
+  const auto images = read->read_images();
+  REQUIRE(images.ok());
+  REQUIRE(images->size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK((*images)[i].name == file.content.images[i].name);
+    CHECK(*(*images)[i].bytes == *file.content.images[i].bytes);
+  }
+  CHECK((bytes_of(read_whole(*read)) == bytes));
+
+  // The file of a stream that has all but its images.
+  const std::size_t there = static_cast<std::size_t>(read->head().images.offset);
+  const Result<BlockFile> part = BlockFile::open(memory_source(std::span(bytes).first(there)));
+  REQUIRE(part.ok());
+  CHECK(*part->complete_blocks() == 600);
+  CHECK(part->read_parts().ok());
+  CHECK(part->read_image_list().ok());
+  CHECK(!part->has_images());
+  CHECK(part->read_images().failure().error == Error::Truncated);
+}
+
 TEST_CASE("any block of 100,000 takes a read of its page and one of its own") {
   const WrittenFile file = random_file(7, 100'000, 12);
   const std::vector<std::byte> bytes = bytes_of(file);

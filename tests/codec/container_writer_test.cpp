@@ -172,7 +172,7 @@ TEST_CASE("older layouts and newer versions are told apart") {
   CHECK(BlockFile::open(memory_source(bytes)).ok());
   bytes[8] = std::byte(1);
   CHECK(BlockFile::open(memory_source(bytes)).failure().error == Error::NotSupported);
-  bytes[8] = std::byte(3);
+  bytes[8] = std::byte(4);
   CHECK(BlockFile::open(memory_source(bytes)).failure().error == Error::VersionTooNew);
 }
 

@@ -45,14 +45,28 @@ inline void page_and_blocks(std::vector<std::byte>& bytes, const BlockFileHead& 
   put(bytes, range.offset, checksum(part(bytes, range).subspan(8)));
 }
 
+// The bytes of each image before those of their list.
+inline void images(std::vector<std::byte>& bytes, const BlockFileHead& head) {
+  const auto list = decode_image_list(part(bytes, head.image_list.range), head);
+  if (!list.ok()) return;
+  std::uint64_t at = head.image_list.range.offset + 4;
+  for (const ImageEntry& entry : *list) {
+    at += 4 + entry.name.size() + 8;
+    const auto there = part(bytes, entry.range);
+    if (!there.empty()) put(bytes, at, checksum(there));
+    at += 8;
+  }
+}
+
 }  // namespace repair
 
 // Of everything that is there and whose place can be told.
 inline void repair_checksums(std::vector<std::byte>& bytes) {
   const auto head = decode_head(bytes, bytes.size(), Checksums::Ignore);
   if (head.ok()) {
+    repair::images(bytes, *head);
     std::uint64_t at = 104;
-    for (const auto* section : {&head->materials, &head->parts, &head->tables}) {
+    for (const auto* section : {&head->materials, &head->parts, &head->tables, &head->image_list}) {
       const auto there = repair::part(bytes, section->range);
       if (!there.empty()) repair::put(bytes, at, checksum(there));
       at += 16;

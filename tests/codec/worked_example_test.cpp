@@ -1,4 +1,4 @@
-// The example of docs/format.md, byte by byte, and the golden file of version 2.
+// The example of docs/format.md, byte by byte, and the golden files of versions 2 and 3.
 #include "codec/atomic_file.h"
 #include "codec/container_files.h"
 
@@ -90,30 +90,47 @@ TEST_CASE("the example of docs/format.md is what is written") {
   CHECK(BlockFile::open(memory_source(bytes))->validate().empty());
 }
 
-TEST_CASE("the golden file of version 2 is read, and written to the byte") {
-  const std::filesystem::path path = test_folder() / "golden" / "version_2.crease";
+// Opens the golden file, which `written` becomes where that is asked for, and writes it again.
+WrittenFile golden_file(const char* name, const WrittenFile& written) {
+  const std::filesystem::path path = test_folder() / "golden" / name;
   if (std::getenv("CREASE_WRITE_GOLDEN") != nullptr) {
     Result<AtomicFile> out = AtomicFile::create(path);
-    REQUIRE(write_container(random_file(1, 6, 24), *out).ok());
+    REQUIRE(write_container(written, *out).ok());
     REQUIRE(out->commit().ok());
   }
   const Result<ByteSourcePtr> source = open_file_source(path);
   REQUIRE(source.ok());
   const Result<BlockFile> file = BlockFile::open(*source);
   REQUIRE_MESSAGE(file.ok(), (file.ok() ? "" : file.failure().message));
-  CHECK(file->block_count() == 6);
-  CHECK(file->facts().triangle_count == 9'999'999'999);
-  REQUIRE(file->facts().layers.size() == 4);
-  CHECK(file->facts().layers[2].name == "uv");
-  CHECK(file->facts().layers[2].bits == 12);
-  REQUIRE(file->facts().bands.size() == 2);
-  CHECK(file->facts().bands[1].error.degrees == 40);
-  CHECK((*file->read_parts() == std::vector<std::string>{"house", "", "shed"}));
   CHECK(file->validate().empty());
-  const std::vector<std::byte> again = bytes_of(read_whole(*file));
+  WrittenFile read = read_whole(*file);
   std::vector<std::byte> golden(static_cast<std::size_t>((*source)->size()));
   REQUIRE((*source)->read(0, golden).ok());
-  CHECK((again == golden));
+  CHECK((bytes_of(read) == golden));
+  return read;
+}
+
+TEST_CASE("the golden files are read, and written to the byte") {
+  WrittenFile without = random_file(1, 6, 24), with = without;
+  with.content.images = some_images();
+  for (const auto& [name, written] :
+       {std::pair("version_2.crease", &without), std::pair("version_3.crease", &with)}) {
+    CAPTURE(name);
+    const WrittenFile file = golden_file(name, *written);
+    CHECK(file.blocks.size() == 6);
+    const ModelFacts& facts = file.content.facts;
+    CHECK(facts.triangle_count == 9'999'999'999);
+    REQUIRE(facts.layers.size() == 4);
+    CHECK(facts.layers[2].name == "uv");
+    CHECK(facts.layers[2].bits == 12);
+    REQUIRE(facts.bands.size() == 2);
+    CHECK(facts.bands[1].error.degrees == 40);
+    CHECK((file.content.parts == std::vector<std::string>{"house", "", "shed"}));
+    REQUIRE(file.content.images.size() == written->content.images.size());
+    for (std::size_t i = 0; i < file.content.images.size(); ++i) {
+      CHECK(*file.content.images[i].bytes == *written->content.images[i].bytes);
+    }
+  }
 }
 
 }  // namespace

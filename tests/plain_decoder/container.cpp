@@ -112,13 +112,15 @@ Head read_head(const Bytes& file) {
   constexpr std::array<std::uint8_t, 8> kMagic{0x89, 0x43, 0x52, 0x45, 0x41, 0x53, 0x45, 0x0a};
   Reader start(file);
   for (const std::uint8_t byte : kMagic) demand(start.u8() == byte, "not a file of this kind");
-  demand(start.u16() == 2, "not version 2");
+  const std::uint16_t version = start.u16();
+  demand(version == 2 || version == 3, "neither version 2 nor 3");
   start.u16();  // flags; below
   Head head;
   head.bytes = start.u32();
   head.file_bytes = start.u64();
   const std::uint64_t told = start.u64();
-  demand(head.bytes >= 144 && head.bytes <= kMaxHead, "the size of the head");
+  demand(head.bytes >= (version == 3 ? 168 : 144) && head.bytes <= kMaxHead,
+         "the size of the head");
   const Bytes whole = part_of(file, 0, head.bytes);
   Bytes covered = whole;
   covered.erase(covered.begin() + 24, covered.begin() + 32);
@@ -144,6 +146,11 @@ Head read_head(const Bytes& file) {
   head.materials = read_part(in);
   head.part_names = read_part(in);
   head.tables = read_part(in);
+  if (version == 3) {
+    head.image_list = read_part(in);
+    head.image_bytes = in.u64();
+    demand(head.image_list.bytes > 0 && head.image_bytes > 0, "version 3 without images");
+  }
   for (int l = 0; l < layers; ++l) head.layers.push_back(read_layer(in));
   for (int b = 0; b < bands; ++b) head.bands.push_back(read_band(in));
   const std::uint64_t pages = (std::uint64_t(head.blocks) + kBlocksOfPage - 1) / kBlocksOfPage;
@@ -262,7 +269,41 @@ Entry read_entry(Reader& in) {
   return entry;
 }
 
-// Reads page p. Its blocks lie behind it, and behind them is the next page or the file's end.
+// Where the blocks end: part names, the list of images and the images are behind them.
+std::uint64_t end_of_blocks(const Head& head) {
+  std::uint64_t end = head.file_bytes;
+  for (const std::uint64_t bytes :
+       {head.image_bytes, head.image_list.bytes, head.part_names.bytes}) {
+    demand(bytes <= end, "the size of names or images");
+    end -= bytes;
+  }
+  return end;
+}
+
+// "Images".
+std::vector<ImageOfFile> read_images(const Bytes& file, const Bytes& list, std::uint64_t offset) {
+  std::vector<ImageOfFile> images;
+  if (list.empty()) return images;
+  Reader in(list);
+  const std::uint32_t count = in.u32();
+  demand(count > 0, "no images");
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ImageOfFile image;
+    image.name = in.text();
+    const std::uint64_t bytes = in.u64(), told = in.u64();
+    demand(!image.name.empty() && bytes > 0, "an image without a name or bytes");
+    for (const ImageOfFile& other : images) demand(other.name != image.name, "a name twice");
+    image.bytes = part_of(file, offset, bytes);
+    offset += bytes;
+    demand(checksum(image.bytes) == told, "the checksum of an image");
+    images.push_back(image);
+  }
+  in.end();
+  demand(offset == file.size(), "images that do not end with the file");
+  return images;
+}
+
+// Reads page p. Its blocks lie behind it, and behind them is the next page or the part names.
 void read_page(const Bytes& file, const Head& head, std::size_t p, std::vector<Entry>& entries) {
   const PageReference& reference = head.pages[p];
   const Bytes bytes = part_of(file, reference.offset, reference.bytes);
@@ -287,7 +328,7 @@ void read_page(const Bytes& file, const Head& head, std::size_t p, std::vector<E
   }
   demand(ends.back() == dependencies, "dependencies of no block");
   const bool is_last = p + 1 == head.pages.size();
-  demand(offset == (is_last ? head.file_bytes - head.part_names.bytes : head.pages[p + 1].offset),
+  demand(offset == (is_last ? end_of_blocks(head) : head.pages[p + 1].offset),
          "blocks that do not end where the next page begins");
   for (std::uint32_t i = 0; i < count; ++i) {
     std::vector<std::uint32_t>& needs = entries[first + i].needs;
@@ -311,11 +352,12 @@ Container read_container(const Bytes& file) {
   std::uint64_t offset = head.bytes;
   container.materials = read_materials(read_part(file, offset, head.materials));
   container.tables = read_part(file, offset, head.tables);
-  demand(head.part_names.bytes <= head.file_bytes, "the size of the names");
-  std::uint64_t names = head.file_bytes - head.part_names.bytes;
-  demand(offset == (head.pages.empty() ? names : head.pages[0].offset),
+  std::uint64_t last = end_of_blocks(head);
+  demand(offset == (head.pages.empty() ? last : head.pages[0].offset),
          "page 0 is not behind names and tables");
-  container.part_names = read_part_names(read_part(file, names, head.part_names), head.parts);
+  container.part_names = read_part_names(read_part(file, last, head.part_names), head.parts);
+  const Bytes image_list = read_part(file, last, head.image_list);
+  container.images = read_images(file, image_list, last);
   for (std::size_t p = 0; p < head.pages.size(); ++p) read_page(file, head, p, container.entries);
   return container;
 }

@@ -44,7 +44,8 @@ struct Head {
   double step = 0;
   std::uint8_t grid_bits = 0;
   std::uint32_t parts = 0;
-  Part materials, part_names, tables;
+  Part materials, part_names, tables, image_list;
+  std::uint64_t image_bytes = 0;  // of all of them
   std::vector<Layer> layers;
   std::vector<Band> bands;
   std::vector<PageReference> pages;
@@ -74,6 +75,11 @@ struct Entry {
   std::vector<std::uint32_t> needs;
 };
 
+struct ImageOfFile {
+  std::string name;
+  Bytes bytes;
+};
+
 // Everything but payloads, which are bytes.
 struct Container {
   Head head;
@@ -81,6 +87,7 @@ struct Container {
   std::vector<std::string> part_names;
   Bytes tables;
   std::vector<Entry> entries;  // per block
+  std::vector<ImageOfFile> images;
 };
 
 // All checksums but those of payloads are verified. Throws Refused.

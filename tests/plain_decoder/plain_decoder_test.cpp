@@ -93,6 +93,12 @@ void check_facts(const BlockFile& file, const CodecModel& codec_model,
     CHECK(container.materials[i].texture == materials[i].base_color_texture);
   }
   CHECK(container.part_names == *file.read_parts());
+  const std::vector<ImageFile> images = *file.read_images();
+  REQUIRE(container.images.size() == images.size());
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    CHECK(container.images[i].name == images[i].name);
+    CHECK((container.images[i].bytes == *images[i].bytes));
+  }
   REQUIRE(container.head.bands.size() == facts.bands.size());
   for (std::size_t b = 0; b < facts.bands.size(); ++b) {
     CHECK(container.head.bands[b].contractions == facts.bands[b].contractions);
@@ -296,11 +302,14 @@ TEST_CASE("the plain decoder finds what the codec does, at vertices of many tria
 TEST_CASE("the plain decoder reads the golden files") {
   CHECK(check_file(file_bytes(golden("model_2.crease"))) == 2);
   // Its payloads are the letters "base" and "split".
-  const plain::Bytes example = file_bytes(golden("version_2.crease"));
-  const plain::Container container = plain::read_container(example);
-  REQUIRE(!container.entries.empty());
-  for (const plain::Entry& entry : container.entries) {
-    CHECK(plain::read_payload(example, entry).size() == entry.bytes);
+  for (const char* name : {"version_2.crease", "version_3.crease"}) {
+    const plain::Bytes example = file_bytes(golden(name));
+    const plain::Container container = plain::read_container(example);
+    REQUIRE(!container.entries.empty());
+    for (const plain::Entry& entry : container.entries) {
+      CHECK(plain::read_payload(example, entry).size() == entry.bytes);
+    }
+    CHECK(container.images.size() == (name[8] == '3' ? 2 : 0));
   }
 }
 
@@ -401,7 +410,12 @@ TEST_CASE("the plain decoder refuses the harmed payloads that the codec refuses"
 }
 
 TEST_CASE("the plain decoder refuses files that are cut or harmed") {
-  const std::vector<std::byte> good = small_case().bytes;
+  EncodedCase small = small_case();
+  small.mesh.images = {{"a.png", std::make_shared<const plain::Bytes>(5, std::byte{1})},
+                       {"b.png", std::make_shared<const plain::Bytes>(9, std::byte{2})}};
+  const std::vector<std::byte> good =
+      encoded_case(small.mesh, small.sequence, codings_of(small.mesh, kCoarsePrecision)).bytes;
+  CHECK(check_file(good) == 2);
   const auto is_refused = [](const std::vector<std::byte>& bytes) {
     try {
       plain::decode_model(bytes);

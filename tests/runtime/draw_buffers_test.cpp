@@ -15,6 +15,7 @@ struct PartCopy {
   std::vector<std::uint32_t> indices;
   std::vector<Vec3f> normals;
   std::vector<std::array<float, 4>> colors;
+  std::vector<std::array<float, 2>> texcoords;
 };
 
 template <typename T>
@@ -30,13 +31,15 @@ struct Copies {
   explicit Copies(const DrawList& list)
       : positions(copy_of(list.positions)), vertex_normals(copy_of(list.vertex_normals)) {
     for (auto [part, from] : {std::pair{&sn, &list.sn}, {&fn, &list.fn}, {&nsn, &list.nsn}}) {
-      *part = {copy_of(from->indices), copy_of(from->normals), copy_of(from->colors)};
+      *part = {copy_of(from->indices), copy_of(from->normals), copy_of(from->colors),
+               copy_of(from->texcoords)};
     }
   }
 
   template <typename T>
   static void fetch(std::vector<T>& to, std::span<const T> from, const std::vector<Range>& ranges,
                     std::size_t per_element) {
+    if (from.empty()) return;  // ranges of colours are those of texture coordinates, and back
     std::size_t end = 0;
     for (const Range& r : ranges) {
       REQUIRE(r.count > 0);
@@ -60,6 +63,9 @@ struct Copies {
     fetch(sn.colors, list.sn.colors, changes.sn_colors, 3);
     fetch(fn.colors, list.fn.colors, changes.fn_colors, 3);
     fetch(nsn.colors, list.nsn.colors, changes.nsn_colors, 3);
+    fetch(sn.texcoords, list.sn.texcoords, changes.sn_colors, 3);
+    fetch(fn.texcoords, list.fn.texcoords, changes.fn_colors, 3);
+    fetch(nsn.texcoords, list.nsn.texcoords, changes.nsn_colors, 3);
   }
 };
 
@@ -71,7 +77,7 @@ bool begins_with(const std::vector<T>& copy, std::span<const T> active) {
 
 bool same_part(const PartCopy& copy, const DrawPart& part) {
   return begins_with(copy.indices, part.indices) && begins_with(copy.normals, part.normals) &&
-         begins_with(copy.colors, part.colors);
+         begins_with(copy.colors, part.colors) && begins_with(copy.texcoords, part.texcoords);
 }
 
 // Positions of inactive slots are of no consequence.
@@ -134,8 +140,11 @@ void check_draw_list(const ProgressiveMesh& pm) {
   for (const AttributeLayer& layer : mesh.layers) {
     if (color == nullptr && layer.role == AttributeRole::Color) color = &layer;
   }
+  const std::uint32_t painted = painted_layer(mesh.layers, mesh.materials);
+  const AttributeLayer* uv = painted == kNone ? nullptr : &mesh.layers[painted];
   std::size_t t = 0;
   for (const DrawPart* part : {&list.sn, &list.fn, &list.nsn}) {
+    REQUIRE(part->texcoords.size() == (uv == nullptr ? 0 : part->indices.size()));
     REQUIRE(part->materials.size() ==
             (mesh.material_of_triangle.empty() ? 0 : part->triangle_count()));
     REQUIRE(part->colors.size() == (color == nullptr ? 0 : part->indices.size()));
@@ -155,6 +164,10 @@ void check_draw_list(const ProgressiveMesh& pm) {
                          : part == &list.fn ? part->normals[i]
                                             : part->normals[3 * i + k];
         REQUIRE(n == Vec3f{value[0], value[1], value[2]});
+        if (uv != nullptr) {
+          const auto at = uv->value(uv->of_corner[3 * t + k]);
+          REQUIRE(part->texcoords[3 * i + k] == std::array<float, 2>{at[0], at[1]});
+        }
         if (color == nullptr) continue;
         REQUIRE(part->colors[3 * i + k] == draw_color(color->value(color->of_corner[3 * t + k])));
       }

@@ -57,6 +57,7 @@ RendererCopy::RendererCopy(const DrawList& list)
     parts_[p].materials.assign(part.materials.begin(), part.materials.end());
     parts_[p].normals.assign(part.normals.begin(), part.normals.end());
     parts_[p].colors.assign(part.colors.begin(), part.colors.end());
+    parts_[p].texcoords.assign(part.texcoords.begin(), part.texcoords.end());
   }
 }
 
@@ -75,6 +76,7 @@ void RendererCopy::fetch(const DrawList& list, const DrawChanges& changes) {
     fetch_ranges(parts_[p].materials, part.materials, *indices[p], 1);
     fetch_ranges(parts_[p].normals, part.normals, *normals[p], kNormals[p]);
     fetch_ranges(parts_[p].colors, part.colors, *colors[p], 3);
+    fetch_ranges(parts_[p].texcoords, part.texcoords, *colors[p], 3);
   }
 }
 
@@ -85,6 +87,7 @@ std::string RendererCopy::difference(const DrawList& list) const {
     if (!begins_with(parts_[p].materials, part.materials)) return "materials";
     if (!begins_with(parts_[p].normals, part.normals)) return "normals";
     if (!begins_with(parts_[p].colors, part.colors)) return "colours";
+    if (!begins_with(parts_[p].texcoords, part.texcoords)) return "texture coordinates";
     for (const std::uint32_t slot : part.indices) {
       if (!(positions_[slot] == list.positions[slot])) return "position";
       if (p == 0 && !(vertex_normals_[slot] == list.vertex_normals[slot])) return "vertex normal";
@@ -105,6 +108,7 @@ std::vector<std::string> shown_triangles(const DrawList& list) {
         append(bytes, p == 0   ? list.vertex_normals[slot]
                       : p == 1 ? part.normals[t]
                                : part.normals[3 * t + k]);
+        if (!part.texcoords.empty()) append(bytes, part.texcoords[3 * t + k]);
         if (!part.colors.empty()) append(bytes, part.colors[3 * t + k]);
       }
       if (!part.materials.empty()) append(bytes, part.materials[t]);
@@ -120,6 +124,7 @@ std::vector<std::string> shown_triangles(const Mesh& mesh, const Grid& grid) {
   const auto color = std::find_if(mesh.layers.begin(), mesh.layers.end(), [](const auto& layer) {
     return layer.role == AttributeRole::Color;
   });
+  const std::uint32_t painted = painted_layer(mesh.layers, mesh.materials);
   std::vector<std::string> all;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     std::string bytes;
@@ -128,6 +133,11 @@ std::vector<std::string> shown_triangles(const Mesh& mesh, const Grid& grid) {
              draw_position(grid, grid.nearest(mesh.positions[index_of(mesh.triangles[t][k])])));
       const auto n = mesh.normals()->value(mesh.normals()->of_corner[3 * t + k]);
       append(bytes, Vec3f{n[0], n[1], n[2]});
+      if (painted != kNone) {
+        const AttributeLayer& layer = mesh.layers[painted];
+        const auto uv = layer.value(layer.of_corner[3 * t + k]);
+        append(bytes, std::array<float, 2>{uv[0], uv[1]});
+      }
       if (color != mesh.layers.end()) {
         append(bytes, draw_color(color->value(color->of_corner[3 * t + k])));
       }

@@ -21,12 +21,14 @@ class RendererCopy {
     std::vector<std::uint32_t> indices, materials;
     std::vector<Vec3f> normals;
     std::vector<std::array<float, 4>> colors;
+    std::vector<std::array<float, 2>> texcoords;
   };
   std::vector<Vec3f> positions_, vertex_normals_;
   PartCopy parts_[3];
 };
 
-// All triangles, sorted, each as the bytes of its positions, normals, colours and material.
+// All triangles, sorted, each as the bytes of its positions, normals, texture coordinates, colours
+// and material.
 std::vector<std::string> shown_triangles(const DrawList& list);
 std::vector<std::string> shown_triangles(const Mesh& mesh, const Grid& grid);
 

@@ -1,4 +1,5 @@
-// What a draw list shows, as the multiset of its triangles: corner positions and normals.
+// What a draw list shows, as the multiset of its triangles: corner positions, normals and texture
+// coordinates.
 #pragma once
 
 #include "crease/draw_changes.h"
@@ -32,6 +33,9 @@ inline void add_drawn(const DrawList& list, const std::array<Range, 3>& ranges, 
         corners.push_back(key(i == 0   ? list.vertex_normals[v]
                               : i == 1 ? part.normals[t]
                                        : part.normals[3 * t + k]));
+        if (part.texcoords.empty()) continue;
+        const std::array<float, 2>& uv = part.texcoords[3 * t + k];
+        corners.push_back({uv[0], uv[1], 0});
       }
       ++bag[corners];
     }
@@ -47,16 +51,30 @@ inline TriangleBag drawn(const DrawList& list) {
   return bag;
 }
 
+// That textures go by, or null where no material has one.
+inline const AttributeLayer* painted_layer_of(const Mesh& mesh) {
+  bool has_texture = false;
+  for (const Material& m : mesh.materials) has_texture |= !m.base_color_texture.empty();
+  for (const AttributeLayer& layer : mesh.layers) {
+    if (has_texture && layer.role == AttributeRole::TexCoord && layer.dimension == 2) return &layer;
+  }
+  return nullptr;
+}
+
 // What should be drawn. `place`: Vec3d to the Vec3f that a renderer gets.
 template <typename Place>
 TriangleBag drawn_of_mesh(const Mesh& mesh, Place place) {
   TriangleBag bag;
+  const AttributeLayer* painted = painted_layer_of(mesh);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     std::vector<FloatKey> corners;
     for (std::size_t k = 0; k < 3; ++k) {
       corners.push_back(key(place(mesh.positions[index_of(mesh.triangles[t][k])])));
       const auto n = mesh.normals()->value(mesh.normals()->of_corner[3 * t + k]);
       corners.push_back({n[0], n[1], n[2]});
+      if (painted == nullptr) continue;
+      const auto uv = painted->value(painted->of_corner[3 * t + k]);
+      corners.push_back({uv[0], uv[1], 0});
     }
     ++bag[corners];
   }

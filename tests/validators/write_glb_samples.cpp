@@ -4,6 +4,7 @@
 #include "crease/import.h"
 #include "io/gltf_sample.h"
 #include "support/mesh_zoo.h"
+#include "support/painted_sheet.h"
 #include "support/shared_data.h"
 
 #include <cstdio>
@@ -40,6 +41,12 @@ bool write_samples(const std::filesystem::path& folder) {
   if (!write(everything_mesh(), folder / "everything.glb")) return false;
   // More than 65,535 vertices: wide indices.
   if (!write(faceted_sphere(120, 200), folder / "many_vertices.glb")) return false;
+  Mesh painted = painted_sheet(3);
+  painted.materials.push_back({"again", {1, 0, 0, 1}, "quarters.png"});
+  painted.materials.push_back({"gone", {1, 1, 1, 1}, "gone.png"});
+  painted.material_of_triangle[3] = MaterialId{1};
+  painted.material_of_triangle[4] = MaterialId{2};
+  if (!write(painted, folder / "painted.glb")) return false;
   Mesh bare = hard_box(1);
   bare.layers.clear();
   if (!write(bare, folder / "no_normals.glb")) return false;

@@ -105,6 +105,33 @@ class Screenshot(tool.Case):
         model = self.write("sphere.obj", "\n".join(lines) + "\n")
         self.check_same_as_render(model, self.camera([2, -3, 1.5], [0, 0, 0], 0.5))
 
+    def painted_camera(self):
+        """As fine as it gets: borders in a texture may be off by more than surfaces are."""
+        return self.write("camera.json", json.dumps(
+            {"position": [0.5, 0.5, 1.6], "target": [0.5, 0.5, 0], "up": [0, 1, 0],
+             "vertical_fov": 40, "viewport": [480, 320], "pixels": 0.01}))
+
+    def test_textures_are_there_in_every_mode(self):
+        mesh, camera = self.painted(), self.painted_camera()
+        model = self.path("painted.crease")
+        self.json("build", mesh, "-o", model)
+        os.remove(self.path("quarters.png"))  # the file has it
+        for mode in ("block", "vertex", "linear"):
+            self.check_same_as_render(model, camera, "--mode", mode)
+            seen = picture.Picture(self.path("seen.png"))
+            colors = [seen.pixel(x, y) for x, y in
+                      ((170, 90), (310, 90), (170, 230), (310, 230))]
+            red, green, blue, yellow = colors
+            self.assertGreater(red[0], 2 * max(red[1:]), (mode, colors))
+            self.assertGreater(green[1], 2 * max(green[0], green[2]), (mode, colors))
+            self.assertGreater(blue[2], 2 * max(blue[:2]), (mode, colors))
+            self.assertGreater(min(yellow[:2]), 2 * yellow[2], (mode, colors))
+
+    def test_a_texture_that_is_missing_is_told_and_waits_for_nobody(self):
+        model = self.path("painted.crease")
+        self.json("build", self.painted(texture="gone.png"), "-o", model)
+        self.check_same_as_render(model, self.painted_camera())
+
     def test_mesh_file_of_a_city(self):
         self.check_same_as_render(self.city(), self.camera([60, -160, 110], [0, 0, 0]))
 

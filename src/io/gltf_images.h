@@ -1,0 +1,52 @@
+// What a glTF's materials are painted with: the images inside the file, which texture coordinates
+// they go by, and how those are transformed.
+#pragma once
+
+#include "crease/mesh.h"
+#include "io/gltf_document.h"
+#include "io/json.h"
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+// How a primitive is painted: by TEXCOORD_set after KHR_texture_transform.
+struct TextureUse {
+  std::size_t set = 0;
+  // u' = matrix[0] * u + matrix[1] * v + offset[0], v' = matrix[2] * u + ..., v down.
+  std::array<float, 4> matrix{1, 0, 0, 1};
+  std::array<float, 2> offset{};
+};
+TextureUse texture_use(const Json& texture_info);
+
+// The textureInfo of a material's base colour, or null.
+const Json& base_color_texture(const Json& material);
+
+class GltfImages {
+ public:
+  GltfImages(const Source& source, const Json& json, GltfReader& reader)
+      : source_(source), json_(json), reader_(reader) {}
+
+  // The name of the image that `texture_info` refers to, or empty. One inside the file is taken the
+  // first time; others have their uri for a name. What is broken is a note.
+  std::string take(const Json& texture_info);
+
+  std::vector<ImageFile> images;
+  std::vector<std::string> notes;
+
+ private:
+  std::string take_image(std::size_t index);
+  Result<std::vector<std::byte>> bytes_of(const Json& image, const std::string& place);
+
+  const Source& source_;
+  const Json& json_;
+  GltfReader& reader_;
+  std::map<std::size_t, std::string> name_of_image_;
+  std::size_t taken_bytes_ = 0;
+};
+
+}  // namespace crease

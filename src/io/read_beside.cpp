@@ -1,0 +1,49 @@
+#include "io/read_beside.h"
+
+#include "io/text.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <system_error>
+
+namespace crease {
+
+Result<std::vector<std::byte>> read_in_folder(const std::filesystem::path& folder,
+                                              const std::string& name, std::size_t max_bytes) {
+  namespace fs = std::filesystem;
+  const auto outside = [&] {
+    return fail(Error::BadValue, in_quotes(name) + " is not a file beside it");
+  };
+  const auto missing = [&] { return fail(Error::NotFound, "no file " + in_quotes(name)); };
+  if (name.empty() || name.find('\0') != name.npos || name.find("://") != name.npos ||
+      name.find('\\') != name.npos) {
+    return outside();
+  }
+  const fs::path relative(name);
+  if (relative.is_absolute()) return outside();
+  if (std::ranges::find(relative, fs::path("..")) != relative.end()) return outside();
+  // A symbolic link could still lead out of the folder.
+  std::error_code error;
+  const fs::path root = fs::canonical(folder.empty() ? "." : folder, error);
+  if (error) return fail(Error::NotFound, "no folder to look in");
+  const fs::path path = fs::canonical(root / relative, error);
+  if (error) return missing();
+  const auto [in_root, in_path] = std::ranges::mismatch(root, path);
+  if (in_root != root.end()) return outside();
+  if (!fs::is_regular_file(path, error)) return outside();
+
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!error && size > max_bytes) {
+    return fail(Error::OverLimit,
+                in_quotes(name) + " has more than " + std::to_string(max_bytes) + " bytes");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (error || !file) return fail(Error::ReadFailed, "cannot read " + in_quotes(name));
+  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  return bytes;
+}
+
+}  // namespace crease

@@ -1,0 +1,79 @@
+#include "render/gl_materials.h"
+
+#include "render/palette.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace crease {
+
+namespace {
+
+// Colours are decoded when they are read, so that filters average light.
+GlTexture make_array(const PixelSize& size, int layers) {
+  GlTexture texture = GlTexture::make();
+  glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
+  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_SRGB8_ALPHA8, size.width, size.height, layers, 0, GL_RGBA,
+               GL_UNSIGNED_BYTE, nullptr);
+  glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
+  glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_REPEAT);
+  return texture;
+}
+
+void set_layer(const GlTexture& texture, int layer, const Image& image) {
+  glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, image.width, image.height, 1, GL_RGBA,
+                  GL_UNSIGNED_BYTE, image.rgba.data());
+}
+
+}  // namespace
+
+TextureLimits texture_limits(const GlLimits& gl) {
+  GLint layers = 256;
+  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);
+  return {.max_side = gl.max_texture_size, .max_layers = layers};
+}
+
+void GlMaterials::fill(std::span<const Material> materials, const Textures& textures) {
+  is_filled_ = true;
+  texture_bytes_ = 0;
+  arrays_ = {};
+  for (std::size_t a = 0; a < textures.size_of_array.size(); ++a) {
+    const PixelSize& size = textures.size_of_array[a];
+    arrays_[a] = make_array(size, textures.layers_of_array[a]);
+    const std::size_t bytes = 4 * std::size_t(size.width) * std::size_t(size.height) *
+                              std::size_t(textures.layers_of_array[a]);
+    texture_bytes_ += bytes + bytes / 3;
+  }
+  for (std::size_t i = 0; i < textures.images.size(); ++i) {
+    const TexturePlace& place = textures.place_of_image[i];
+    set_layer(arrays_[std::size_t(place.array)], place.layer, textures.images[i]);
+  }
+  for (const GlTexture& array : arrays_) {
+    if (!array) continue;
+    glBindTexture(GL_TEXTURE_2D_ARRAY, array.id());
+    glGenerateMipmap(GL_TEXTURE_2D_ARRAY);
+  }
+  std::vector<std::array<float, 4>> texels;
+  const std::vector<std::array<float, 4>> colors = material_colors(materials);
+  for (std::size_t m = 0; m < colors.size(); ++m) {
+    const TexturePlace place =
+        m < textures.place_of_material.size() ? textures.place_of_material[m] : TexturePlace{};
+    texels.push_back(colors[m]);
+    texels.push_back({float(place.array), float(place.layer), 0, 0});
+  }
+  texels_ = upload(std::span<const std::array<float, 4>>(texels), GL_RGBA32F);
+}
+
+void GlMaterials::bind_textures(int first_unit) const {
+  for (std::size_t a = 0; a < arrays_.size(); ++a) {
+    glActiveTexture(GLenum(GL_TEXTURE0 + first_unit + int(a)));
+    glBindTexture(GL_TEXTURE_2D_ARRAY, arrays_[a].id());
+  }
+}
+
+}  // namespace crease
