@@ -5,6 +5,7 @@
 #   TBB::tbb                parallel: threads
 #   embree                  measure: closest points
 #   zstd, lzma              io: compressed inputs (plain -l names)
+#   draco, meshoptimizer    io: compressed glTF (plain -l names)
 #   PNG::PNG                render: pictures
 #   PkgConfig::CREASE_JPEG  render: textures
 #   PkgConfig::CREASE_GL    render: epoxy and EGL

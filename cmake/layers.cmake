@@ -49,7 +49,7 @@ set(CREASE_HEADERS_view      viewer.h)
 set(CREASE_RUNTIME_FOLDERS base mesh hierarchy assemble codec stream runtime)
 
 # Third-party headers that live in one place only: <prefix...> may be included by these folders.
-set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h turbojpeg.h lzma.h tbb oneapi nlohmann CLI zstd.h
+set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h turbojpeg.h lzma.h draco meshoptimizer.h tbb oneapi nlohmann CLI zstd.h
   curl microhttpd.h GLFW imgui.h backends)
 set(CREASE_THIRD_PARTY_embree3  measure)
 set(CREASE_THIRD_PARTY_epoxy    render)
@@ -59,6 +59,8 @@ set(CREASE_THIRD_PARTY_png.h    render)
 set(CREASE_THIRD_PARTY_turbojpeg.h render)
 set(CREASE_THIRD_PARTY_lzma.h   io)
 set(CREASE_THIRD_PARTY_zstd.h   io)
+set(CREASE_THIRD_PARTY_draco    io)
+set(CREASE_THIRD_PARTY_meshoptimizer.h io)
 set(CREASE_THIRD_PARTY_tbb      parallel)
 set(CREASE_THIRD_PARTY_oneapi   parallel)
 set(CREASE_THIRD_PARTY_nlohmann io render serve view cli)

@@ -10,10 +10,10 @@ set -eu
 tools="build-essential cmake ninja-build ccache pkg-config git python3 xz-utils zstd
   clang-14 libclang-rt-14-dev libc++-14-dev libc++abi-14-dev clang-format-14 clang-tidy-14"
 libraries="libtbb-dev libembree-dev libcli11-dev nlohmann-json3-dev libfast-float-dev libxxhash-dev
-  libzstd-dev liblzma-dev libpng-dev libturbojpeg0-dev libstb-dev libepoxy-dev libegl-dev libgl1-mesa-dri
+  libzstd-dev liblzma-dev libdraco-dev libmeshoptimizer-dev libpng-dev libturbojpeg0-dev libstb-dev libepoxy-dev libegl-dev libgl1-mesa-dri
   libeigen3-dev libcurl4-openssl-dev libmicrohttpd-dev libglfw3-dev libimgui-dev libgl1"
 tests="doctest-dev librapidcheck-dev nginx-light openssl xvfb xdotool"
-peers="libvtk9-dev libcgal-dev libopenmesh-dev libdraco-dev python3-matplotlib"
+peers="libvtk9-dev libcgal-dev libopenmesh-dev python3-matplotlib"
 
 packages="$tools $libraries $tests"
 [ "${1:-}" = bench ] && packages="$packages $peers"

@@ -1,3 +1,4 @@
+#include "io/gltf_compression.h"
 #include "io/gltf_document.h"
 
 #include <algorithm>
@@ -17,6 +18,8 @@ enum ComponentType : std::size_t {
   kUnsignedInt = 5125,
   kFloat = 5126,
 };
+
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
 std::size_t bytes_of_component(std::size_t type) {
   switch (type) {
@@ -55,6 +58,21 @@ float normalized_component(double value, double largest) {
   return static_cast<float>(std::max(value / largest, -1.0));
 }
 
+double largest_of(std::size_t type) {
+  switch (type) {
+    case kByte:
+      return 127;
+    case kUnsignedByte:
+      return 255;
+    case kShort:
+      return 32767;
+    case kUnsignedShort:
+      return 65535;
+    default:
+      return 4294967295.0;
+  }
+}
+
 // One component as a float (3.6.2.2: c / 255, max(c / 127, -1) and so on) or as an index.
 template <typename T>
 T component(const std::byte* at, std::size_t type, bool normalized) {
@@ -71,23 +89,23 @@ T component(const std::byte* at, std::size_t type, bool normalized) {
     switch (type) {
       case kByte: {
         const auto value = load<std::int8_t>(at);
-        return normalized ? normalized_component(value, 127) : float(value);
+        return normalized ? normalized_component(value, largest_of(type)) : float(value);
       }
       case kUnsignedByte: {
         const auto value = load<std::uint8_t>(at);
-        return normalized ? normalized_component(value, 255) : float(value);
+        return normalized ? normalized_component(value, largest_of(type)) : float(value);
       }
       case kShort: {
         const auto value = load<std::int16_t>(at);
-        return normalized ? normalized_component(value, 32767) : float(value);
+        return normalized ? normalized_component(value, largest_of(type)) : float(value);
       }
       case kUnsignedShort: {
         const auto value = load<std::uint16_t>(at);
-        return normalized ? normalized_component(value, 65535) : float(value);
+        return normalized ? normalized_component(value, largest_of(type)) : float(value);
       }
       case kUnsignedInt: {
         const auto value = load<std::uint32_t>(at);
-        return normalized ? normalized_component(value, 4294967295.0) : float(value);
+        return normalized ? normalized_component(value, largest_of(type)) : float(value);
       }
       default:
         return load<float>(at);
@@ -176,13 +194,26 @@ Result<std::span<const std::byte>> GltfReader::view_bytes(const Json& view_index
   }
   const Json& json = views[*index];
   const std::string here = place_of("bufferViews", *index);
+  const Json& compressed = at(at(json, "extensions"), kMeshopt);
+  if (!compressed.is_object()) return bytes_of(json, here);
+  const auto known = decoded_views_.find(*index);
+  if (known != decoded_views_.end()) return std::span<const std::byte>(known->second);
+  const Result<std::span<const std::byte>> encoded = bytes_of(compressed, here);
+  if (!encoded.ok()) return encoded.failure();
+  Result<std::vector<std::byte>> decoded = decode_meshopt(source_, here, compressed, *encoded);
+  if (!decoded.ok()) return decoded.failure();
+  return std::span<const std::byte>(decoded_views_[*index] = *std::move(decoded));
+}
+
+Result<std::span<const std::byte>> GltfReader::bytes_of(const Json& range,
+                                                        const std::string& place) {
   Result<std::span<const std::byte>> bytes =
-      buffer(as_index(at(json, "buffer")).value_or(std::size_t(-1)), here + ".buffer");
+      buffer(as_index(at(range, "buffer")).value_or(std::size_t(-1)), place + ".buffer");
   if (!bytes.ok()) return bytes.failure();
-  const std::size_t offset = as_index(at(json, "byteOffset")).value_or(0);
-  const std::size_t length = as_index(at(json, "byteLength")).value_or(0);
+  const std::size_t offset = as_index(at(range, "byteOffset")).value_or(0);
+  const std::size_t length = as_index(at(range, "byteLength")).value_or(0);
   if (offset > bytes->size() || length > bytes->size() - offset) {
-    return fail_at_place(Error::BadValue, source_, here,
+    return fail_at_place(Error::BadValue, source_, place,
                          "reaches to byte " + std::to_string(offset) + " + " +
                              std::to_string(length) + " of a buffer of " +
                              std::to_string(bytes->size()));
@@ -199,7 +230,9 @@ Result<GltfReader::View> GltfReader::view_of(const Json& owner, const std::strin
   const Json& json = at(at(document_.json, "bufferViews"), *as_index(index));
   const std::string here = place_of("bufferViews", *as_index(index));
   View view;
-  view.stride = as_index(at(json, "byteStride")).value_or(value_bytes);
+  const Json& compressed = at(at(json, "extensions"), kMeshopt);
+  const Json& layout = compressed.is_object() ? compressed : json;
+  view.stride = as_index(at(layout, "byteStride")).value_or(value_bytes);
   const std::size_t offset = as_index(at(owner, "byteOffset")).value_or(0);
   if (view.stride < value_bytes) {
     return fail_at_place(Error::BadValue, source_, here + ".byteStride",
@@ -270,6 +303,22 @@ Result<std::vector<T>> GltfReader::read(const Json& accessor, const Layout& layo
   return values;
 }
 
+// Stored numbers as what the accessor says they are.
+Result<GltfReader::Floats> GltfReader::given_as(const Floats& given, const Layout& layout,
+                                                const std::string& place) const {
+  if (given.components != layout.components || given.count() != layout.count) {
+    return fail_at_place(Error::BadValue, source_, place,
+                         "decoded are " + std::to_string(given.count()) + " values of " +
+                             std::to_string(given.components) + " components");
+  }
+  Floats floats = given;
+  floats.integers = layout.component_type != kFloat && !layout.normalized;
+  if (!layout.normalized) return floats;
+  for (float& x : floats.values)
+    x = normalized_component(double(x), largest_of(layout.component_type));
+  return floats;
+}
+
 Result<GltfReader::Floats> GltfReader::floats(const Json& accessor_index,
                                               std::size_t min_components,
                                               std::size_t max_components,
@@ -285,6 +334,9 @@ Result<GltfReader::Floats> GltfReader::floats(const Json& accessor_index,
   if (layout->components < min_components || layout->components > max_components) {
     return fail_at_place(Error::BadFormat, source_, here,
                          as_text(at(accessors[*index], "type")) + " cannot be used here");
+  }
+  if (const auto given = given_floats_.find(*index); given != given_floats_.end()) {
+    return given_as(given->second, *layout, here);
   }
   Result<std::vector<float>> values = read<float>(accessors[*index], *layout, here);
   if (!values.ok()) return values.failure();
@@ -306,6 +358,13 @@ Result<std::vector<std::uint32_t>> GltfReader::indices(const Json& accessor_inde
   if (layout->components != 1 ||
       (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt)) {
     return fail_at_place(Error::BadFormat, source_, here, "not an accessor of indices");
+  }
+  if (const auto given = given_indices_.find(*index); given != given_indices_.end()) {
+    if (given->second.size() != layout->count) {
+      return fail_at_place(Error::BadValue, source_, here,
+                           "decoded are " + std::to_string(given->second.size()) + " indices");
+    }
+    return given->second;
   }
   return read<std::uint32_t>(accessors[*index], *layout, here);
 }

@@ -14,8 +14,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crease {
@@ -69,6 +71,17 @@ class GltfReader {
   // Of the buffers that were loaded so far.
   std::size_t buffer_bytes() const;
 
+  // From here on floats() and indices() give this for the accessor: what its primitive decoded.
+  // Until the next forget_given().
+  void give(std::size_t accessor, Floats values) { given_floats_[accessor] = std::move(values); }
+  void give(std::size_t accessor, std::vector<std::uint32_t> indices) {
+    given_indices_[accessor] = std::move(indices);
+  }
+  void forget_given() {
+    given_floats_.clear();
+    given_indices_.clear();
+  }
+
   // Components a value of the accessor, 0 if there is no such accessor or it holds matrices.
   std::size_t components_of(const Json& accessor_index) const;
 
@@ -90,6 +103,10 @@ class GltfReader {
 
   Result<Layout> layout_of(const Json& accessor, const std::string& place) const;
   Result<std::span<const std::byte>> buffer(std::size_t index, const std::string& place);
+  // What `range` has of its buffer: a bufferView, or the extension that compresses one.
+  Result<std::span<const std::byte>> bytes_of(const Json& range, const std::string& place);
+  Result<Floats> given_as(const Floats& given, const Layout& layout,
+                          const std::string& place) const;
   Result<View> view_of(const Json& owner, const std::string& place, std::size_t count,
                        std::size_t value_bytes);
   template <typename T>
@@ -98,6 +115,9 @@ class GltfReader {
   const Source& source_;
   const GltfDocument& document_;
   std::vector<Buffer> buffers_;
+  std::map<std::size_t, std::vector<std::byte>> decoded_views_;  // those that are compressed
+  std::map<std::size_t, Floats> given_floats_;
+  std::map<std::size_t, std::vector<std::uint32_t>> given_indices_;
 };
 
 }  // namespace crease

@@ -1,5 +1,6 @@
 // glTF 2.0: .gltf, .glb, and the GLB inside a .b3dm. Coordinates stay as they are (y up).
 #include "io/gltf_attributes.h"
+#include "io/gltf_compression.h"
 #include "io/gltf_document.h"
 #include "io/gltf_images.h"
 #include "io/gltf_scene.h"
@@ -14,12 +15,22 @@ namespace crease {
 namespace {
 
 // Extensions that a file may require although nothing here depends on them: materials, textures
-// and lights change no triangle. KHR_mesh_quantization and CESIUM_RTC are read.
+// and lights change no triangle. KHR_mesh_quantization, CESIUM_RTC and the two compressions are
+// read.
 bool is_harmless(const std::string& extension) {
-  static constexpr std::array kPrefixes = {
-      "KHR_materials_", "KHR_texture_",      "EXT_texture_",           "MSFT_texture_",
-      "KHR_lights_",    "KHR_xmp",           "KHR_mesh_quantization",  "CESIUM_RTC",
-      "MSFT_lod",       "EXT_mesh_features", "EXT_structural_metadata"};
+  static constexpr std::array kPrefixes = {"KHR_materials_",
+                                           "KHR_texture_",
+                                           "EXT_texture_",
+                                           "MSFT_texture_",
+                                           "KHR_lights_",
+                                           "KHR_xmp",
+                                           "KHR_mesh_quantization",
+                                           "CESIUM_RTC",
+                                           "MSFT_lod",
+                                           "EXT_mesh_features",
+                                           "EXT_structural_metadata",
+                                           "EXT_meshopt_compression",
+                                           "KHR_draco_mesh_compression"};
   return std::ranges::any_of(kPrefixes, [&](const char* p) { return extension.starts_with(p); });
 }
 
@@ -150,6 +161,9 @@ class MeshBuilder {
     if (mode > 6) return fail_at_place(Error::BadValue, source_, place + ".mode", "unknown");
     if (size_of(at(primitive, "targets")) > 0) ++morphed_primitives_;
 
+    reader_.forget_given();
+    Status decompressed = decompress(primitive, place);
+    if (!decompressed.ok()) return decompressed;
     const Json& attributes = at(primitive, "attributes");
     const std::string attributes_place = place + ".attributes";
     const std::string position_place = attributes_place + ".POSITION";
@@ -211,6 +225,40 @@ class MeshBuilder {
     return add_material(primitive, place, raw_.triangles.size() - first_triangle);
   }
 
+  // What KHR_draco_mesh_compression holds of a primitive takes the place of its accessors' values,
+  // if they have none.
+  Status decompress(const Json& primitive, const std::string& place) {
+    const Json& draco = at(at(primitive, "extensions"), "KHR_draco_mesh_compression");
+    const Json& accessors = at(json_, "accessors");
+    const auto position = as_index(at(at(primitive, "attributes"), "POSITION"));
+    if (!draco.is_object() || !position || *position >= size_of(accessors)) return Done{};
+    if (at(accessors[*position], "bufferView").is_number()) return Done{};
+    const std::string here = place + ".extensions.KHR_draco_mesh_compression";
+    const auto encoded = reader_.view_bytes(at(draco, "bufferView"), here);
+    if (!encoded.ok()) return encoded.failure();
+    std::vector<std::uint32_t> ids;
+    std::vector<std::size_t> targets;
+    const Json& of_draco = at(draco, "attributes");
+    for (auto it = of_draco.begin(); of_draco.is_object() && it != of_draco.end(); ++it) {
+      const auto id = as_index(it.value());
+      const auto accessor = as_index(at(at(primitive, "attributes"), it.key().c_str()));
+      if (!id || *id > kNone || !accessor) {
+        return fail_at_place(Error::BadValue, source_, here + ".attributes", in_quotes(it.key()));
+      }
+      ids.push_back(static_cast<std::uint32_t>(*id));
+      targets.push_back(*accessor);
+    }
+    Result<DracoPrimitive> decoded = decode_draco(source_, here, *encoded, ids, most_values());
+    if (!decoded.ok()) return decoded.failure();
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      reader_.give(targets[i], std::move(decoded->attributes[i]));
+    }
+    if (const auto indices = as_index(at(primitive, "indices"))) {
+      reader_.give(*indices, std::move(decoded->indices));
+    }
+    return Done{};
+  }
+
   Status add_material(const Json& primitive, const std::string& place, std::size_t count) {
     std::uint32_t material = kNone;  // none given: settled at the end
     if (!at(primitive, "material").is_null()) {
@@ -239,9 +287,12 @@ class MeshBuilder {
 
   // Nodes share meshes and primitives share accessors, so a small file can ask for any amount of
   // memory. A thousand times its size is more than instancing needs.
+  std::size_t most_values() const {
+    return std::min<std::size_t>((std::size_t(1) << 20) + 1000 * source_.bytes.size(),
+                                 std::size_t(1) << 28);
+  }
   bool within_limit(std::size_t instance_count, std::size_t vertex_count, std::size_t run) {
-    const std::size_t budget = std::min<std::size_t>(
-        (std::size_t(1) << 20) + 1000 * source_.bytes.size(), std::size_t(1) << 28);
+    const std::size_t budget = most_values();
     const std::size_t largest = std::max(vertex_count, run);
     if (largest > budget || instance_count > budget / std::max<std::size_t>(largest, 1)) {
       return false;

@@ -120,7 +120,7 @@ void CutDrawing::refresh_part(ActiveCut& cut, const Geomorphs& geomorphs, Part p
     }
     for (std::uint32_t k = 0; texcoord_layer != kNone && k < 3; ++k) {
       const std::size_t value = cut.value_index(part, corner + k, texcoord_layer);
-      const std::span<const float> uv = value_at(hierarchy.layers[texcoord_layer], value);
+      const StoredValue uv = hierarchy.layers[texcoord_layer].values[value];
       part.texcoords[3 * t + k] = {uv[0], uv[1]};
     }
   };
