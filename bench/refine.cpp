@@ -94,12 +94,18 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
     return false;
   }
   Result<Opened> opened = open_built(*std::move(source));
-  if (!opened.ok()) return false;
+  if (!opened.ok()) {
+    std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), opened.failure().message.c_str());
+    return false;
+  }
   const Mesh& decoded = opened->model.mesh;
   const Box box = box_of(decoded.positions);
   const std::size_t vertices = decoded.vertex_count(), triangles = decoded.triangle_count();
   Result<MeshHierarchy> built = build_hierarchy(decoded, opened->model.sequence, {});
-  if (!built.ok()) return false;
+  if (!built.ok()) {
+    std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), built.failure().message.c_str());
+    return false;
+  }
   *opened = {};
   const auto hierarchy = std::make_shared<const MeshHierarchy>(*std::move(built));
   const bool is_city = entry.kind == "city";
