@@ -184,6 +184,7 @@ class BlockCoder {
   void code_categories();
   void code_derived();
   void code_layer(const BlockLayer& layer, std::vector<CodedValue>& values, std::size_t l);
+  bool knows_corners(const BlockLayer& layer, std::uint32_t v) const;
   void code_vertex(const BlockLayer& layer, std::vector<CodedValue>& values, std::size_t l,
                    LayerModels& models, std::uint32_t v);
   CodedValue code_value(const BlockLayer& layer, LayerModels& models, const CodedValue& value,

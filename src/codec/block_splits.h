@@ -92,19 +92,32 @@ template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::code_flag(std::uint32_t v, bool fan, bool splits) {
   const std::size_t kind = !fan ? 0 : ring_.closed ? 1 : 2;
   const std::size_t generation = std::min<std::size_t>(generation_[v], kGenerations - 1);
-  double size = 0, split_around = 0, corners = 0;
+  // Whole numbers below 2^53, so that the order of sums does not matter.
+  std::int64_t whole_size = 0, split_corners = 0, corner_count = 0;
   const Vec3i& center = mesh_.positions[v];
-  const std::size_t count = std::min(around_[v].size(), kLargestRing);
-  for (const std::uint32_t t : around_[v].first(count)) {
-    for (const std::uint32_t w : mesh_.triangles[t]) {
-      if (w == v) continue;
-      const Vec3i& p = mesh_.positions[w];
-      size += std::abs(double(p.x) - center.x) + std::abs(double(p.y) - center.y) +
-              std::abs(double(p.z) - center.z);
-      split_around += generation_[w] > 0;
-      corners += 1;
+  const auto count_corner = [&](std::uint32_t w, std::int64_t times) {
+    const Vec3i& p = mesh_.positions[w];
+    whole_size += times * (std::abs(std::int64_t(p.x) - center.x) +
+                           std::abs(std::int64_t(p.y) - center.y) +
+                           std::abs(std::int64_t(p.z) - center.z));
+    split_corners += generation_[w] > 0 ? times : 0;
+    corner_count += times;
+  };
+  if (fan) {  // all but the ends of an open one are corners of two triangles
+    for (const std::uint32_t w : ring_.vertices) count_corner(w, 2);
+    if (!ring_.closed) {
+      count_corner(ring_.vertices.front(), -1);
+      count_corner(ring_.vertices.back(), -1);
+    }
+  } else {
+    const std::size_t count = std::min(around_[v].size(), kLargestRing);
+    for (const std::uint32_t t : around_[v].first(count)) {
+      for (const std::uint32_t w : mesh_.triangles[t]) {
+        if (w != v) count_corner(w, 1);
+      }
     }
   }
+  const double size = static_cast<double>(whole_size), corners = static_cast<double>(corner_count);
   std::size_t size_class = 0, around_class = 0;
   if (corners > 0) {
     double limit = mean_size_ * corners * 0.35;
@@ -112,7 +125,7 @@ bool BlockCoder<Coder, Guide>::code_flag(std::uint32_t v, bool fan, bool splits)
       ++size_class;
       limit *= 1.25;
     }
-    around_class = 1 + static_cast<std::size_t>(3.99 * split_around / corners);
+    around_class = 1 + static_cast<std::size_t>(3.99 * static_cast<double>(split_corners) / corners);
   }
   const std::size_t valence = std::min<std::size_t>(around_[v].size(), kValences - 1);
   MixedBit<4> bit({&flag_models_.by_size[generation][kind][size_class],

@@ -25,31 +25,41 @@ void BlockCoder<Coder, Guide>::code_layer(const BlockLayer& layer, std::vector<C
     code_vertex(layer, values, l, models, v);
 }
 
+// Whether all corners at v are known.
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::knows_corners(const BlockLayer& layer, std::uint32_t v) const {
+  for (const std::uint32_t t : around_[v]) {
+    if (!is_known_[3 * t + corner_of(mesh_.triangles[t], v)] &&
+        !(layer.is_normal && mesh_.derived[t])) {
+      return false;
+    }
+  }
+  return true;
+}
+
 // The corners at one vertex. Mostly they share one value; else each is told to be like one that is
 // known: beside it, at the coarse end, or at another corner of the triangle.
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<CodedValue>& values,
                                            std::size_t l, LayerModels& models, std::uint32_t v) {
   const auto shows = [&](std::uint32_t t) { return !(layer.is_normal && mesh_.derived[t]); };
+  if (knows_corners(layer, v)) return;
   corners_.clear();
   const bool fan = find_ring(mesh_.triangles, around_[v], v, ring_);
-  std::size_t unknown = 0;
   CodedValue known{};
   std::size_t known_values = 0;  // distinct ones, up to two
   for (std::uint32_t t : fan ? std::span<const std::uint32_t>(ring_.triangles) : around_[v]) {
     if (!shows(t)) continue;
     const std::uint32_t corner = 3 * t + std::uint32_t(corner_of(mesh_.triangles[t], v));
     corners_.push_back(corner);
-    if (!is_known_[corner]) {
-      ++unknown;
-    } else if (known_values == 0) {
+    if (!is_known_[corner]) continue;
+    if (known_values == 0) {
       known = values[corner];
       known_values = 1;
     } else if (values[corner] != known) {
       known_values = 2;
     }
   }
-  if (unknown == 0) return;
   const auto value_of = [&](std::uint32_t corner) {
     CodedValue value{};
     if constexpr (Coder::kEncodes) value = guide_.value(l, corner / 3, corner % 3);
