@@ -12,8 +12,7 @@ set(CREASE_FALSE_WARNINGS
 # which takes half the time; so names in anonymous namespaces differ within a folder.
 #
 # Floating point follows the source to the letter everywhere (no contraction into FMA), so that the
-# same input gives the same bytes with every compiler. That nobody asks for errno or traps changes
-# no result and lets roots be taken four at a time.
+# same input gives the same bytes with every compiler.
 function(crease_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
   foreach(dependency IN LISTS ARG_DEPENDS)
@@ -26,8 +25,7 @@ function(crease_module name)
   target_include_directories(crease_${name}_objects
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
-  target_compile_options(crease_${name}_objects PRIVATE -ffp-contract=off -fno-math-errno
-                         -fno-trapping-math ${CREASE_FALSE_WARNINGS})
+  target_compile_options(crease_${name}_objects PRIVATE -ffp-contract=off ${CREASE_FALSE_WARNINGS})
   if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # GCC takes what several files are put together in for a header.
     target_compile_options(crease_${name}_objects PRIVATE -Wno-subobject-linkage)
@@ -85,8 +83,7 @@ function(crease_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;FOLDERS;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_options(${name} PRIVATE -ffp-contract=off -fno-math-errno
-                         -fno-trapping-math ${CREASE_FALSE_WARNINGS})
+  target_compile_options(${name} PRIVATE -ffp-contract=off ${CREASE_FALSE_WARNINGS})
   set(folders)
   foreach(folder IN LISTS ARG_FOLDERS)
     crease_closure(${folder} closure)

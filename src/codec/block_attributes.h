@@ -40,11 +40,17 @@ Vec3d BlockCoder<Coder, Guide>::twice_area(std::uint32_t t) const {
   return cross(step(1), step(2));
 }
 
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::find_areas() {
+  areas_.resize(mesh_.triangles.size());
+  for (std::uint32_t t = 0; t < areas_.size(); ++t) areas_[t] = twice_area(t);
+}
+
 // By how much two triangles are turned against each other: not, a little, much, very much.
 template <class Coder, class Guide>
 std::size_t BlockCoder<Coder, Guide>::bend(std::uint32_t t, std::uint32_t other) const {
   constexpr double kCosine2[] = {0.9999, 0.95, 0.5};
-  const Vec3d a = twice_area(t), b = twice_area(other);
+  const Vec3d &a = areas_[t], &b = areas_[other];
   const double cosine = dot(a, b), lengths2 = dot(a, a) * dot(b, b);
   if (cosine < 0) return 3;
   for (std::size_t i = 0; i < 3; ++i) {
