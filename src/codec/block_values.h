@@ -65,6 +65,10 @@ void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<
       known_values = 2;
     }
   }
+  if (fan && ring_.closed) {  // from the oldest triangle on, at which most is known
+    std::rotate(corners_.begin(), std::min_element(corners_.begin(), corners_.end()),
+                corners_.end());
+  }
   const auto value_of = [&](std::uint32_t corner) {
     CodedValue value{};
     if constexpr (Coder::kEncodes) value = wanted_[corner];
