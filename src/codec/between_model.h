@@ -32,9 +32,9 @@ struct EighthsModel {
 
 // 1 to 7, from the first child; `first` and `second`: how far off the children's neighbours are.
 template <class Coder>
-int code_eighths(Coder& coder, EighthsModel& model, double first, double second, int eighths) {
+int code_eighths(Coder& coder, EighthsModel& model, float first, float second, int eighths) {
   const bool first_is_nearer = first <= second;
-  const double sum = first + second, nearer = first_is_nearer ? first : second;
+  const float sum = first + second, nearer = first_is_nearer ? first : second;
   const std::size_t c =
       sum > 0 ? std::min<std::size_t>(static_cast<std::size_t>(8 * nearer / sum), 3) : 3;
   if (coder.bit(model.is_middle[c], eighths == 4)) return 4;
@@ -55,11 +55,11 @@ struct StepAxisModel {
 
 // `normal`: its parts along the axes, not below zero.
 template <class Coder>
-int code_step_axis(Coder& coder, StepAxisModel& model, const std::array<double, 3>& normal,
+int code_step_axis(Coder& coder, StepAxisModel& model, const std::array<float, 3>& normal,
                    int axis) {
-  const double beside = std::max(normal[0], normal[1]);
+  const float beside = std::max(normal[0], normal[1]);
   const std::size_t c =
-      normal[2] > 0 ? static_cast<std::size_t>(std::min(4 * beside / normal[2], 3.0)) : 0;
+      normal[2] > 0 ? static_cast<std::size_t>(std::min(4 * beside / normal[2], 3.0f)) : 0;
   if (coder.bit(model.is_last[c], axis == 2)) return 2;
   return coder.bit(model.is_second[normal[1] > normal[0]], axis == 1) ? 1 : 0;
 }

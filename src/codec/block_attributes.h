@@ -40,11 +40,17 @@ Vec3d BlockCoder<Coder, Guide>::twice_area(std::uint32_t t) const {
   return cross(step(1), step(2));
 }
 
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::find_areas() {
+  areas_.resize(mesh_.triangles.size());
+  for (std::uint32_t t = 0; t < areas_.size(); ++t) areas_[t] = twice_area(t);
+}
+
 // By how much two triangles are turned against each other: not, a little, much, very much.
 template <class Coder, class Guide>
 std::size_t BlockCoder<Coder, Guide>::bend(std::uint32_t t, std::uint32_t other) const {
   constexpr double kCosine2[] = {0.9999, 0.95, 0.5};
-  const Vec3d a = twice_area(t), b = twice_area(other);
+  const Vec3d &a = areas_[t], &b = areas_[other];
   const double cosine = dot(a, b), lengths2 = dot(a, a) * dot(b, b);
   if (cosine < 0) return 3;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -113,7 +119,7 @@ void BlockCoder<Coder, Guide>::code_derived() {
   }
 }
 
-// The box that is nearest, or null; `distance` 0: the place is in it.
+// The box that is nearest, of equal ones the oldest, or null; `distance` 0: the place is in it.
 template <class Coder, class Guide>
 typename BlockCoder<Coder, Guide>::LabelBox* BlockCoder<Coder, Guide>::nearest_box(
     const std::array<double, 3>& place, double& distance) {
@@ -126,6 +132,7 @@ typename BlockCoder<Coder, Guide>::LabelBox* BlockCoder<Coder, Guide>::nearest_b
     if (nearest && away >= distance) continue;
     nearest = &box;
     distance = away;
+    if (away == 0) break;
   }
   return nearest;
 }
@@ -135,9 +142,11 @@ template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_labels() {
   labels_.assign(mesh_.triangles.size(), 0);
   boxes_.clear();
+  std::vector<std::uint32_t> last_at(mesh_.positions.size(), kNone);  // per vertex: what came there
   for (std::uint32_t t = 0; t < labels_.size(); ++t) {
+    const Corners& corners = mesh_.triangles[t];
     std::array<double, 3> place{};
-    for (const std::uint32_t v : mesh_.triangles[t]) {
+    for (const std::uint32_t v : corners) {
       for (std::size_t k = 0; k < 3; ++k) place[k] += mesh_.positions[v][static_cast<int>(k)];
     }
     double distance = 0;
@@ -147,11 +156,12 @@ void BlockCoder<Coder, Guide>::code_labels() {
     bool same = false;
     std::uint32_t beside_label = kNone;
     if (box) {
-      std::size_t agreement = 0;  // no neighbour, one that agrees, one that does not
-      for (const std::uint32_t beside : neighbours_before(t)) {
+      std::size_t agreement = 0;  // nothing at the corners, what agrees, what does not
+      for (const std::uint32_t v : corners) {
+        const std::uint32_t beside = last_at[v];
         if (beside == kNone) continue;
-        if (labels_[beside] != box->label) beside_label = labels_[beside];
-        agreement = std::max<std::size_t>(agreement, labels_[beside] == box->label ? 1 : 2);
+        if (beside != box->label) beside_label = beside;
+        agreement = std::max<std::size_t>(agreement, beside == box->label ? 1 : 2);
       }
       same = coder_.bit(same_label_[distance > 0][agreement], label == box->label);
       if (same) label = box->label;
@@ -162,6 +172,8 @@ void BlockCoder<Coder, Guide>::code_labels() {
     }
     if (!same) label = code_magnitude(coder_, label_, label);
     labels_[t] = label;
+    for (const std::uint32_t v : corners) last_at[v] = label;
+    if (box && box->label == label && distance == 0) continue;
     const auto own = std::find_if(boxes_.begin(), boxes_.end(),
                                   [&](const LabelBox& b) { return b.label == label; });
     if (own == boxes_.end()) {

@@ -6,7 +6,7 @@
 //   if (coder.run()) use(coder.take_end(block, names), coder.take_splits());
 //
 // A guide has, for local ids (vertices and triangles in the order in which the coder knows them):
-//   is_split(v), goes_to_second(v, t), introduced(v), position(v, second)   of the node at v
+//   is_split(v), goes_to_second(v, t), introduced(v, out), position(v, second)   of the node at v
 //   name_children(swapped)          from now on the present split's children change their names
 //   did_split(v, u, order)          v is the first child now, u the second; triangles were added
 //   roots(), root_triangles()       vertices without a coarse triangle, and triangles of the base
@@ -28,9 +28,9 @@
 #include "codec/triangle_lists.h"
 #include "crease/ids.h"
 
-#include <algorithm>
 #include "hierarchy/between.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -82,6 +82,7 @@ class BlockCoder {
     code_categories();
     code_derived();
     coder_.enter(Stream::Values);
+    if (!coding_.layers.empty()) find_areas();
     mesh_.values.resize(coding_.layers.size());
     for (std::size_t l = 0; l < coding_.layers.size(); ++l) {
       mesh_.values[l].resize(3 * mesh_.triangles.size());
@@ -151,6 +152,9 @@ class BlockCoder {
   Fan code_likely_fan(Fan fan, std::uint32_t v);
   void code_general(std::uint32_t v);
   void apply(std::uint32_t v, std::uint32_t u);
+  void apply_fan(std::uint32_t v, std::uint32_t u);
+  void add_beside(std::uint32_t v, std::uint32_t neighbour, std::size_t after,
+                  std::uint32_t triangle);
   void code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s);
   bool code_stays(std::size_t question, const Surroundings& around, std::size_t triangles_t,
                   std::size_t triangles_u, bool stays);
@@ -180,12 +184,14 @@ class BlockCoder {
   void start_directions(const std::vector<CodedValue>& values, const OctahedralCoding& coding);
   DirectionCandidates direction_candidates(std::uint32_t v, const Vec3d& had, Sizes& sizes) const;
   Vec3d twice_area(std::uint32_t t) const;
+  void find_areas();
   std::size_t bend(std::uint32_t t, std::uint32_t other) const;
   void code_categories();
   void code_derived();
   void code_layer(const BlockLayer& layer, std::vector<CodedValue>& values, std::size_t l);
-  void code_vertex(const BlockLayer& layer, std::vector<CodedValue>& values, std::size_t l,
-                   LayerModels& models, std::uint32_t v);
+  bool knows_corners(const BlockLayer& layer, std::uint32_t v) const;
+  void code_vertex(const BlockLayer& layer, std::vector<CodedValue>& values, LayerModels& models,
+                   std::uint32_t v);
   CodedValue code_value(const BlockLayer& layer, LayerModels& models, const CodedValue& value,
                         const CodedValue& predicted);
   CodedValue code_corner_direction(const BlockLayer& layer, const std::vector<CodedValue>& values,
@@ -194,9 +200,7 @@ class BlockCoder {
   bool had_at_coarse_end(const BlockLayer& layer, std::uint32_t corner) const;
   static Vec3d direction_of(const BlockLayer& layer, const CodedValue& value);
   CodedValue code_shared_value(const BlockLayer& layer, const std::vector<CodedValue>& values,
-                               std::size_t l, LayerModels& models, std::uint32_t v);
-  CodedValue expected_value(const BlockLayer& layer, std::span<const std::uint32_t> corners,
-                            const CodedValue& near) const;
+                               LayerModels& models, std::uint32_t v);
   void code_labels();
   // Where the triangles lie that have a label: patches are boxes, so that tells of the others.
   struct LabelBox {
@@ -227,13 +231,15 @@ class BlockCoder {
   Directions directions_;
 
   Ring ring_;
-  Shape shape_;
-  Fan fan_;                     // the shape of a closed fan
-  bool is_closed_fan_ = false;  // that the present split is one of
-  std::vector<Vec3d> arc_;
+  Shape shape_, wanted_shape_;
+  Fan fan_;  // the shape, if the present split is one of the fan
+  bool is_one_of_fan_ = false, is_closed_fan_ = false;
+  std::vector<Vec3f> arc_;
   std::vector<std::uint32_t> ring_vertices_;  // scratch
   std::vector<char> was_derived_;             // per coarse triangle
+  std::vector<Vec3d> areas_;                  // per triangle of the fine end, twice
   std::vector<char> is_known_;                // per corner, of the present layer
+  std::vector<CodedValue> wanted_;            // likewise; of an encoder
   std::vector<std::uint32_t> corners_;        // of the present vertex
   std::vector<CodedValue> tried_;
   std::vector<RingVertex> ranked_;

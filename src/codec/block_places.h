@@ -46,7 +46,7 @@ template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::code_stays(std::size_t question, const Surroundings& around,
                                           std::size_t triangles_t, std::size_t triangles_u,
                                           bool stays) {
-  const double a = length(around.middle[0]), b = length(around.middle[1]);
+  const float a = length(around.middle[0]), b = length(around.middle[1]);
   const std::size_t share =
       a + b > 0 ? std::min<std::size_t>(static_cast<std::size_t>(16 * a / (a + b)), 15) : 7;
   const std::size_t first = std::min<std::size_t>(triangles_t, 9),
@@ -74,7 +74,7 @@ Miss BlockCoder<Coder, Guide>::expected_miss(std::uint32_t v, const Surroundings
       count += 1;
     }
   }
-  const float start = static_cast<float>(around.mean_edge) * 0.25f;
+  const float start = around.mean_edge * 0.25f;
   return {(sum.tangent + start) / (count + 1), (sum.normal + 0.25f * start) / (count + 1)};
 }
 
@@ -83,7 +83,7 @@ template <class Coder, class Guide>
 ChildRing BlockCoder<Coder, Guide>::child_ring(bool second, const Vec3i& s, const Vec3i& sibling) {
   ChildRing result;
   const auto from_parent = [&](const Vec3i& p) {
-    return Vec3d{double(p.x) - s.x, double(p.y) - s.y, double(p.z) - s.z};
+    return rounded_to_float({double(p.x) - s.x, double(p.y) - s.y, double(p.z) - s.z});
   };
   result.sibling = from_parent(sibling);
   if (!is_closed_fan_) return result;
@@ -119,8 +119,11 @@ template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::note_miss(std::uint32_t v, const PlaceMixture& mixture,
                                          const Step& place) {
   const auto off = [&](std::size_t i) {
-    const double rest = i < 2 ? place[i] : place[2] - rise(mixture.direction, place[0], place[1]);
-    return static_cast<float>(std::abs(rest - mixture.center[i][0]));
+    const float along = static_cast<float>(place[i]);
+    const float plane =
+        i < 2 ? 0
+              : rise(mixture.direction, static_cast<float>(place[0]), static_cast<float>(place[1]));
+    return std::abs(along - plane - mixture.center[i][0]);
   };
   miss_[v] = {std::max(off(0), off(1)), off(2)};
 }
@@ -141,7 +144,7 @@ bool BlockCoder<Coder, Guide>::code_between(std::uint32_t t, std::uint32_t u, Ve
   const auto steep = [&](std::size_t i) { return std::abs(around.normal[around.axis[i]]); };
   between.axis = code_step_axis(coder_, step_axes_, {steep(0), steep(1), steep(2)}, between.axis);
   ChildRing ring = child_ring(true, around.parent, around.parent);
-  ring.share = between.eighths / 8.0;
+  ring.share = static_cast<float>(between.eighths) / 8;
   at_u = code_position(u, true, at_u, around, Leaving::SecondBetween, ring);
   at_t = code_other_end(t, at_t, at_u, around, between);
   return true;
@@ -171,11 +174,13 @@ Vec3i BlockCoder<Coder, Guide>::code_other_end(std::uint32_t t, const Vec3i& at_
   const std::size_t triangles = around_[t].size();
   const Sizes expected = sizes(around, expected_miss(t, around));
   ChildRing ring = child_ring(false, around.parent, at_u);
-  ring.share = (8 - between.eighths) / 8.0;
+  ring.share = static_cast<float>(8 - between.eighths) / 8;
   PlaceMixture mixture = model.mixture(around, false, triangles, ring, expected);
-  const double eighths_a_step = 8 * static_cast<double>(step);
-  const double offset = -(between.eighths * double(second[axis]) + 0.5) / eighths_a_step;
-  const double per_unit = -(8 - between.eighths) / eighths_a_step;
+  const float eighths_a_step = 8 * static_cast<float>(step);
+  const float offset =
+      -(static_cast<float>(between.eighths) * static_cast<float>(second[axis]) + 0.5f) /
+      eighths_a_step;
+  const float per_unit = static_cast<float>(between.eighths - 8) / eighths_a_step;
   const std::int32_t steps =
       code_steps(coder_, mixture, axis, place, offset, per_unit, between.steps);
   code_coordinate(axis, -std::int64_t(steps) * step);

@@ -75,6 +75,10 @@ bool BlockCoder<Coder, Guide>::code_splits() {
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const std::uint32_t v = queue[i];
     const bool fan = find_ring(mesh_.triangles, around_[v], v, ring_);
+    if (fan && ring_.triangles.data() != around_[v].data()) {
+      around_.reorder(v, ring_.triangles);
+      ring_.triangles = around_[v];
+    }
     bool splits = false;
     if constexpr (Coder::kEncodes) splits = guide_.is_split(v);
     coder_.enter(Stream::Flags);
@@ -92,19 +96,32 @@ template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::code_flag(std::uint32_t v, bool fan, bool splits) {
   const std::size_t kind = !fan ? 0 : ring_.closed ? 1 : 2;
   const std::size_t generation = std::min<std::size_t>(generation_[v], kGenerations - 1);
-  double size = 0, split_around = 0, corners = 0;
+  // Whole numbers below 2^53, so that the order of sums does not matter.
+  std::int64_t whole_size = 0, split_corners = 0, corner_count = 0;
   const Vec3i& center = mesh_.positions[v];
-  const std::size_t count = std::min(around_[v].size(), kLargestRing);
-  for (const std::uint32_t t : around_[v].first(count)) {
-    for (const std::uint32_t w : mesh_.triangles[t]) {
-      if (w == v) continue;
-      const Vec3i& p = mesh_.positions[w];
-      size += std::abs(double(p.x) - center.x) + std::abs(double(p.y) - center.y) +
-              std::abs(double(p.z) - center.z);
-      split_around += generation_[w] > 0;
-      corners += 1;
+  const auto count_corner = [&](std::uint32_t w, std::int64_t times) {
+    const Vec3i& p = mesh_.positions[w];
+    whole_size +=
+        times * (std::abs(std::int64_t(p.x) - center.x) + std::abs(std::int64_t(p.y) - center.y) +
+                 std::abs(std::int64_t(p.z) - center.z));
+    split_corners += generation_[w] > 0 ? times : 0;
+    corner_count += times;
+  };
+  if (fan) {  // all but the ends of an open one are corners of two triangles
+    for (const std::uint32_t w : ring_.vertices) count_corner(w, 2);
+    if (!ring_.closed) {
+      count_corner(ring_.vertices.front(), -1);
+      count_corner(ring_.vertices.back(), -1);
+    }
+  } else {
+    const std::size_t count = std::min(around_[v].size(), kLargestRing);
+    for (const std::uint32_t t : around_[v].first(count)) {
+      for (const std::uint32_t w : mesh_.triangles[t]) {
+        if (w != v) count_corner(w, 1);
+      }
     }
   }
+  const double size = static_cast<double>(whole_size), corners = static_cast<double>(corner_count);
   std::size_t size_class = 0, around_class = 0;
   if (corners > 0) {
     double limit = mean_size_ * corners * 0.35;
@@ -112,7 +129,8 @@ bool BlockCoder<Coder, Guide>::code_flag(std::uint32_t v, bool fan, bool splits)
       ++size_class;
       limit *= 1.25;
     }
-    around_class = 1 + static_cast<std::size_t>(3.99 * split_around / corners);
+    around_class =
+        1 + static_cast<std::size_t>(3.99 * static_cast<double>(split_corners) / corners);
   }
   const std::size_t valence = std::min<std::size_t>(around_[v].size(), kValences - 1);
   MixedBit<4> bit({&flag_models_.by_size[generation][kind][size_class],
@@ -139,7 +157,11 @@ bool BlockCoder<Coder, Guide>::split(std::uint32_t v, bool fan) {
   has_moved_.push_back(has_moved_[v]);
   splits_.push_back({v, static_cast<std::uint32_t>(mesh_.triangles.size()),
                      static_cast<std::uint32_t>(shape_.introduced.size()), s});
-  apply(v, u);
+  if (is_one_of_fan_) {
+    apply_fan(v, u);
+  } else {
+    apply(v, u);
+  }
   coder_.enter(Stream::Positions);
   code_positions(v, u, s);
   if constexpr (Coder::kEncodes) guide_.did_split(v, u, shape_.introduced);
@@ -149,12 +171,8 @@ bool BlockCoder<Coder, Guide>::split(std::uint32_t v, bool fan) {
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
   shape_.introduced.clear();
-  is_closed_fan_ = false;
-  if (fan) {
-    shape_.triangles = ring_.triangles;
-  } else {
-    shape_.triangles.assign(around_[v].begin(), around_[v].end());
-  }
+  is_one_of_fan_ = is_closed_fan_ = false;
+  shape_.triangles.assign(around_[v].begin(), around_[v].end());
   shape_.to_second.assign(shape_.triangles.size(), 0);
   if constexpr (Coder::kEncodes) ask_shape(v);
   if (fan) {
@@ -171,6 +189,7 @@ void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
     }
     if (coder_.bit(is_fan_[ring_.closed], is_fan)) {
       code_fan(found, v);
+      is_one_of_fan_ = true;
       is_closed_fan_ = ring_.closed;
       return;
     }
@@ -183,13 +202,14 @@ void BlockCoder<Coder, Guide>::ask_shape(std::uint32_t v) {
   for (std::size_t i = 0; i < shape_.triangles.size(); ++i) {
     shape_.to_second[i] = guide_.goes_to_second(v, shape_.triangles[i]);
   }
-  shape_.introduced = guide_.introduced(v);
+  guide_.introduced(v, shape_.introduced);
 }
 
 // The encoder's shape as a fan, if it is one.
 template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::find_fan(Fan& fan) {
-  const Shape wanted = shape_;
+  Shape& wanted = wanted_shape_;
+  wanted = shape_;
   const std::vector<Introduced>& b = wanted.introduced;
   if (b.empty() || b.size() > 2 || (ring_.closed && b.size() != 2)) return false;
   const auto at = [&](std::uint32_t third) {
@@ -249,9 +269,9 @@ typename BlockCoder<Coder, Guide>::Fan BlockCoder<Coder, Guide>::code_likely_fan
   const Vec3i& center = mesh_.positions[v];
   for (const std::uint32_t w : ring_.vertices) {
     const Vec3i& p = mesh_.positions[w];
-    ranked_.push_back({{double(p.x) - center.x, double(p.y) - center.y, double(p.z) - center.z},
-                       around_[w].size(),
-                       generation_[w] > 0});
+    ranked_.push_back(
+        {rounded_to_float({double(p.x) - center.x, double(p.y) - center.y, double(p.z) - center.z}),
+         around_[w].size(), generation_[w] > 0});
   }
   pair_odds_.rate(ranked_);
   const PairOdds::Pair pair = pair_odds_.code(coder_, {fan.first, fan.last});
@@ -302,6 +322,45 @@ void BlockCoder<Coder, Guide>::code_general(std::uint32_t v) {
     const std::size_t context = i == 0 ? 2 : std::size_t(shape_.to_second[i - 1]);
     shape_.to_second[i] = coder_.bit(to_second_[context], shape_.to_second[i]);
   }
+}
+
+// A split of the fan: lists that are in order stay so.
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::apply_fan(std::uint32_t v, std::uint32_t u) {
+  const std::uint32_t at_last = static_cast<std::uint32_t>(mesh_.triangles.size());
+  const std::uint32_t at_first = at_last + 1;  // unless single
+  const std::span<const std::uint32_t> triangles = shape_.triangles;
+  around_.clear(v);
+  for (std::size_t i = 0; i < fan_.first; ++i) around_.add(v, triangles[i]);
+  if (!fan_.single) around_.add(v, at_first);
+  around_.add(v, at_last);
+  for (std::size_t i = fan_.last; i < triangles.size(); ++i) around_.add(v, triangles[i]);
+  for (std::size_t i = fan_.first; i < fan_.last; ++i) {
+    mesh_.triangles[triangles[i]][corner_of(mesh_.triangles[triangles[i]], v)] = u;
+    around_.add(u, triangles[i]);
+  }
+  const std::uint32_t w_last = ring_.vertices[fan_.last], w_first = ring_.vertices[fan_.first];
+  around_.add(u, at_last);
+  if (fan_.last > 0) {
+    add_beside(w_last, triangles[fan_.last - 1], 0, at_last);
+  } else {
+    add_beside(w_last, triangles[0], 1, at_last);
+  }
+  mesh_.triangles.push_back({v, u, w_last});
+  if (fan_.single) return;
+  around_.add(u, at_first);
+  add_beside(w_first, triangles[fan_.first], 1, at_first);
+  mesh_.triangles.push_back({u, v, w_first});
+}
+
+// Before a triangle at v, or `after` it; at the end of a list that is long.
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::add_beside(std::uint32_t v, std::uint32_t neighbour,
+                                          std::size_t after, std::uint32_t triangle) {
+  const std::span<const std::uint32_t> list = around_[v];
+  if (list.size() > kLargestRing) return around_.add(v, triangle);
+  const auto found = std::find(list.begin(), list.end(), neighbour);
+  around_.insert(v, std::size_t(found - list.begin()) + after, triangle);
 }
 
 template <class Coder, class Guide>

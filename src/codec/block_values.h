@@ -11,6 +11,12 @@ template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_layer(const BlockLayer& layer, std::vector<CodedValue>& values,
                                           std::size_t l) {
   LayerModels models;
+  if constexpr (Coder::kEncodes) {  // in one go, since the guide has them elsewhere
+    wanted_.resize(values.size());
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      for (std::uint32_t c = 0; c < 3; ++c) wanted_[3 * t + c] = guide_.value(l, t, c);
+    }
+  }
   is_known_.assign(values.size(), 0);
   for (std::uint32_t t = 0; t < coarse_triangles_; ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -21,38 +27,51 @@ void BlockCoder<Coder, Guide>::code_layer(const BlockLayer& layer, std::vector<C
   if (layer.octahedral_bits > 0) {
     start_directions(values, OctahedralCoding(layer.octahedral_bits));
   }
-  for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v)
-    code_vertex(layer, values, l, models, v);
+  for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v) code_vertex(layer, values, models, v);
+}
+
+// Whether all corners at v are known.
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::knows_corners(const BlockLayer& layer, std::uint32_t v) const {
+  for (const std::uint32_t t : around_[v]) {
+    if (!is_known_[3 * t + corner_of(mesh_.triangles[t], v)] &&
+        !(layer.is_normal && mesh_.derived[t])) {
+      return false;
+    }
+  }
+  return true;
 }
 
 // The corners at one vertex. Mostly they share one value; else each is told to be like one that is
 // known: beside it, at the coarse end, or at another corner of the triangle.
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<CodedValue>& values,
-                                           std::size_t l, LayerModels& models, std::uint32_t v) {
+                                           LayerModels& models, std::uint32_t v) {
   const auto shows = [&](std::uint32_t t) { return !(layer.is_normal && mesh_.derived[t]); };
+  if (knows_corners(layer, v)) return;
   corners_.clear();
   const bool fan = find_ring(mesh_.triangles, around_[v], v, ring_);
-  std::size_t unknown = 0;
   CodedValue known{};
   std::size_t known_values = 0;  // distinct ones, up to two
-  for (std::uint32_t t : fan ? std::span<const std::uint32_t>(ring_.triangles) : around_[v]) {
+  for (std::uint32_t t : fan ? ring_.triangles : around_[v]) {
     if (!shows(t)) continue;
     const std::uint32_t corner = 3 * t + std::uint32_t(corner_of(mesh_.triangles[t], v));
     corners_.push_back(corner);
-    if (!is_known_[corner]) {
-      ++unknown;
-    } else if (known_values == 0) {
+    if (!is_known_[corner]) continue;
+    if (known_values == 0) {
       known = values[corner];
       known_values = 1;
     } else if (values[corner] != known) {
       known_values = 2;
     }
   }
-  if (unknown == 0) return;
+  if (fan && ring_.closed) {  // from the oldest triangle on, at which most is known
+    std::rotate(corners_.begin(), std::min_element(corners_.begin(), corners_.end()),
+                corners_.end());
+  }
   const auto value_of = [&](std::uint32_t corner) {
     CodedValue value{};
-    if constexpr (Coder::kEncodes) value = guide_.value(l, corner / 3, corner % 3);
+    if constexpr (Coder::kEncodes) value = wanted_[corner];
     return value;
   };
   const auto had_value = [&](std::uint32_t corner) { return had_at_coarse_end(layer, corner); };
@@ -69,7 +88,7 @@ void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<
     }
     if (coder_.bit(models.is_uniform[known_values][bends], uniform)) {
       CodedValue value = known;
-      if (known_values == 0) value = code_shared_value(layer, values, l, models, v);
+      if (known_values == 0) value = code_shared_value(layer, values, models, v);
       for (std::uint32_t corner : corners_) {
         values[corner] = value;
         is_known_[corner] = 1;
@@ -136,10 +155,9 @@ Vec3d BlockCoder<Coder, Guide>::direction_of(const BlockLayer& layer, const Code
 template <class Coder, class Guide>
 CodedValue BlockCoder<Coder, Guide>::code_shared_value(const BlockLayer& layer,
                                                        const std::vector<CodedValue>& values,
-                                                       std::size_t l, LayerModels& models,
-                                                       std::uint32_t v) {
+                                                       LayerModels& models, std::uint32_t v) {
   CodedValue value{}, had{};
-  if constexpr (Coder::kEncodes) value = guide_.value(l, corners_[0] / 3, corners_[0] % 3);
+  if constexpr (Coder::kEncodes) value = wanted_[corners_[0]];
   bool has_had = false;
   for (const std::uint32_t corner : corners_) {
     if (!had_at_coarse_end(layer, corner)) continue;
@@ -168,7 +186,7 @@ CodedValue BlockCoder<Coder, Guide>::code_corner_direction(const BlockLayer& lay
                                                            LayerModels& models, std::size_t i,
                                                            bool fan, const CodedValue& value) {
   const std::uint32_t corner = corners_[i], t = corner / 3;
-  const Vec3d own = twice_area(t);
+  const Vec3d own = areas_[t];
   Vec3d smooth = own, bent = own;
   const std::size_t count = corners_.size();
   for (const bool back : {false, true}) {
@@ -181,8 +199,8 @@ CodedValue BlockCoder<Coder, Guide>::code_corner_direction(const BlockLayer& lay
       const std::size_t turned = bend(last, next);
       is_smooth = is_smooth && turned < 2;
       if (turned > 2) break;
-      if (is_smooth) smooth += twice_area(next);
-      bent += twice_area(next);
+      if (is_smooth) smooth += areas_[next];
+      bent += areas_[next];
       last = next;
     }
   }
@@ -205,9 +223,9 @@ CodedValue BlockCoder<Coder, Guide>::code_corner_direction(const BlockLayer& lay
                    directions_.geometric[mesh_.triangles[t][corner % 3]],
                    one};
   const double turned = length(normalized(smooth) - one);
-  const Sizes sizes{rough_log2(turned + 0.002), rough_log2(length(had - one) + 0.002),
-                    rough_log2(length(own) + 1),
-                    rough_log2(length(normalized(beside) - one) + 0.002)};
+  const auto size = [](double x) { return rough_log2(static_cast<float>(x)); };
+  const Sizes sizes{size(turned + 0.002), size(length(had - one) + 0.002), size(length(own) + 1),
+                    size(length(normalized(beside) - one) + 0.002)};
   const OctahedralCoding coding(layer.octahedral_bits);
   DirectionMixture mixture = models.corner_direction.mixture(coding, candidates, sizes);
   const CodedValue result = coded(code_direction(coder_, coding, mixture, octahedral_code(value)));
@@ -235,7 +253,7 @@ void BlockCoder<Coder, Guide>::start_directions(const std::vector<CodedValue>& v
   directions_.geometric.assign(vertices, {});
   directions_.stored.assign(vertices, {});
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-    const Vec3d twice = twice_area(t);
+    const Vec3d& twice = areas_[t];
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t v = mesh_.triangles[t][c];
       directions_.geometric[v] += twice;
@@ -291,22 +309,11 @@ DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t
                normalized(beside),
                normalized(angles),
                had == Vec3d{} ? Vec3d{} : had + geometric};
-  sizes = {rough_log2(length(mean_off) + 0.002),
-           rough_log2(std::sqrt(std::max(0.0, 1 - (count > 0 ? spread / count : 1))) + 0.002),
-           rough_log2(length(had - geometric) + 0.002), known > 0 ? 1.0 : 0.0};
+  const auto size = [](double x) { return rough_log2(static_cast<float>(x)); };
+  sizes = {size(length(mean_off) + 0.002),
+           size(std::sqrt(std::max(0.0, 1 - (count > 0 ? spread / count : 1))) + 0.002),
+           size(length(had - geometric) + 0.002), known > 0 ? 1.0f : 0.0f};
   return result;
-}
-
-// A normal is expected to be that of the triangles, if they have one, any other value near `near`.
-template <class Coder, class Guide>
-CodedValue BlockCoder<Coder, Guide>::expected_value(const BlockLayer& layer,
-                                                    std::span<const std::uint32_t> corners,
-                                                    const CodedValue& near) const {
-  if (layer.octahedral_bits == 0) return near;
-  Vec3d normal{};
-  for (const std::uint32_t corner : corners) normal += twice_area(corner / 3);
-  if (normal == Vec3d{}) return near;
-  return coded(OctahedralCoding(layer.octahedral_bits).encode(normal));
 }
 
 template <class Coder, class Guide>
@@ -314,15 +321,6 @@ CodedValue BlockCoder<Coder, Guide>::code_value(const BlockLayer& layer, LayerMo
                                                 const CodedValue& value,
                                                 const CodedValue& predicted) {
   CodedValue result{};
-  if (layer.octahedral_bits > 0) {
-    const OctahedralCoding coding(layer.octahedral_bits);
-    const OctahedralCode expected = octahedral_code(predicted);
-    OctahedralResidual residual;
-    if constexpr (Coder::kEncodes) residual = coding.residual(octahedral_code(value), expected);
-    residual.x = code_signed(coder_, models.residual[0], residual.x);
-    residual.y = code_signed(coder_, models.residual[1], residual.y);
-    return coded(coding.restore(residual, expected));
-  }
   for (std::size_t k = 0; k < std::size_t(layer.dimension); ++k) {
     if (layer.is_raw) {
       const std::uint32_t bits = static_cast<std::uint32_t>(value[k]);

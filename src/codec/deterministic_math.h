@@ -11,21 +11,19 @@
 namespace crease::codec {
 
 // About log2(x), of a positive normal number.
-inline double rough_log2(double x) {
-  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
-  const double exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
-  const std::uint64_t one = std::uint64_t(1023) << 52;
-  const double t = std::bit_cast<double>((bits & ((std::uint64_t(1) << 52) - 1)) | one) - 1;
-  return exponent + t + 0.34 * t * (1 - t);
+inline float rough_log2(float x) {
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
+  const float exponent = static_cast<float>(static_cast<std::int32_t>(bits >> 23) - 127);
+  const float t = std::bit_cast<float>((bits & ((1u << 23) - 1)) | 127u << 23) - 1;
+  return exponent + t + 0.34f * t * (1 - t);
 }
 
 // About 2^x.
-inline double rough_exp2(double x) {
-  x = std::clamp(x, -60.0, 60.0) + 64;
-  const std::int64_t whole = static_cast<std::int64_t>(x);
-  const double t = x - static_cast<double>(whole);
-  return std::bit_cast<double>(static_cast<std::uint64_t>(whole - 64 + 1023) << 52) *
-         (1 + t - 0.34 * t * (1 - t));
+inline float rough_exp2(float x) {
+  x = (x < -60 ? -60 : x < 60 ? x : 60) + 64;
+  const std::int32_t whole = static_cast<std::int32_t>(x);
+  const float t = x - static_cast<float>(whole);
+  return std::bit_cast<float>((whole + (127 - 64)) << 23) * (1 + t - 0.34f * t * (1 - t));
 }
 
 // The angle whose sine and cosine are as y, not below zero, to x: in radians, within 0.00002.

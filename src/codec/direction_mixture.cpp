@@ -10,13 +10,13 @@ struct DirectionStart {
   std::array<Sizes, 2> slope;
 };
 constexpr DirectionStart kOfVertices = {
-    {0.157, 0.079, 0.008, 0.029, 0.021, 0.150, 0.501, 0.055},
-    {3.056, 2.395, -0.518, 0.166, -0.108, -0.287, 2.704, 0.894},
-    {{{0.314, 0.251, 0.084, -0.075}, {0.194, 0.132, 0.119, -0.076}}}};
+    {0.157f, 0.079f, 0.008f, 0.029f, 0.021f, 0.150f, 0.501f, 0.055f},
+    {3.056f, 2.395f, -0.518f, 0.166f, -0.108f, -0.287f, 2.704f, 0.894f},
+    {{{0.314f, 0.251f, 0.084f, -0.075f}, {0.194f, 0.132f, 0.119f, -0.076f}}}};
 constexpr DirectionStart kOfCorners = {
-    {0.273, 0.231, 0.037, 0.247, 0.063, 0.037, 0.062, 0.050},
-    {6.823, 5.426, 2.401, 4.111, 2.441, 1.739, 2.336, 2.020},
-    {{{0.381, 0.305, -0.288, 0.123}, {0.370, 0.253, -0.118, 0.031}}}};
+    {0.273f, 0.231f, 0.037f, 0.247f, 0.063f, 0.037f, 0.062f, 0.050f},
+    {6.823f, 5.426f, 2.401f, 4.111f, 2.441f, 1.739f, 2.336f, 2.020f},
+    {{{0.381f, 0.305f, -0.288f, 0.123f}, {0.370f, 0.253f, -0.118f, 0.031f}}}};
 
 }  // namespace
 
@@ -32,13 +32,13 @@ DirectionMixture DirectionModel::mixture(const OctahedralCoding& coding,
   DirectionMixture result;
   result.weight = weights_.of;
   result.scale = scales_.at(sizes);
-  result.start = coding.encode(candidates.of[0]);
+  result.start = coding.frame_of(coding.near(candidates.of[0]));
   for (std::size_t k = 0; k < kComponents; ++k) {
     if (candidates.of[k] == Vec3d{}) {
       result.weight[k] = 0;
       continue;
     }
-    const std::array<double, 2> off = coding.residual_of(candidates.of[k], result.start);
+    const std::array<float, 2> off = coding.residual_of(candidates.of[k], result.start);
     result.center[0][k] = off[0];
     result.center[1][k] = off[1];
   }

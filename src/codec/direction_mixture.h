@@ -1,5 +1,5 @@
 // A direction as a mixture: what its corner's triangles, its neighbours and the coarse end let it
-// be. Coded like a place (place_mixture.h), on the square of octahedral codes. Doubles without
+// be. Coded like a place (place_mixture.h), on the square of octahedral codes. Floats without
 // fused products.
 //
 //   DirectionMixture mixture = model.mixture(coding, candidates, sizes);
@@ -17,7 +17,7 @@
 namespace crease::codec {
 
 struct DirectionMixture {
-  OctahedralCode start;                  // residuals are from here
+  OctahedralCoding::Frame start;         // residuals are from here
   std::array<PerComponent, 2> center{};  // residuals
   PerComponent weight{}, scale{}, excess{};
 };
@@ -31,28 +31,26 @@ struct DirectionCandidates {
 template <class Coder>
 OctahedralCode code_direction(Coder& coder, const OctahedralCoding& coding,
                               DirectionMixture& mixture, OctahedralCode code) {
-  constexpr double kLeast = 0.1;  // of scales, beside which the codes are coarse
+  constexpr float kLeast = 0.1f;  // of scales, beside which the codes are coarse
   OctahedralResidual residual;
   if constexpr (Coder::kEncodes) residual = coding.residual(code, mixture.start);
   AxisMixture axis;
   axis.weight = mixture.weight;
   axis.center = mixture.center[0];
-  for (std::size_t k = 0; k < kComponents; ++k) {
-    axis.inverse_scale[k] = 1 / (mixture.scale[k] + kLeast);
-  }
+  const EightFloats scale(mixture.scale);
+  EightFloats inverse = 1.0f / (scale + kLeast);
+  inverse.store(axis.inverse_scale);
   residual.x = code_axis(coder, axis, 0, mixture.scale[0], residual.x);
-  for (std::size_t k = 0; k < kComponents; ++k) {
-    const double z = (residual.x - axis.center[k]) * axis.inverse_scale[k];
-    const double part = 1 - kLeast * axis.inverse_scale[k];
-    mixture.excess[k] = excess(z * z) * part;
-    axis.inverse_scale[k] = 1 / (mixture.scale[k] * std::sqrt(0.5 + 0.5 * z * z) + kLeast);
-  }
+  const float x = static_cast<float>(residual.x);
+  EightFloats z = (x - EightFloats(axis.center)) * inverse;
+  const EightFloats first_excess = excess(z * z, kLeast, inverse);
+  inverse = 1.0f / (scale * root(0.5f + 0.5f * z * z) + kLeast);
+  inverse.store(axis.inverse_scale);
   axis.center = mixture.center[1];
   residual.y = code_axis(coder, axis, 0, mixture.scale[0], residual.y);
-  for (std::size_t k = 0; k < kComponents; ++k) {
-    const double z = (residual.y - axis.center[k]) * axis.inverse_scale[k];
-    mixture.excess[k] += excess(z * z) * (1 - kLeast * axis.inverse_scale[k]);
-  }
+  const float y = static_cast<float>(residual.y);
+  z = (y - EightFloats(axis.center)) * inverse;
+  (first_excess + excess(z * z, kLeast, inverse)).store(mixture.excess);
   mixture.weight = axis.weight;
   return coding.restore(residual, mixture.start);
 }

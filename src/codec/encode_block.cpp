@@ -60,9 +60,9 @@ class PlanGuide {
   // Which child is called the first is the coder's choice; it holds until the split is done.
   void name_children(bool swapped) { swapped_ = swapped; }
 
-  std::vector<Introduced> introduced(std::uint32_t v) {
+  void introduced(std::uint32_t v, std::vector<Introduced>& result) {
     const std::uint32_t s = step_of(v);
-    std::vector<Introduced> result;
+    result.clear();
     pending_.clear();
     for (const std::uint32_t p : introduced_[s]) {
       const Corners& corners = plan_.fine.triangles[p];
@@ -77,7 +77,6 @@ class PlanGuide {
       result.push_back({third, first_leads});
       pending_.push_back({p, first_leads ? first : second, result.back()});
     }
-    return result;
   }
 
   Vec3i position(std::uint32_t v, bool second) const {

@@ -9,8 +9,8 @@ class KnownBit {
  public:
   // Of a one: `part` of `whole`. Even odds where there is nothing to go by, and never quite
   // certain.
-  KnownBit(double part, double whole) {
-    double p = whole > 0 ? part / whole * 65536 : 32768;
+  KnownBit(float part, float whole) {
+    float p = whole > 0 ? part / whole * 65536 : 32768;
     if (!(p > kLeast)) p = kLeast;  // or not a number
     if (p > 65536 - kLeast) p = 65536 - kLeast;
     probability_ = static_cast<std::uint32_t>(p);
@@ -19,7 +19,7 @@ class KnownBit {
   void learn(bool) {}
 
  private:
-  static constexpr double kLeast = 24;
+  static constexpr float kLeast = 24;
   std::uint32_t probability_;
 };
 

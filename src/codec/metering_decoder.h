@@ -21,6 +21,12 @@ class MeteringDecoder {
     add(-std::log2(bit ? one : 1 - one));
     return bit;
   }
+  template <std::size_t N>
+  std::uint32_t one_of(const Shares<N>& shares, std::uint32_t) {
+    const std::uint32_t i = decoder_.one_of(shares, 0);
+    add(std::log2(Shares<N>::kAll / double(shares.begin(i + 1) - shares.begin(i))));
+    return i;
+  }
   std::uint32_t uniform(std::uint32_t count, std::uint32_t) {
     add(std::log2(double(count)));
     return decoder_.uniform(count, 0);

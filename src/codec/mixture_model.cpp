@@ -1,6 +1,7 @@
 #include "codec/mixture_model.h"
 
 #include "codec/deterministic_math.h"
+#include "codec/eight_floats.h"
 
 #include <algorithm>
 
@@ -8,16 +9,15 @@ namespace crease::codec {
 
 namespace {
 
-constexpr double kScaleRate = 0.15, kSlopeRate = 0.015, kMeanRate = 0.02;
-constexpr double kLeastScale = -12, kMostScale = 16, kMostSlope = 2;
+constexpr float kScaleRate = 0.15f, kSlopeRate = 0.015f, kMeanRate = 0.02f;
+constexpr float kLeastScale = -12, kMostScale = 16, kMostSlope = 2;
 
 }  // namespace
 
 bool make_shares(PerComponent& odds) {
-  double sum = 0;
-  for (const double x : odds) sum += x;
+  const float sum = sum_of(EightFloats(odds));
   if (!(sum > 0)) return false;
-  for (double& x : odds) x /= sum;
+  (EightFloats(odds) * (1 / sum)).store(odds);
   return true;
 }
 
@@ -28,39 +28,50 @@ void MeanSizes::learn(const Sizes& sizes) {
 }
 
 void ComponentWeights::learn(const PerComponent& right) {
-  const double rate = 1.0 / (std::min(seen++, 100) + 15);
-  for (std::size_t k = 0; k < kComponents; ++k) of[k] += rate * (right[k] - of[k]);
+  const float rate = 1.0f / static_cast<float>(std::min(seen++, 100) + 15);
+  const EightFloats now(of);
+  (now + rate * (EightFloats(right) - now)).store(of);
 }
 
 PerComponent ComponentScales::at(const Sizes& sizes) const {
-  std::array<double, 2> common{};
+  std::array<float, 2> common{};
   for (std::size_t i = 0; i < 2; ++i) {
     for (std::size_t j = 0; j < sizes.size(); ++j) common[i] += slope[i][j] * sizes[j];
   }
+  const auto [a, b] = common;
   PerComponent result;
-  for (std::size_t k = 0; k < kComponents; ++k) result[k] = rough_exp2(of[k] + common[k > 1]);
+  rough_exp2(EightFloats(of) + EightFloats(FourFloats{a, a, b, b}, FourFloats{b, b, b, b}))
+      .store(result);
   return result;
 }
 
 void ComponentScales::learn(const PerComponent& right, const PerComponent& excess,
                             const Sizes& sizes, const Sizes& mean) {
-  std::array<double, 2> sum{};
-  for (std::size_t k = 0; k < kComponents; ++k) {
-    const double step = right[k] * excess[k];
-    of[k] = std::clamp(of[k] + kScaleRate * step, kLeastScale, kMostScale);
-    sum[k > 1] += step;
-  }
+  PerComponent step;
+  const EightFloats steps = EightFloats(right) * EightFloats(excess);
+  steps.store(step);
+  const EightFloats next_scale = EightFloats(of) + kScaleRate * steps;
+  const std::array<float, 2> sum{step[0] + step[1],
+                                 (step[2] + step[3]) + (step[4] + step[5]) + (step[6] + step[7])};
   // A slope turns about the mean of the sizes: what it moves there comes off the components.
+  std::array<float, 2> moved;
+  FourFloats size, middle;
+  std::memcpy(&size, sizes.data(), sizeof size);
+  std::memcpy(&middle, mean.data(), sizeof middle);
+  const FourFloats most = FourFloats{} + kMostSlope;
+  const FourFloats away = lesser(greater(size - middle, -most), most);
   for (std::size_t i = 0; i < 2; ++i) {
-    double moved = 0;
-    for (std::size_t j = 0; j < sizes.size(); ++j) {
-      const double step = kSlopeRate * sum[i] * std::clamp(sizes[j] - mean[j], -2.0, 2.0);
-      const double next = std::clamp(slope[i][j] + step, -kMostSlope, kMostSlope);
-      moved += (next - slope[i][j]) * mean[j];
-      slope[i][j] = next;
-    }
-    for (std::size_t k = 2 * i; k < (i == 0 ? 2 : kComponents); ++k) of[k] -= moved;
+    FourFloats now;
+    std::memcpy(&now, slope[i].data(), sizeof now);
+    const FourFloats next = lesser(greater(now + kSlopeRate * sum[i] * away, -most), most);
+    std::memcpy(slope[i].data(), &next, sizeof next);
+    const FourFloats turned = (next - now) * middle;
+    moved[i] = (turned[0] + turned[1]) + (turned[2] + turned[3]);
   }
+  const auto [a, b] = moved;
+  (lesser(greater(next_scale, kLeastScale), kMostScale) -
+   EightFloats(FourFloats{a, a, b, b}, FourFloats{b, b, b, b}))
+      .store(of);
 }
 
 }  // namespace crease::codec

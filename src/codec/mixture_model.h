@@ -1,8 +1,8 @@
 // What is known of a mixture's components: how likely each is, and how far off. Both learn, within
-// a block, from every place that was coded. Doubles without fused products.
+// a block, from every place that was coded. Floats without fused products.
 #pragma once
 
-#include "codec/place_mixture.h"
+#include "codec/axis_mixture.h"
 
 #include <array>
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace crease::codec {
 
 // What says how far off components are: logarithms of lengths nearby.
-using Sizes = std::array<double, 4>;
+using Sizes = std::array<float, 4>;
 
 // About the mean of the last fifty.
 struct MeanSizes {

@@ -12,50 +12,51 @@ namespace {
 // Weights of vectors, and of their parts along the normal beside that: least absolute residuals
 // over scans, CAD and city models.
 struct Weights {
-  double own, other, thirds, sibling;  // middles, and the sibling where it is known
-  double normal_own, normal_other, normal_thirds, normal_sibling;  // along the normal
+  float own, other, thirds, sibling;  // middles, and the sibling where it is known
+  float normal_own, normal_other, normal_thirds, normal_sibling;  // along the normal
 };
 constexpr Weights kWeights[] = {
-    {0.785, -0.109, -0.253, 0, -0.488, 0.123, 0.045, 0},  // by Leaving
-    {0.400, -0.146, -0.045, 0, -0.124, 0.234, -0.206, 0},
-    {0.339, -0.111, -0.026, -0.150, -0.094, 0.337, -0.303, -0.170},
-    {0.649, -0.545, -0.027, 0, -0.050, 0.675, -0.470, 0},  // for the whole way between the two
-    {0.339, -0.111, -0.026, -0.150, -0.094, 0.337, -0.303, -0.170},
+    {0.785f, -0.109f, -0.253f, 0, -0.488f, 0.123f, 0.045f, 0},  // by Leaving
+    {0.400f, -0.146f, -0.045f, 0, -0.124f, 0.234f, -0.206f, 0},
+    {0.339f, -0.111f, -0.026f, -0.150f, -0.094f, 0.337f, -0.303f, -0.170f},
+    {0.649f, -0.545f, -0.027f, 0, -0.050f, 0.675f, -0.470f,
+     0},  // for the whole way between the two
+    {0.339f, -0.111f, -0.026f, -0.150f, -0.094f, 0.337f, -0.303f, -0.170f},
 };
 
 // What a block starts from, learned over scans, CAD and city models. How likely components are, by
 // number of triangles from 3 to 8.
 constexpr std::array<PerComponent, 6> kLikely[] = {
-    {{{0.417, 0.360, 0.021, 0.071, 0.047, 0.001, 0.001, 0.116},
-      {0.551, 0.102, 0.226, 0.021, 0.026, 0.023, 0.012, 0.043},
-      {0.760, 0.072, 0.072, 0.016, 0.020, 0.014, 0.020, 0.028},
-      {0.686, 0.049, 0.162, 0.016, 0.017, 0.026, 0.026, 0.021},
-      {0.704, 0.150, 0.041, 0.014, 0.021, 0.011, 0.010, 0.051},
-      {0.520, 0.187, 0.044, 0.034, 0.035, 0.024, 0.025, 0.154}}},
-    {{{0.354, 0.321, 0.007, 0.001, 0.001, 0.016, 0.016, 0.315},
-      {0.546, 0.217, 0.097, 0.001, 0.001, 0.005, 0.007, 0.128},
-      {0.743, 0.124, 0.032, 0.001, 0.001, 0.002, 0.002, 0.097},
-      {0.816, 0.036, 0.056, 0.001, 0.001, 0.002, 0.002, 0.087},
-      {0.673, 0.106, 0.013, 0.001, 0.001, 0.001, 0.001, 0.208},
-      {0.457, 0.123, 0.010, 0.001, 0.001, 0.001, 0.001, 0.413}}},
-    {{{0.212, 0.363, 0.008, 0.002, 0.001, 0.012, 0.008, 0.415},
-      {0.490, 0.235, 0.102, 0.001, 0.001, 0.004, 0.003, 0.169},
-      {0.718, 0.150, 0.032, 0.001, 0.001, 0.005, 0.002, 0.094},
-      {0.821, 0.028, 0.059, 0.001, 0.001, 0.001, 0.002, 0.089},
-      {0.715, 0.063, 0.008, 0.001, 0.001, 0.001, 0.002, 0.212},
-      {0.493, 0.051, 0.005, 0.001, 0.001, 0.001, 0.001, 0.451}}},
-    {{{0.600, 0.169, 0.004, 0.001, 0.001, 0.005, 0.005, 0.225},
-      {0.778, 0.084, 0.058, 0.001, 0.001, 0.001, 0.002, 0.077},
-      {0.900, 0.034, 0.015, 0.001, 0.001, 0.001, 0.001, 0.050},
-      {0.895, 0.012, 0.054, 0.001, 0.001, 0.001, 0.001, 0.039},
-      {0.856, 0.050, 0.007, 0.001, 0.001, 0.001, 0.001, 0.088},
-      {0.611, 0.084, 0.008, 0.001, 0.001, 0.001, 0.001, 0.298}}},
-    {{{0.208, 0.471, 0.004, 0.001, 0.001, 0.006, 0.004, 0.313},
-      {0.586, 0.207, 0.058, 0.001, 0.001, 0.002, 0.001, 0.146},
-      {0.813, 0.095, 0.011, 0.001, 0.001, 0.001, 0.001, 0.079},
-      {0.879, 0.026, 0.016, 0.001, 0.001, 0.001, 0.001, 0.079},
-      {0.777, 0.042, 0.003, 0.001, 0.001, 0.001, 0.001, 0.178},
-      {0.537, 0.051, 0.003, 0.001, 0.001, 0.001, 0.001, 0.410}}},
+    {{{0.417f, 0.360f, 0.021f, 0.071f, 0.047f, 0.001f, 0.001f, 0.116f},
+      {0.551f, 0.102f, 0.226f, 0.021f, 0.026f, 0.023f, 0.012f, 0.043f},
+      {0.760f, 0.072f, 0.072f, 0.016f, 0.020f, 0.014f, 0.020f, 0.028f},
+      {0.686f, 0.049f, 0.162f, 0.016f, 0.017f, 0.026f, 0.026f, 0.021f},
+      {0.704f, 0.150f, 0.041f, 0.014f, 0.021f, 0.011f, 0.010f, 0.051f},
+      {0.520f, 0.187f, 0.044f, 0.034f, 0.035f, 0.024f, 0.025f, 0.154f}}},
+    {{{0.354f, 0.321f, 0.007f, 0.001f, 0.001f, 0.016f, 0.016f, 0.315f},
+      {0.546f, 0.217f, 0.097f, 0.001f, 0.001f, 0.005f, 0.007f, 0.128f},
+      {0.743f, 0.124f, 0.032f, 0.001f, 0.001f, 0.002f, 0.002f, 0.097f},
+      {0.816f, 0.036f, 0.056f, 0.001f, 0.001f, 0.002f, 0.002f, 0.087f},
+      {0.673f, 0.106f, 0.013f, 0.001f, 0.001f, 0.001f, 0.001f, 0.208f},
+      {0.457f, 0.123f, 0.010f, 0.001f, 0.001f, 0.001f, 0.001f, 0.413f}}},
+    {{{0.212f, 0.363f, 0.008f, 0.002f, 0.001f, 0.012f, 0.008f, 0.415f},
+      {0.490f, 0.235f, 0.102f, 0.001f, 0.001f, 0.004f, 0.003f, 0.169f},
+      {0.718f, 0.150f, 0.032f, 0.001f, 0.001f, 0.005f, 0.002f, 0.094f},
+      {0.821f, 0.028f, 0.059f, 0.001f, 0.001f, 0.001f, 0.002f, 0.089f},
+      {0.715f, 0.063f, 0.008f, 0.001f, 0.001f, 0.001f, 0.002f, 0.212f},
+      {0.493f, 0.051f, 0.005f, 0.001f, 0.001f, 0.001f, 0.001f, 0.451f}}},
+    {{{0.600f, 0.169f, 0.004f, 0.001f, 0.001f, 0.005f, 0.005f, 0.225f},
+      {0.778f, 0.084f, 0.058f, 0.001f, 0.001f, 0.001f, 0.002f, 0.077f},
+      {0.900f, 0.034f, 0.015f, 0.001f, 0.001f, 0.001f, 0.001f, 0.050f},
+      {0.895f, 0.012f, 0.054f, 0.001f, 0.001f, 0.001f, 0.001f, 0.039f},
+      {0.856f, 0.050f, 0.007f, 0.001f, 0.001f, 0.001f, 0.001f, 0.088f},
+      {0.611f, 0.084f, 0.008f, 0.001f, 0.001f, 0.001f, 0.001f, 0.298f}}},
+    {{{0.208f, 0.471f, 0.004f, 0.001f, 0.001f, 0.006f, 0.004f, 0.313f},
+      {0.586f, 0.207f, 0.058f, 0.001f, 0.001f, 0.002f, 0.001f, 0.146f},
+      {0.813f, 0.095f, 0.011f, 0.001f, 0.001f, 0.001f, 0.001f, 0.079f},
+      {0.879f, 0.026f, 0.016f, 0.001f, 0.001f, 0.001f, 0.001f, 0.079f},
+      {0.777f, 0.042f, 0.003f, 0.001f, 0.001f, 0.001f, 0.001f, 0.178f},
+      {0.537f, 0.051f, 0.003f, 0.001f, 0.001f, 0.001f, 0.001f, 0.410f}}},
 };
 // The powers of two of how far off they are, in the tangent plane and along the normal; and how
 // these grow with the sizes, of the first two components and of the others.
@@ -63,18 +64,21 @@ struct Scales {
   PerComponent tangent, normal;
   std::array<Sizes, 2> tangent_slope, normal_slope;
 };
-constexpr Scales kOne = {{-1.366, -0.838, -2.000, -7.777, -6.342, 0.009, -0.358, -0.665},
-                         {-1.032, 0.866, -1.873, -8.525, -7.578, -0.115, -0.001, -1.059},
-                         {{{0.340, 0.101, 0.453, 0.076}, {0.148, 0.206, 0.460, -0.362}}},
-                         {{{-0.285, 0.561, -0.334, 0.963}, {-0.290, 0.419, -0.013, 0.502}}}};
-constexpr Scales kSecond = {{-1.189, -0.681, -3.822, -1.903, -2.256, -2.647, -2.259, -2.468},
-                            {-1.552, -0.022, -2.562, -1.663, -1.650, -1.567, -1.565, -3.406},
-                            {{{0.329, 0.073, 0.375, 0.112}, {0.145, 0.081, 0.746, -0.208}}},
-                            {{{-0.295, 0.669, -0.275, 0.845}, {-0.158, 0.306, 0.192, 0.454}}}};
-constexpr Scales kFirst = {{-1.111, -0.577, -3.939, -2.098, -1.841, -1.997, -2.808, -2.437},
-                           {-1.480, 0.022, -2.505, -1.659, -1.974, -1.694, -1.505, -3.905},
-                           {{{0.380, 0.073, 0.346, 0.098}, {0.090, 0.119, 0.758, -0.174}}},
-                           {{{-0.335, 0.759, -0.373, 0.913}, {-0.202, 0.332, 0.144, 0.582}}}};
+constexpr Scales kOne = {
+    {-1.366f, -0.838f, -2.000f, -7.777f, -6.342f, 0.009f, -0.358f, -0.665f},
+    {-1.032f, 0.866f, -1.873f, -8.525f, -7.578f, -0.115f, -0.001f, -1.059f},
+    {{{0.340f, 0.101f, 0.453f, 0.076f}, {0.148f, 0.206f, 0.460f, -0.362f}}},
+    {{{-0.285f, 0.561f, -0.334f, 0.963f}, {-0.290f, 0.419f, -0.013f, 0.502f}}}};
+constexpr Scales kSecond = {
+    {-1.189f, -0.681f, -3.822f, -1.903f, -2.256f, -2.647f, -2.259f, -2.468f},
+    {-1.552f, -0.022f, -2.562f, -1.663f, -1.650f, -1.567f, -1.565f, -3.406f},
+    {{{0.329f, 0.073f, 0.375f, 0.112f}, {0.145f, 0.081f, 0.746f, -0.208f}}},
+    {{{-0.295f, 0.669f, -0.275f, 0.845f}, {-0.158f, 0.306f, 0.192f, 0.454f}}}};
+constexpr Scales kFirst = {
+    {-1.111f, -0.577f, -3.939f, -2.098f, -1.841f, -1.997f, -2.808f, -2.437f},
+    {-1.480f, 0.022f, -2.505f, -1.659f, -1.974f, -1.694f, -1.505f, -3.905f},
+    {{{0.380f, 0.073f, 0.346f, 0.098f}, {0.090f, 0.119f, 0.758f, -0.174f}}},
+    {{{-0.335f, 0.759f, -0.373f, 0.913f}, {-0.202f, 0.332f, 0.144f, 0.582f}}}};
 
 const Scales& scales_of(Leaving leaving) {
   if (leaving == Leaving::One) return kOne;
@@ -85,7 +89,7 @@ const Scales& scales_of(Leaving leaving) {
 }  // namespace
 
 Sizes sizes(const Surroundings& around, const Miss& miss) {
-  return {rough_log2(miss.tangent + 0.25), rough_log2(miss.normal + 0.25),
+  return {rough_log2(miss.tangent + 0.25f), rough_log2(miss.normal + 0.25f),
           rough_log2(around.mean_edge + 1), rough_log2(around.bend + 1)};
 }
 
@@ -105,18 +109,18 @@ std::size_t PlaceModel::triangles_class(std::size_t triangles) {
 PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::size_t triangles,
                                  const ChildRing& ring, const Sizes& sizes) const {
   const Weights& w = kWeights[std::size_t(leaving_)];
-  const Vec3d &own = around.middle[second], &other = around.middle[!second], &n = around.normal;
-  const double along = w.normal_own * dot(own, n) + w.normal_other * dot(other, n) +
-                       w.normal_thirds * dot(around.thirds, n) +
-                       w.normal_sibling * dot(ring.sibling, n);
-  Vec3d mean = own * w.own + other * w.other + around.thirds * w.thirds + ring.sibling * w.sibling +
+  const Vec3f &own = around.middle[second], &other = around.middle[!second], &n = around.normal;
+  const float along = w.normal_own * dot(own, n) + w.normal_other * dot(other, n) +
+                      w.normal_thirds * dot(around.thirds, n) +
+                      w.normal_sibling * dot(ring.sibling, n);
+  Vec3f mean = own * w.own + other * w.other + around.thirds * w.thirds + ring.sibling * w.sibling +
                n * along;
-  Vec3d sibling = ring.sibling, second_guess = own * 0.6;
-  const double away = 1 - ring.share;  // of the way between the two: to this one
+  Vec3f sibling = ring.sibling, second_guess = own * 0.6f;
+  const float away = 1 - ring.share;  // of the way between the two: to this one
   if (leaving_ == Leaving::SecondBetween) {
     mean = mean * away;
     sibling = mean * (-ring.share / away);
-    second_guess = own * (1.2 * away);
+    second_guess = own * (1.2f * away);
   } else if (leaving_ == Leaving::FirstOfBoth || leaving_ == Leaving::FirstBetween) {
     second_guess = ring.sibling * (-away / ring.share);
   }
@@ -125,7 +129,7 @@ PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::s
   result.weight = weights_[triangles_class(triangles)].of;
   const std::array<int, 3>& axis = around.axis;
   if (n[axis[2]] != 0) result.direction = {n[axis[0]], n[axis[1]], n[axis[2]]};
-  const auto expect = [&](std::size_t k, const Vec3d& place) {
+  const auto expect = [&](std::size_t k, const Vec3f& place) {
     result.center[0][k] = place[axis[0]];
     result.center[1][k] = place[axis[1]];
     result.center[2][k] = place[axis[2]] - rise(result.direction, place[axis[0]], place[axis[1]]);
@@ -138,11 +142,11 @@ PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::s
     // Round the ring from the sibling on: halfway between vertices that are opposite, and
     // parallelograms over the triangles at the sibling.
     const auto at = [&](std::size_t i) { return i == 0 ? sibling : ring.arc[i - 1]; };
-    expect(2, (at(0) + at(all / 2)) * 0.5);
+    expect(2, (at(0) + at(all / 2)) * 0.5f);
     expect(3, ring.arc[arc - 1] + sibling - ring.beyond[1]);
     expect(4, ring.arc[0] + sibling - ring.beyond[0]);
-    expect(5, (at(1) + at((1 + all / 2) % all)) * 0.5);
-    expect(6, (at(all - 1) + at(all - 1 - all / 2)) * 0.5);
+    expect(5, (at(1) + at((1 + all / 2) % all)) * 0.5f);
+    expect(6, (at(all - 1) + at(all - 1 - all / 2)) * 0.5f);
   } else {
     for (std::size_t k = 2; k < 7; ++k) result.weight[k] = 0;
   }

@@ -1,4 +1,4 @@
-// What a child's place is like: which mixture to code it by, learned from those before. Doubles
+// What a child's place is like: which mixture to code it by, learned from those before. Floats
 // without fused products, as in predict_position.h.
 //
 //   PlaceMixture mixture = model.mixture(around, second, triangles, ring, sizes);
@@ -28,10 +28,10 @@ enum class Leaving : std::uint8_t { One, SecondOfBoth, FirstOfBoth, SecondBetwee
 
 // A child's neighbours, where they are one closed fan, from the parent's place.
 struct ChildRing {
-  std::span<const Vec3d> arc;     // without the sibling, in order; empty: they are no such fan
-  std::array<Vec3d, 2> beyond{};  // what precedes and follows them at the sibling
-  Vec3d sibling{};                // or zero where its place is not known
-  double share = 0.5;  // of the way between the two from the sibling to the parent, if it is known
+  std::span<const Vec3f> arc;     // without the sibling, in order; empty: they are no such fan
+  std::array<Vec3f, 2> beyond{};  // what precedes and follows them at the sibling
+  Vec3f sibling{};                // or zero where its place is not known
+  float share = 0.5f;  // of the way between the two from the sibling to the parent, if it is known
 };
 
 // Of what the neighbours' misses, the edges and the bend lead to expect.

@@ -48,14 +48,15 @@ Surroundings surroundings(const PatchMesh& mesh, std::span<const std::uint32_t> 
         size_count += 1;
       }
     }
-    if (count > 0) result.middle[second] = sum * (1 / count);
+    if (count > 0) result.middle[second] = rounded_to_float(sum * (1 / count));
   }
-  if (third_count > 0) result.thirds = thirds * (1 / third_count);
+  if (third_count > 0) result.thirds = rounded_to_float(thirds * (1 / third_count));
   const Vec3d normal = normals[0] + normals[1];
-  result.normal = normalized(normal);
-  if (size_count > 0) result.mean_edge = size / size_count;
+  result.normal = rounded_to_float(normalized(normal));
+  const double mean_edge = size_count > 0 ? size / size_count : 0;
+  result.mean_edge = static_cast<float>(mean_edge);
   const double cosine = dot(normalized(normals[0]), normalized(normals[1]));
-  result.bend = result.mean_edge * std::sqrt(std::max(0.0, 1 - cosine));
+  result.bend = static_cast<float>(mean_edge * std::sqrt(std::max(0.0, 1 - cosine)));
 
   int main = 0;
   for (int k = 1; k < 3; ++k) {

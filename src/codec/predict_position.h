@@ -30,13 +30,17 @@ struct Miss {
 // A split's surroundings, seen from the parent's place.
 struct Surroundings {
   Vec3i parent{};
-  std::array<Vec3d, 2> middle;       // of each child's neighbours without the other child
-  Vec3d thirds{};                    // the middle of the vertices that both have
-  Vec3d normal{};                    // of the ring, of unit length; or zero
-  double mean_edge = 0;              // distance of the neighbours: |x| + |y| + |z|
-  double bend = 0;                   // how far that leads from one child's plane to the other's
+  std::array<Vec3f, 2> middle;       // of each child's neighbours without the other child
+  Vec3f thirds{};                    // the middle of the vertices that both have
+  Vec3f normal{};                    // of the ring, of unit length; or zero
+  float mean_edge = 0;               // distance of the neighbours: |x| + |y| + |z|
+  float bend = 0;                    // how far that leads from one child's plane to the other's
   std::array<int, 3> axis{0, 1, 2};  // the last one nearest to the normal
 };
+
+inline Vec3f rounded_to_float(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 
 inline Step from_parent(const Surroundings& around, const Vec3i& place) {
   Step step;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "codec/adaptive_bit.h"
+#include "codec/shares.h"
 #include "codec/stream.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -34,6 +36,18 @@ class RangeDecoder {
     model.learn(bit);
     normalize();
     return bit;
+  }
+
+  template <std::size_t N>
+  std::uint32_t one_of(const Shares<N>& shares, std::uint32_t) {
+    const std::uint32_t step = range_ >> 16;
+    const std::uint32_t i = shares.find(std::min(code_ / step, Shares<N>::kAll - 1));
+    const std::uint32_t begin = step * shares.begin(i);
+    code_ -= begin;
+    range_ = shares.begin(i + 1) == Shares<N>::kAll ? range_ - begin
+                                                    : step * shares.begin(i + 1) - begin;
+    normalize();
+    return i;
   }
 
   std::uint32_t uniform(std::uint32_t count, std::uint32_t) {

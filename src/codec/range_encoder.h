@@ -2,6 +2,7 @@
 #pragma once
 
 #include "codec/adaptive_bit.h"
+#include "codec/shares.h"
 #include "codec/stream.h"
 
 #include <cstddef>
@@ -29,6 +30,16 @@ class RangeEncoder {
     model.learn(bit);
     normalize();
     return bit;
+  }
+
+  template <std::size_t N>
+  std::uint32_t one_of(const Shares<N>& shares, std::uint32_t i) {
+    const std::uint32_t step = range_ >> 16, begin = step * shares.begin(i);
+    low_ += begin;
+    range_ = shares.begin(i + 1) == Shares<N>::kAll ? range_ - begin
+                                                    : step * shares.begin(i + 1) - begin;
+    normalize();
+    return i;
   }
 
   // One of `count` that are equally likely; count < 2^24.

@@ -1,17 +1,55 @@
 #include "codec/ring.h"
 
-#include <array>
+#include <algorithm>
 
 namespace crease::codec {
 
 namespace {
 
-// Of a triangle's other two vertices the one that follows `center`, or the one before it.
-std::uint32_t after(const Corners& t, std::uint32_t center) {
-  return t[0] == center ? t[1] : t[1] == center ? t[2] : t[0];
+using Ends = std::array<std::uint32_t, kLargestRing + 1>;
+
+// Whether no vertex is there twice.
+bool are_distinct(std::span<const std::uint32_t> vertices) {
+  std::array<std::uint64_t, 4> seen{};
+  std::uint64_t again = 0;
+  for (const std::uint32_t v : vertices) {
+    const std::uint64_t bit = std::uint64_t(1) << (v & 63);
+    std::uint64_t& word = seen[v >> 6 & 3];
+    again |= word & bit;
+    word |= bit;
+  }
+  if (again == 0) return true;
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    const auto before = vertices.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(vertices.begin(), before, *before) != before) return false;
+  }
+  return true;
 }
-std::uint32_t before(const Corners& t, std::uint32_t center) {
-  return t[0] == center ? t[2] : t[1] == center ? t[0] : t[1];
+
+// Puts triangles and their ends in order, from the first one on or, in an open fan, from that where
+// it starts; false if there is none. Time O(n^2), without a branch that depends on who is where.
+bool sort_ring(std::span<const std::uint32_t> around, Ring& ring) {
+  const std::size_t n = around.size();
+  Ends from, to, after, follows;
+  std::copy_n(ring.from.begin(), n, from.begin());
+  std::copy_n(ring.next.begin(), n, to.begin());
+  std::fill_n(follows.begin(), n + 1, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t next = n;
+    for (std::size_t j = 0; j < n; ++j) next = from[j] == to[i] ? j : next;
+    after[i] = static_cast<std::uint32_t>(next);
+    follows[next] = 1;
+  }
+  std::size_t at = 0;
+  for (std::size_t i = n; i-- > 0;) at = follows[i] ? at : i;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (at == n) return false;
+    ring.sorted[i] = around[at];
+    ring.from[i] = from[at];
+    ring.next[i] = to[at];
+    at = after[at];
+  }
+  return true;
 }
 
 }  // namespace
@@ -20,53 +58,25 @@ bool find_ring(std::span<const Corners> triangles, std::span<const std::uint32_t
                std::uint32_t center, Ring& ring) {
   const std::size_t n = around.size();
   if (n == 0 || n > kLargestRing) return false;
-  std::array<std::uint32_t, kLargestRing> from, to;  // of each triangle
+  constexpr std::size_t kAfter[] = {1, 2, 0}, kBefore[] = {2, 0, 1};
+  std::uint32_t apart = 0, last = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Corners& t = triangles[around[i]];
-    from[i] = after(t, center);
-    to[i] = before(t, center);
+    const std::size_t c = std::size_t(t[1] == center) + 2 * std::size_t(t[2] == center);
+    ring.from[i] = t[kAfter[c]];
+    ring.next[i] = t[kBefore[c]];
+    apart |= i > 0 ? last ^ ring.from[i] : 0;
+    last = ring.next[i];
   }
-  const auto find = [n](const std::array<std::uint32_t, kLargestRing>& in, std::uint32_t vertex) {
-    std::size_t i = 0;
-    while (i < n && in[i] != vertex) ++i;
-    return i;
-  };
-
-  // Onwards from the first triangle. Who comes back to it after all n has met each once, so that no
-  // two start or end alike.
-  ring.triangles.resize(n);
-  ring.vertices.resize(n);
-  std::size_t at = 0, count = 0;
-  do {
-    ring.triangles[count] = around[at];
-    ring.vertices[count] = from[at];
-    at = find(from, to[at]);
-    ++count;
-  } while (at != 0 && at < n && count < n);
-  ring.closed = at == 0;
-  if (ring.closed) return count == n;
-  if (at < n) return false;  // round and round without the first
-
-  // An open fan: back from the first triangle to where it starts, and on from there.
-  std::size_t start = 0;
-  for (std::size_t i = 0; (at = find(to, from[start])) < n; ++i) {
-    if (i == n) return false;
-    start = at;
+  ring.triangles = around;
+  if (apart != 0) {
+    if (!sort_ring(around, ring)) return false;
+    ring.triangles = {ring.sorted.data(), n};
   }
-  std::uint32_t end = 0;
-  at = start;
-  for (count = 0; at < n && count < n; ++count) {
-    ring.triangles[count] = around[at];
-    ring.vertices[count] = from[at];
-    end = to[at];
-    at = find(from, end);
-  }
-  if (at < n || count < n) return false;
-  ring.vertices.push_back(end);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (find(from, from[i]) != i) return false;  // two start alike
-  }
-  return true;
+  ring.closed = ring.next[n - 1] == ring.from[0];
+  ring.from[n] = ring.next[n - 1];
+  ring.vertices = {ring.from.data(), ring.closed ? n : n + 1};
+  return are_distinct(ring.vertices);
 }
 
 }  // namespace crease::codec

@@ -24,6 +24,20 @@ class TriangleLists {
     if (list.count == list.room) move(list);
     triangles_[list.first + list.count++] = triangle;
   }
+  // Before the one that is there now at `place`, or at the end.
+  void insert(std::uint32_t vertex, std::size_t place, std::uint32_t triangle) {
+    add(vertex, triangle);
+    const List& list = lists_[vertex];
+    const auto first = triangles_.begin() + static_cast<std::ptrdiff_t>(list.first);
+    const auto end = first + static_cast<std::ptrdiff_t>(list.count);
+    std::copy_backward(first + static_cast<std::ptrdiff_t>(place), end - 1, end);
+    first[static_cast<std::ptrdiff_t>(place)] = triangle;
+  }
+  // The same ones in another order.
+  void reorder(std::uint32_t vertex, std::span<const std::uint32_t> order) {
+    std::copy(order.begin(), order.end(),
+              triangles_.begin() + static_cast<std::ptrdiff_t>(lists_[vertex].first));
+  }
   void clear(std::uint32_t vertex) { lists_[vertex].count = 0; }
 
  private:

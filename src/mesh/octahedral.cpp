@@ -170,8 +170,7 @@ std::int32_t OctahedralCoding::wrapped(std::int64_t x) const {
 // In the turned frame canonical codes have the sign of the prediction at the square's sides: of two
 // codes of one direction it is the nearer one. The zero vector keeps the corner that no canonical
 // code has.
-OctahedralResidual OctahedralCoding::residual(OctahedralCode code, OctahedralCode predicted) const {
-  const Frame frame = frame_of(predicted);
+OctahedralResidual OctahedralCoding::residual(OctahedralCode code, const Frame& frame) const {
   Point p = point_of(code);
   if (code != kZero) {
     if (frame.flip) p = folded(p);
@@ -181,24 +180,39 @@ OctahedralResidual OctahedralCoding::residual(OctahedralCode code, OctahedralCod
           wrapped(std::int64_t(p.y) - frame.predicted.y)};
 }
 
-std::array<double, 2> OctahedralCoding::residual_of(const Vec3d& direction,
-                                                    OctahedralCode predicted) const {
-  const Frame frame = frame_of(predicted);
-  const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-  if (!(sum > 0)) return {};
-  std::array<double, 2> p{direction.x * m_ / sum, direction.y * m_ / sum};
-  if ((direction.z < 0) != frame.flip) {
-    const std::array<double, 2> upper = p;
-    p[0] = std::copysign(m_ - std::abs(upper[1]), upper[0]);
-    p[1] = std::copysign(m_ - std::abs(upper[0]), upper[1]);
-  }
-  for (int i = 0; i < frame.turns; ++i) p = {-p[1], p[0]};
-  return {p[0] - frame.predicted.x, p[1] - frame.predicted.y};
+// Where a direction lies on the square, or on its other half; `sum` of its sizes, above 0.
+std::array<double, 2> OctahedralCoding::on_square(const Vec3d& direction, double sum,
+                                                  bool flip) const {
+  const double unit = m_ / sum;
+  const std::array<double, 2> p{direction.x * unit, direction.y * unit};
+  if ((direction.z < 0) == flip) return p;
+  return {std::copysign(m_ - std::abs(p[1]), p[0]), std::copysign(m_ - std::abs(p[0]), p[1])};
 }
 
-OctahedralCode OctahedralCoding::restore(OctahedralResidual residual,
-                                         OctahedralCode predicted) const {
-  const Frame frame = frame_of(predicted);
+OctahedralCode OctahedralCoding::near(const Vec3d& direction) const {
+  const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
+  if (!(sum > 0)) return kZero;
+  const std::array<double, 2> p = on_square(direction, sum, false);
+  const auto rounded = [&](double x) {  // cut off from above zero
+    const std::int32_t up = static_cast<std::int32_t>(x + (m_ + 0.5)) - m_;
+    return std::clamp(up, -m_, m_);
+  };
+  const OctahedralCode code = code_of(settled({rounded(p[0]), rounded(p[1])}));
+  return code;
+}
+
+std::array<float, 2> OctahedralCoding::residual_of(const Vec3d& direction,
+                                                   const Frame& frame) const {
+  const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
+  if (!(sum > 0)) return {};
+  std::array<double, 2> p = on_square(direction, sum, frame.flip);
+  if (frame.turns & 1) p = {-p[1], p[0]};
+  if (frame.turns & 2) p = {-p[0], -p[1]};
+  return {static_cast<float>(p[0] - frame.predicted.x),
+          static_cast<float>(p[1] - frame.predicted.y)};
+}
+
+OctahedralCode OctahedralCoding::restore(OctahedralResidual residual, const Frame& frame) const {
   Point p{wrapped(std::int64_t(residual.x) + frame.predicted.x),
           wrapped(std::int64_t(residual.y) + frame.predicted.y)};
   if (code_of(p) == kZero) return kZero;

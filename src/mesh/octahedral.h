@@ -74,29 +74,39 @@ class OctahedralCoding {
   // What is left of a code where another is expected, small where the directions are near: both are
   // turned so that the expected one lies inside the diamond, away from the folds, in the quadrant
   // x > 0, y >= 0. Then it is a difference, taken around the square. Both codes canonical.
-  OctahedralResidual residual(OctahedralCode code, OctahedralCode predicted) const;
-  // Where the residual of a direction lies that need not be a code's, about: not around the square.
-  std::array<double, 2> residual_of(const Vec3d& direction, OctahedralCode predicted) const;
+  OctahedralResidual residual(OctahedralCode code, OctahedralCode predicted) const {
+    return residual(code, frame_of(predicted));
+  }
   // The inverse of residual(). Any numbers give a canonical code, so a file's need no check.
-  OctahedralCode restore(OctahedralResidual residual, OctahedralCode predicted) const;
+  OctahedralCode restore(OctahedralResidual residual, OctahedralCode predicted) const {
+    return restore(residual, frame_of(predicted));
+  }
 
- private:
   struct Point {
-    std::int32_t x, y;
+    std::int32_t x = 0, y = 0;
   };
   struct Frame {  // how a prediction is turned
     bool flip = false;
     int turns = 0;
     Point predicted{};
   };
+  // The same, of what several residuals have in common. near() is a code within about one of
+  // encode()'s, in a fraction of the time.
+  Frame frame_of(OctahedralCode predicted) const;
+  OctahedralCode near(const Vec3d& direction) const;
+  OctahedralResidual residual(OctahedralCode code, const Frame& frame) const;
+  OctahedralCode restore(OctahedralResidual residual, const Frame& frame) const;
+  // Where the residual of a direction lies that need not be a code's, about: not around the square.
+  std::array<float, 2> residual_of(const Vec3d& direction, const Frame& frame) const;
 
+ private:
   Point point_of(OctahedralCode code) const;
   OctahedralCode code_of(Point p) const;
   Vec3i vector_of(Point p) const;
   Point folded(Point p) const;
   Point inside(Point p) const;
   Point settled(Point p) const;  // canonical
-  Frame frame_of(OctahedralCode predicted) const;
+  std::array<double, 2> on_square(const Vec3d& direction, double sum, bool flip) const;
   std::int32_t wrapped(std::int64_t x) const;
 
   std::int32_t m_;

@@ -1,13 +1,15 @@
-// docs/format-block.md, "Arithmetic": grid points, vectors of doubles, logarithms.
+// docs/format-block.md, "Arithmetic": grid points, vectors, logarithms.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace plain {
 
@@ -28,28 +30,34 @@ inline std::int32_t less(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
 }
 
-struct Vector {
-  double x = 0, y = 0, z = 0;
+template <class Real>
+struct VectorOf {
+  Real x = 0, y = 0, z = 0;
 
-  double along(std::size_t axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
+  Real along(std::size_t axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
   bool is_zero() const { return x == 0 && y == 0 && z == 0; }
+
+  friend VectorOf operator+(const VectorOf& a, const VectorOf& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  friend VectorOf operator-(const VectorOf& a, const VectorOf& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  friend VectorOf operator*(const VectorOf& a, Real s) { return {a.x * s, a.y * s, a.z * s}; }
 };
-inline Vector operator+(const Vector& a, const Vector& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline Vector operator-(const Vector& a, const Vector& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline Vector operator*(const Vector& a, double s) {
-  return {a.x * s, a.y * s, a.z * s};
-}
-inline double dot(const Vector& a, const Vector& b) {
+using Vector = VectorOf<double>;
+using FloatVector = VectorOf<float>;
+
+template <class Real>
+Real dot(const VectorOf<Real>& a, const VectorOf<Real>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline Vector cross(const Vector& a, const Vector& b) {
+template <class Real>
+VectorOf<Real> cross(const VectorOf<Real>& a, const VectorOf<Real>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double length(const Vector& a) {
+template <class Real>
+Real length(const VectorOf<Real>& a) {
   return std::sqrt(dot(a, a));
 }
 inline double length_1(const Vector& a) {
@@ -58,6 +66,16 @@ inline double length_1(const Vector& a) {
 inline Vector unit(const Vector& a) {
   const double l = length(a);
   return l > 0 ? a * (1 / l) : a;
+}
+inline FloatVector rounded(const Vector& a) {
+  return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+}
+
+// "By fours".
+inline float sum_by_fours(const std::vector<float>& terms) {
+  std::array<float, 4> sum{};
+  for (std::size_t i = 0; i < terms.size(); ++i) sum[i % 4] += terms[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 // A place on the grid.
@@ -72,18 +90,17 @@ inline Vector difference(const Point& p, const Point& from) {
   return {double(p.x) - double(from.x), double(p.y) - double(from.y), double(p.z) - double(from.z)};
 }
 
-inline double log2_of(double x) {
-  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
-  const double e = double(std::int64_t(bits >> 52) - 1023);
-  const std::uint64_t fraction = bits & 0xfffffffffffffu;
-  const double t = std::bit_cast<double>(fraction | 0x3ff0000000000000u) - 1;
-  return e + t + 0.34 * t * (1 - t);
+inline float log2_of(float x) {
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
+  const float e = float(std::int32_t(bits >> 23) - 127);
+  const float t = std::bit_cast<float>((bits & 0x7fffffu) | 0x3f800000u) - 1;
+  return e + t + 0.34f * t * (1 - t);
 }
 
-inline double power_of_2(double x) {
-  const double cut = std::clamp(x, -60.0, 60.0) + 64;
-  const double w = std::floor(cut), t = cut - w;
-  return std::ldexp(1.0, static_cast<int>(w) - 64) * (1 + t - 0.34 * t * (1 - t));
+inline float power_of_2(float x) {
+  const float cut = std::clamp(x, -60.0f, 60.0f) + 64;
+  const float w = std::floor(cut), t = cut - w;
+  return std::ldexp(1.0f, static_cast<int>(w) - 64) * (1 + t - 0.34f * t * (1 - t));
 }
 
 inline double angle_of(double y, double x) {

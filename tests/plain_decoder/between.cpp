@@ -27,17 +27,16 @@ BetweenModel::BetweenModel()
       is_one_{start_at(kIsOne[0]), start_at(kIsOne[1])},
       is_two_{start_at(kIsTwo[0]), start_at(kIsTwo[1])} {}
 
-Between BetweenModel::read(RangeDecoder& in, double f, double g,
-                           const std::array<double, 3>& normal) {
+Between BetweenModel::read(RangeDecoder& in, float f, float g, const std::array<float, 3>& normal) {
   Between result;
   result.eighths = read_eighths(in, f, g);
   result.axis = read_axis(in, normal);
   return result;
 }
 
-std::int64_t BetweenModel::read_eighths(RangeDecoder& in, double f, double g) {
+std::int64_t BetweenModel::read_eighths(RangeDecoder& in, float f, float g) {
   const bool first_is_nearer = f <= g;
-  const double lesser = first_is_nearer ? f : g;
+  const float lesser = first_is_nearer ? f : g;
   const std::size_t c =
       f + g > 0 ? std::min<std::size_t>(static_cast<std::size_t>(8 * lesser / (f + g)), 3) : 3;
   if (in_middle_[c].read(in)) return 4;
@@ -52,10 +51,10 @@ std::int64_t BetweenModel::read_eighths(RangeDecoder& in, double f, double g) {
   return to_first ? 4 - away : 4 + away;
 }
 
-std::size_t BetweenModel::read_axis(RangeDecoder& in, const std::array<double, 3>& normal) {
-  const double n0 = std::abs(normal[0]), n1 = std::abs(normal[1]), n2 = std::abs(normal[2]);
+std::size_t BetweenModel::read_axis(RangeDecoder& in, const std::array<float, 3>& normal) {
+  const float n0 = std::abs(normal[0]), n1 = std::abs(normal[1]), n2 = std::abs(normal[2]);
   const std::size_t c =
-      n2 > 0 ? static_cast<std::size_t>(std::min(4 * std::max(n0, n1) / n2, 3.0)) : 0;
+      n2 > 0 ? static_cast<std::size_t>(std::min(4 * std::max(n0, n1) / n2, 3.0f)) : 0;
   if (third_axis_[c].read(in)) return 2;
   return second_axis_[n1 > n0].read(in) ? 1 : 0;
 }

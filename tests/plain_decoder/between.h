@@ -21,11 +21,11 @@ class BetweenModel {
 
   bool read_is_between(RangeDecoder& in) { return is_between_.read(in); }
   // f and g: the lengths of the first and of the second child's middle. `normal`: along the axes.
-  Between read(RangeDecoder& in, double f, double g, const std::array<double, 3>& normal);
+  Between read(RangeDecoder& in, float f, float g, const std::array<float, 3>& normal);
 
  private:
-  std::int64_t read_eighths(RangeDecoder& in, double f, double g);
-  std::size_t read_axis(RangeDecoder& in, const std::array<double, 3>& normal);
+  std::int64_t read_eighths(RangeDecoder& in, float f, float g);
+  std::size_t read_axis(RangeDecoder& in, const std::array<float, 3>& normal);
 
   AdaptiveBit is_between_{0.75, 10};
   std::array<AdaptiveBit, 4> in_middle_, to_nearer_, third_axis_;

@@ -56,8 +56,33 @@ std::uint32_t RangeDecoder::index(std::size_t n) {
   return static_cast<std::uint32_t>(number);
 }
 
-bool RangeDecoder::known(double part, double whole) {
-  double p = whole > 0 ? part / whole * 65'536 : 32'768;
+std::size_t RangeDecoder::one_of(const std::vector<float>& sums, float before, std::size_t most) {
+  const std::size_t n = sums.size();
+  const std::uint32_t free = static_cast<std::uint32_t>(65'536 - 8 * most);
+  const float whole = sums.back() - before;
+  std::vector<std::uint32_t> begin{0};
+  float greatest = 0;
+  for (std::size_t k = 1; k < n; ++k) {
+    if (whole > 0) {
+      greatest = std::max(greatest, (sums[k - 1] - before) * (static_cast<float>(free) / whole));
+      const float e = std::min(greatest, static_cast<float>(free));
+      begin.push_back(static_cast<std::uint32_t>(e) + static_cast<std::uint32_t>(8 * k));
+    } else {
+      begin.push_back(static_cast<std::uint32_t>(k * (65'536 / n)));
+    }
+  }
+  begin.push_back(65'536);
+  const std::uint32_t step = range_ >> 16, at = std::min(code_ / step, 65'535u);
+  std::size_t k = 0;
+  while (begin[k + 1] <= at) ++k;
+  code_ -= step * begin[k];
+  range_ = k + 1 == n ? range_ - step * begin[k] : step * (begin[k + 1] - begin[k]);
+  fill();
+  return k;
+}
+
+bool RangeDecoder::known(float part, float whole) {
+  float p = whole > 0 ? part / whole * 65'536 : 32'768;
   if (!(p > 24)) p = 24;
   if (p > 65'512) p = 65'512;
   return bit(static_cast<std::uint32_t>(p));

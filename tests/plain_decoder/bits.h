@@ -18,7 +18,9 @@ class RangeDecoder {
   std::uint32_t uniform(std::uint32_t n);  // n at most 65,536
   std::uint32_t index(std::size_t n);
   // "Known bit".
-  bool known(double part, double whole);
+  bool known(float part, float whole);
+  // "One of" as many as there are sums, from `before` on, out of 8 or 16.
+  std::size_t one_of(const std::vector<float>& sums, float before, std::size_t most);
 
  private:
   std::uint32_t next();

@@ -2,6 +2,14 @@
 
 namespace plain {
 
+namespace {
+
+float size(double x) {
+  return log2_of(static_cast<float>(x));
+}
+
+}  // namespace
+
 DirectionModel::DirectionModel(const DirectionStart& start) {
   weights_.of = start.weights;
   scales_ = {start.logarithms, start.slopes};
@@ -9,34 +17,34 @@ DirectionModel::DirectionModel(const DirectionStart& start) {
 
 Code DirectionModel::read(RangeDecoder& in, const Octahedral& coding, const Candidates& candidates,
                           const Sizes& sizes) {
-  const Octahedral::Frame frame = coding.frame(coding.encode(candidates[0]));
+  const Octahedral::Frame frame = coding.frame(coding.rough(candidates[0]));
   const PerComponent scale = scales_.at(sizes);
   Axis axis;
   axis.weight = weights_.of;
   PerComponent second_centre{}, excesses{};
   for (std::size_t k = 0; k < kComponents; ++k) {
-    axis.inverse_scale[k] = 1 / (scale[k] + 0.1);
+    axis.inverse_scale[k] = 1 / (scale[k] + 0.1f);
     if (candidates[k].is_zero()) {
       axis.weight[k] = 0;
       continue;
     }
-    const std::array<double, 2> near = coding.near(candidates[k], frame);
+    const std::array<float, 2> near = coding.near(candidates[k], frame);
     axis.centre[k] = near[0];
     second_centre[k] = near[1];
   }
   // 1.
   const std::int32_t x = read_axis(in, axis, 0, scale[0]);
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double i = axis.inverse_scale[k], z = (x - axis.centre[k]) * i;
-    excesses[k] = excess(z * z) * (1 - 0.1 * i);
-    axis.inverse_scale[k] = 1 / (scale[k] * std::sqrt(0.5 + 0.5 * z * z) + 0.1);
+    const float i = axis.inverse_scale[k], z = (float(x) - axis.centre[k]) * i;
+    excesses[k] = excess(z * z) * (1 - 0.1f * i);
+    axis.inverse_scale[k] = 1 / (scale[k] * std::sqrt(0.5f + 0.5f * z * z) + 0.1f);
   }
   // 2.
   axis.centre = second_centre;
   const std::int32_t y = read_axis(in, axis, 0, scale[0]);
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double i = axis.inverse_scale[k], z = (y - axis.centre[k]) * i;
-    excesses[k] += excess(z * z) * (1 - 0.1 * i);
+    const float i = axis.inverse_scale[k], z = (float(y) - axis.centre[k]) * i;
+    excesses[k] += excess(z * z) * (1 - 0.1f * i);
   }
   PerComponent shares = axis.weight;
   if (make_shares(shares)) {
@@ -112,9 +120,9 @@ Code DirectionReader::read_of_vertex(std::uint32_t v, const std::optional<Code>&
   candidates[6] = unit(F);
   if (!h.is_zero()) candidates[7] = h + g;
   const double mean_spread = triangles > 0 ? spread / triangles : 1;
-  const Sizes sizes{log2_of(length(o) + 0.002),
-                    log2_of(std::sqrt(std::max(0.0, 1 - mean_spread)) + 0.002),
-                    log2_of(length(h - g) + 0.002), count > 0 ? 1.0 : 0.0};
+  const Sizes sizes{size(length(o) + 0.002),
+                    size(std::sqrt(std::max(0.0, 1 - mean_spread)) + 0.002),
+                    size(length(h - g) + 0.002), count > 0 ? 1.0f : 0.0f};
   return of_vertex_.read(in_, coding_, candidates, sizes);
 }
 
@@ -158,9 +166,9 @@ Code DirectionReader::read_of_corner(const CornerDirection& asked) {
                               geometric_[asked.vertex],
                               unit(own)};
   const auto from_own = [&](std::size_t k) {
-    return log2_of(length(candidates[k] - candidates[0]) + 0.002);
+    return size(length(candidates[k] - candidates[0]) + 0.002);
   };
-  const Sizes sizes{from_own(1), from_own(2), log2_of(length(own) + 1), from_own(5)};
+  const Sizes sizes{from_own(1), from_own(2), size(length(own) + 1), from_own(5)};
   return of_corner_.read(in_, coding_, candidates, sizes);
 }
 

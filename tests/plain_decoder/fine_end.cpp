@@ -106,17 +106,19 @@ void read_labels(RangeDecoder& in, BlockState& block) {
   BitsBy<2> is_box_label;
   AdaptiveBit is_other_label;
   Magnitude any_label;
+  std::vector<std::optional<std::uint32_t>> last_at(surface.places.size());
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     const Place place = place_of(surface, t);
     std::optional<std::uint32_t> label, of_other;
     if (const Box* box = nearest_box(boxes, place)) {
       std::size_t agreement = 0;
-      for (const std::uint32_t beside : surface.neighbours_before(t)) {
-        if (labels[beside] == box->label) {
+      for (const std::uint32_t v : surface.triangles[t]) {
+        if (!last_at[v]) continue;
+        if (*last_at[v] == box->label) {
           agreement = std::max<std::size_t>(agreement, 1);
         } else {
           agreement = 2;
-          of_other = labels[beside];
+          of_other = last_at[v];
         }
       }
       if (is_box_label[{box->away(place) > 0, agreement}].read(in)) label = box->label;
@@ -124,6 +126,7 @@ void read_labels(RangeDecoder& in, BlockState& block) {
     if (!label && of_other && is_other_label.read(in)) label = of_other;
     if (!label) label = any_label.read(in);
     labels.push_back(*label);
+    for (const std::uint32_t v : surface.triangles[t]) last_at[v] = label;
     put_in_box(boxes, *label, place);
   }
 }

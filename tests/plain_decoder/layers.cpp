@@ -62,6 +62,9 @@ std::vector<std::uint32_t> LayerReader::corners_at(std::uint32_t v,
     const Triangle& c = surface_.triangles[t];
     corners.push_back(3 * t + (c[0] == v ? 0 : c[1] == v ? 1 : 2));
   }
+  if (fan && fan->closed) {
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  }
   return corners;
 }
 

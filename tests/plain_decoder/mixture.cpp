@@ -6,95 +6,106 @@ namespace plain {
 
 namespace {
 
-// H(d), and what each component has there.
-struct Reading {
-  double sum = 0;
-  PerComponent g{};
-};
-
 std::size_t group_of(std::size_t component) {
   return component < 2 ? 0 : 1;
 }
 
 }  // namespace
 
-std::int32_t read_axis(RangeDecoder& in, Axis& axis, std::int32_t start, double size) {
-  double all = 0;
-  for (const double w : axis.weight) all += w;
-  std::array<bool, kComponents> counts{};
-  double W = 0, I = 0;
+std::int32_t read_axis(RangeDecoder& in, Axis& axis, std::int32_t start, float size) {
+  const float least = sum_by_fours({axis.weight.begin(), axis.weight.end()}) * (1.0f / 256);
+  std::vector<float> counting;
+  float I = 0;
+  PerComponent centre;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    counts[k] = axis.weight[k] > all * (1.0 / 1024);
-    if (!counts[k]) axis.weight[k] = 0;
-    if (counts[k]) W += axis.weight[k];
-    if (counts[k]) I = std::max(I, axis.inverse_scale[k]);
+    centre[k] = axis.centre[k] - float(start);
+    counting.push_back(axis.weight[k] > least ? axis.weight[k] : 0.0f);
+    if (axis.weight[k] > least) I = std::max(I, axis.inverse_scale[k]);
   }
-  const auto H = [&](std::int64_t d) {
-    const double y = double(d) + start - 0.5;
-    Reading at;
+  const float W = sum_by_fours(counting);
+  const auto g = [&](std::size_t k, float y) {
+    const float z = (y - centre[k]) * axis.inverse_scale[k];
+    return z / std::sqrt(1 + z * z);
+  };
+  const auto G = [&](float y) {
+    float sum = 0;
     for (std::size_t k = 0; k < kComponents; ++k) {
-      if (!counts[k]) continue;
-      const double z = (y - axis.centre[k]) * axis.inverse_scale[k];
-      at.g[k] = z / std::sqrt(1 + z * z);
-      at.sum += axis.weight[k] * at.g[k];
+      if (axis.weight[k] > least) sum += axis.weight[k] * g(k, y);
     }
-    return at;
+    return sum;
+  };
+  const auto parts_from = [&](std::int64_t low, std::int64_t width, std::size_t n) {
+    std::vector<float> sums;
+    for (std::size_t k = 1; k <= n; ++k)
+      sums.push_back(G(float(low) + float(width) * float(k) - 0.5f));
+    return sums;
   };
 
-  const double whole_size = size > 0 ? std::floor(std::min(size, 1e8)) : 0;
-  const int n = 2 + static_cast<int>(std::bit_width(static_cast<std::uint32_t>(whole_size)));
-  std::int64_t low = -(std::int64_t(1) << n), high = std::int64_t(1) << n;
-  Reading at_low = H(low), at_high = H(high);
-  if (!in.known(at_high.sum - at_low.sum, 2 * W)) {
-    const bool above = in.known(W - at_high.sum, (W - at_high.sum) + (at_low.sum + W));
-    for (int i = n;; ++i) {
-      low = above ? std::int64_t(1) << i : -(std::int64_t(2) << i);
-      high = above ? std::int64_t(2) << i : -(std::int64_t(1) << i);
-      at_low = H(low);
-      at_high = H(high);
-      if (i == 30) break;
-      if (in.known(at_high.sum - at_low.sum, above ? W - at_low.sum : at_high.sum + W)) break;
+  // 1.
+  const float whole_size = size > 0 ? std::floor(std::min(size, 1e8f)) : 0;
+  int bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(whole_size)));
+  const std::int64_t step = std::int64_t(1) << bits;
+  std::vector<float> sums = parts_from(-4 * step, step, 7);
+  sums.push_back(W);
+  std::size_t part = in.one_of(sums, -W, 8);
+  std::int64_t low = (std::int64_t(part) - 4) * step;
+  float below = part > 0 ? sums[part - 1] : -W;
+  // 2.
+  if (part == 0 || part == 7) {
+    const bool up = part == 7;
+    float reached = up ? below : sums[0];
+    for (bits += 2;; ++bits) {
+      const std::int64_t width = std::int64_t(1) << bits, from = width - step;
+      low = up ? from : -from - width;
+      const float next = G(float(up ? from + width : low) - 0.5f);
+      below = up ? reached : next;
+      if (bits == 31) break;
+      if (up ? in.known(next - reached, W - reached) : in.known(reached - next, reached + W)) break;
+      reached = next;
     }
   }
-  while (high - low > 1 && double(high - low) > 0.25 / I) {
-    const std::int64_t middle = (low + high) / 2;
-    const Reading at_middle = H(middle);
-    if (in.known(at_high.sum - at_middle.sum, at_high.sum - at_low.sum)) {
-      low = middle;
-      at_low = at_middle;
-    } else {
-      high = middle;
-      at_high = at_middle;
-    }
+  // 3.
+  const float even_width = 1 / I;
+  int even = 0;
+  while (even < 28 && float(std::int64_t(2) << even) <= even_width) ++even;
+  while (bits > even) {
+    const int now = std::min(3, bits - even);
+    bits -= now;
+    const std::int64_t width = std::int64_t(1) << bits;
+    sums = parts_from(low, width, std::size_t(1) << now);
+    part = in.one_of(sums, below, 8);
+    low += std::int64_t(part) * width;
+    if (part > 0) below = sums[part - 1];
   }
+  // 4.
+  const std::int64_t width = std::int64_t(1) << bits;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    if (counts[k]) axis.weight[k] = axis.weight[k] * (at_high.g[k] - at_low.g[k]);
+    axis.weight[k] = axis.weight[k] * (g(k, float(low + width) - 0.5f) - g(k, float(low) - 0.5f));
   }
-  low += in.index(static_cast<std::size_t>(high - low));
+  low += in.index(static_cast<std::size_t>(width));
   return sum_of(start, static_cast<std::int32_t>(static_cast<std::uint32_t>(low)));
 }
 
-std::int32_t round_of(double x) {
-  constexpr double kMost = 1 << 30;
+std::int32_t round_of(float x) {
+  constexpr float kMost = 1 << 30;
   if (!(x > -kMost)) x = -kMost;
   if (x > kMost) x = kMost;
-  return static_cast<std::int32_t>(std::floor(x + 0.5));
+  return static_cast<std::int32_t>(std::floor(x + 0.5f));
 }
 
-double excess(double q) {
+float excess(float q) {
   return 3 * q / (1 + q) - 1;
 }
 
 bool make_shares(PerComponent& weights) {
-  double sum = 0;
-  for (const double w : weights) sum += w;
+  const float sum = sum_by_fours({weights.begin(), weights.end()});
   if (!(sum > 0)) return false;
-  for (double& w : weights) w = w / sum;
+  for (float& w : weights) w = w * (1 / sum);
   return true;
 }
 
 void ComponentWeights::learn(const PerComponent& shares) {
-  const double r = 1.0 / (std::min(n, 100) + 15);
+  const float r = 1 / float(std::min(n, 100) + 15);
   ++n;
   for (std::size_t k = 0; k < kComponents; ++k) of[k] += r * (shares[k] - of[k]);
 }
@@ -102,13 +113,13 @@ void ComponentWeights::learn(const PerComponent& shares) {
 void MeanSizes::learn(const Sizes& sizes) {
   if (!has_any) of = sizes;
   has_any = true;
-  for (std::size_t j = 0; j < 4; ++j) of[j] += 0.02 * (sizes[j] - of[j]);
+  for (std::size_t j = 0; j < 4; ++j) of[j] += 0.02f * (sizes[j] - of[j]);
 }
 
 PerComponent ComponentScales::at(const Sizes& sizes) const {
   PerComponent result;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    double b = 0;
+    float b = 0;
     for (std::size_t j = 0; j < 4; ++j) b += slope[group_of(k)][j] * sizes[j];
     result[k] = power_of_2(logarithm[k] + b);
   }
@@ -117,22 +128,23 @@ PerComponent ComponentScales::at(const Sizes& sizes) const {
 
 void ComponentScales::learn(const PerComponent& shares, const PerComponent& excesses,
                             const Sizes& sizes, const Sizes& mean) {
-  std::array<double, 2> sum{};
+  PerComponent step;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double step = shares[k] * excesses[k];
-    logarithm[k] = std::clamp(logarithm[k] + 0.15 * step, -12.0, 16.0);
-    sum[group_of(k)] += step;
+    step[k] = shares[k] * excesses[k];
+    logarithm[k] = std::clamp(logarithm[k] + 0.15f * step[k], -12.0f, 16.0f);
   }
+  const std::array<float, 2> sum{step[0] + step[1],
+                                 (step[2] + step[3]) + (step[4] + step[5]) + (step[6] + step[7])};
   for (std::size_t i = 0; i < 2; ++i) {
-    double moved = 0;
+    std::vector<float> moved;
     for (std::size_t j = 0; j < 4; ++j) {
-      const double away = std::clamp(sizes[j] - mean[j], -2.0, 2.0);
-      const double next = std::clamp(slope[i][j] + 0.015 * sum[i] * away, -2.0, 2.0);
-      moved += (next - slope[i][j]) * mean[j];
+      const float away = std::clamp(sizes[j] - mean[j], -2.0f, 2.0f);
+      const float next = std::clamp(slope[i][j] + 0.015f * sum[i] * away, -2.0f, 2.0f);
+      moved.push_back((next - slope[i][j]) * mean[j]);
       slope[i][j] = next;
     }
     for (std::size_t k = 0; k < kComponents; ++k) {
-      if (group_of(k) == i) logarithm[k] -= moved;
+      if (group_of(k) == i) logarithm[k] -= sum_by_fours(moved);
     }
   }
 }

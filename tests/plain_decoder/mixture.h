@@ -10,19 +10,19 @@
 namespace plain {
 
 inline constexpr std::size_t kComponents = 8;
-using PerComponent = std::array<double, kComponents>;
-using Sizes = std::array<double, 4>;
+using PerComponent = std::array<float, kComponents>;
+using Sizes = std::array<float, 4>;
 
 struct Axis {
   PerComponent weight{}, centre{}, inverse_scale{};
 };
 
 // "axis(start, size)".
-std::int32_t read_axis(RangeDecoder& in, Axis& axis, std::int32_t start, double size);
+std::int32_t read_axis(RangeDecoder& in, Axis& axis, std::int32_t start, float size);
 
 // "round(x)" and "excess(q)".
-std::int32_t round_of(double x);
-double excess(double q);
+std::int32_t round_of(float x);
+float excess(float q);
 
 // "What mixtures learn".
 struct ComponentWeights {

@@ -12,7 +12,7 @@
 namespace plain {
 
 struct FanVertex {
-  Vector place;  // as seen from the vertex that is split
+  FloatVector place;  // as seen from the vertex that is split
   std::size_t triangles = 0;
   bool was_split = false;
 };
@@ -28,21 +28,22 @@ class PairOdds {
 
  private:
   struct Rated {  // a pair
-    std::array<double, 6> features{};
-    double odds = 0;
+    std::array<float, 6> features{};
+    float odds = 0;
   };
 
   void rate(const std::vector<FanVertex>& fan);
   void learn(const std::vector<FanVertex>& fan, const Pair& pair);
 
-  std::array<double, 6> both_ = kBothWeights;
-  std::array<double, 3> each_ = kEachWeights;
-  std::array<double, 8> triangles_ = kTrianglesWeights;
-  std::array<double, 7> child_ = kChildWeights;
+  std::array<float, 6> both_ = kBothWeights;
+  std::array<float, 3> each_ = kEachWeights;
+  std::array<float, 8> triangles_ = kTrianglesWeights;
+  std::array<float, 7> child_ = kChildWeights;
 
-  std::vector<std::array<double, 3>> features_;  // per vertex
-  std::vector<std::vector<Rated>> rated_;        // per i and j
-  double all_ = 0;                               // T
+  std::vector<std::array<float, 3>> features_;  // per vertex
+  std::vector<std::vector<Rated>> rated_;       // per i and j
+  std::vector<float> sums_;                     // U, per i
+  float all_ = 0;                               // T
 };
 
 }  // namespace plain

@@ -42,14 +42,15 @@ Surroundings surroundings(const Surface& surface, std::uint32_t first, std::uint
         size_count += 1;
       }
     }
-    if (count > 0) result.middle[which] = sum * (1 / count);
+    if (count > 0) result.middle[which] = rounded(sum * (1 / count));
   }
-  if (third_count > 0) result.thirds = thirds * (1 / third_count);
-  if (size_count > 0) result.edge = size / size_count;
+  if (third_count > 0) result.thirds = rounded(thirds * (1 / third_count));
+  const double edge = size_count > 0 ? size / size_count : 0;
+  result.edge = static_cast<float>(edge);
   const Vector N = normals[0] + normals[1];
-  result.normal = unit(N);
+  result.normal = rounded(unit(N));
   const double cosine = dot(unit(normals[0]), unit(normals[1]));
-  result.bend = result.edge * std::sqrt(std::max(0.0, 1 - cosine));
+  result.bend = static_cast<float>(edge * std::sqrt(std::max(0.0, 1 - cosine)));
   std::size_t third = 0;
   for (const std::size_t k : {1u, 2u}) {
     if (std::abs(N.along(k)) > std::abs(N.along(third))) third = k;
@@ -61,48 +62,48 @@ Surroundings surroundings(const Surface& surface, std::uint32_t first, std::uint
 // Positions: sizes.
 
 Sizes sizes_of_place(const Surroundings& around, const Miss& expected) {
-  return {log2_of(double(expected.tangent) + 0.25), log2_of(double(expected.normal) + 0.25),
+  return {log2_of(expected.tangent + 0.25f), log2_of(expected.normal + 0.25f),
           log2_of(around.edge + 1), log2_of(around.bend + 1)};
 }
 
 namespace {
 
-using Direction = std::array<double, 3>;  // of the normal along the three axes
+using Direction = std::array<float, 3>;  // of the normal along the three axes
 
-double rise(const Direction& D, double x, double y) {
+float rise(const Direction& D, float x, float y) {
   return -(D[0] * x + D[1] * y) / D[2];
 }
 
 // Positions: components. The place that each expects; none where it has no weight.
-std::array<std::optional<Vector>, kComponents> expected_places(const Surroundings& around,
-                                                               const Child& child) {
-  const std::array<double, 8>& k = kPlaces[std::size_t(child.who)].k;
-  const Vector& own = around.middle[child.second ? 1 : 0];
-  const Vector& other = around.middle[child.second ? 0 : 1];
-  const Vector &normal = around.normal, &sibling = child.sibling;
-  const double q = k[4] * dot(own, normal) + k[5] * dot(other, normal) +
-                   k[6] * dot(around.thirds, normal) + k[7] * dot(sibling, normal);
-  std::array<std::optional<Vector>, kComponents> places;
+std::array<std::optional<FloatVector>, kComponents> expected_places(const Surroundings& around,
+                                                                    const Child& child) {
+  const std::array<float, 8>& k = kPlaces[std::size_t(child.who)].k;
+  const FloatVector& own = around.middle[child.second ? 1 : 0];
+  const FloatVector& other = around.middle[child.second ? 0 : 1];
+  const FloatVector &normal = around.normal, &sibling = child.sibling;
+  const float q = k[4] * dot(own, normal) + k[5] * dot(other, normal) +
+                  k[6] * dot(around.thirds, normal) + k[7] * dot(sibling, normal);
+  std::array<std::optional<FloatVector>, kComponents> places;
   places[0] = own * k[0] + other * k[1] + around.thirds * k[2] + sibling * k[3] + normal * q;
-  const double rest = 1 - child.share;
-  places[1] = own * 0.6;
+  const float rest = 1 - child.share;
+  places[1] = own * 0.6f;
   if (child.who == Who::FirstOfBoth) places[1] = sibling * -1;
   if (child.who == Who::FirstBetween) places[1] = sibling * (-rest / child.share);
-  std::vector<Vector> r = child.ring;
+  std::vector<FloatVector> r = child.ring;
   if (child.who == Who::SecondBetween) {
     places[0] = *places[0] * rest;
-    places[1] = own * (1.2 * rest);
+    places[1] = own * (1.2f * rest);
     if (!r.empty()) r[0] = *places[0] * (-child.share / rest);
   }
   if (!r.empty()) {
     const std::size_t c = r.size(), h = c / 2;
-    places[2] = (r[0] + r[h]) * 0.5;
+    places[2] = (r[0] + r[h]) * 0.5f;
     places[3] = r[c - 1] + r[0] - child.after;
     places[4] = r[1] + r[0] - child.before;
-    places[5] = (r[1] + r[(1 + h) % c]) * 0.5;
-    places[6] = (r[c - 1] + r[c - 1 - h]) * 0.5;
+    places[5] = (r[1] + r[(1 + h) % c]) * 0.5f;
+    places[6] = (r[c - 1] + r[c - 1 - h]) * 0.5f;
   }
-  places[7] = Vector{};
+  places[7] = FloatVector{};
   return places;
 }
 
@@ -134,7 +135,7 @@ PlaceModel::Expected PlaceModel::expect(const Surroundings& around, const Child&
       result.weight[k] = 0;
       continue;
     }
-    const double x = places[k]->along(axis[0]), y = places[k]->along(axis[1]);
+    const float x = places[k]->along(axis[0]), y = places[k]->along(axis[1]);
     result.centre[0][k] = x;
     result.centre[1][k] = y;
     result.centre[2][k] = places[k]->along(axis[2]) - rise(result.D, x, y);
@@ -143,7 +144,7 @@ PlaceModel::Expected PlaceModel::expect(const Surroundings& around, const Child&
   result.N = normal_.at(sizes);
   if (child.who == Who::SecondBetween) {
     for (PerComponent* scales : {&result.T, &result.N}) {
-      for (double& scale : *scales) scale *= 2 * (1 - child.share);
+      for (float& scale : *scales) scale *= 2 * (1 - child.share);
     }
   }
   return result;
@@ -159,10 +160,10 @@ void PlaceModel::learn(const Child& child, const Expected& expected, const Sizes
 }
 
 Miss PlaceModel::miss_of(const Expected& expected, const Along& place) {
-  const float x = static_cast<float>(std::abs(place[0] - expected.centre[0][0]));
-  const float y = static_cast<float>(std::abs(place[1] - expected.centre[1][0]));
-  const double above = place[2] - rise(expected.D, place[0], place[1]);
-  return {std::max(x, y), static_cast<float>(std::abs(above - expected.centre[2][0]))};
+  const float x = std::abs(float(place[0]) - expected.centre[0][0]);
+  const float y = std::abs(float(place[1]) - expected.centre[1][0]);
+  const float above = float(place[2]) - rise(expected.D, float(place[0]), float(place[1]));
+  return {std::max(x, y), std::abs(above - expected.centre[2][0])};
 }
 
 // Positions: coding.
@@ -175,41 +176,41 @@ Along PlaceModel::read(RangeDecoder& in, const Surroundings& around, const Child
   Along place{};
 
   // 1.
-  const double across = std::sqrt(std::max(1 - D[0] * D[0], 0.0));
+  const float across = std::sqrt(std::max(1 - D[0] * D[0], 0.0f));
   PerComponent scale;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    scale[k] = expected.T[k] * across + 0.2;
+    scale[k] = expected.T[k] * across + 0.2f;
     now.centre[k] = expected.centre[0][k];
     now.inverse_scale[k] = 1 / scale[k];
   }
   place[0] = read_axis(in, now, round_of(now.centre[0]), scale[0]);
 
   // 2.
-  const double along = D[0] * D[1] / (across * across), rest = std::abs(D[2]) / across;
+  const float along = D[0] * D[1] / (across * across), rest = std::abs(D[2]) / across;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double off = place[0] - now.centre[k], i = now.inverse_scale[k], z = off * i;
-    expected.tangent_excess[k] = excess(z * z) * (1 - 0.2 * i);
-    scale[k] = expected.T[k] * rest * std::sqrt(0.5 + 0.5 * z * z) + 0.2;
+    const float off = float(place[0]) - now.centre[k], i = now.inverse_scale[k], z = off * i;
+    expected.tangent_excess[k] = excess(z * z) * (1 - 0.2f * i);
+    scale[k] = expected.T[k] * rest * std::sqrt(0.5f + 0.5f * z * z) + 0.2f;
     now.centre[k] = expected.centre[1][k] - along * off;
     now.inverse_scale[k] = 1 / scale[k];
   }
   place[1] = read_axis(in, now, round_of(now.centre[0]), scale[0]);
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double i = now.inverse_scale[k], z = (place[1] - now.centre[k]) * i;
-    expected.tangent_excess[k] += excess(z * z) * (1 - 0.2 * i);
+    const float i = now.inverse_scale[k], z = (float(place[1]) - now.centre[k]) * i;
+    expected.tangent_excess[k] += excess(z * z) * (1 - 0.2f * i);
   }
 
   // 3.
   for (std::size_t k = 0; k < kComponents; ++k) {
-    scale[k] = expected.N[k] / std::abs(D[2]) + 0.2;
+    scale[k] = expected.N[k] * (1 / std::abs(D[2])) + 0.2f;
     now.centre[k] = expected.centre[2][k];
     now.inverse_scale[k] = 1 / scale[k];
   }
-  const std::int32_t plane = round_of(rise(D, place[0], place[1]));
+  const std::int32_t plane = round_of(rise(D, float(place[0]), float(place[1])));
   const std::int32_t above = read_axis(in, now, round_of(now.centre[0]), scale[0]);
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double i = now.inverse_scale[k], z = (above - now.centre[k]) * i;
-    expected.normal_excess[k] = excess(z * z) * (1 - 0.2 * i);
+    const float i = now.inverse_scale[k], z = (float(above) - now.centre[k]) * i;
+    expected.normal_excess[k] = excess(z * z) * (1 - 0.2f * i);
   }
   place[2] = sum_of(above, plane);
 
@@ -224,23 +225,23 @@ std::int32_t PlaceModel::read_count(RangeDecoder& in, Expected& expected, const 
                                     const Along& place) {
   const std::size_t i = (steps.axis + 1) % 3, j = (steps.axis + 2) % 3;
   const Direction& D = expected.D;
-  double along = D[steps.axis];
-  if (std::abs(along) < 0.1) along = along < 0 ? -0.1 : 0.1;
-  const double plane = -(D[i] * place[i] + D[j] * place[j]) / along;
+  float along = D[steps.axis];
+  if (std::abs(along) < 0.1f) along = along < 0 ? -0.1f : 0.1f;
+  const float plane = -(D[i] * float(place[i]) + D[j] * float(place[j])) / along;
   Axis now;
   now.weight = expected.weight;
   PerComponent scale;
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double above = plane + expected.centre[2][k] * D[2] / along;
+    const float above = plane + expected.centre[2][k] * (D[2] / along);
     now.centre[k] = steps.offset + steps.unit * above;
-    scale[k] = std::abs(steps.unit) * expected.N[k] / std::abs(along) + 0.2;
+    scale[k] = expected.N[k] * (std::abs(steps.unit) / std::abs(along)) + 0.2f;
     now.inverse_scale[k] = 1 / scale[k];
   }
-  const std::int32_t count = read_axis(in, now, round_of(now.centre[0]), 1 / now.inverse_scale[0]);
+  const std::int32_t count = read_axis(in, now, round_of(now.centre[0]), scale[0]);
   for (std::size_t k = 0; k < kComponents; ++k) {
-    const double inverse = now.inverse_scale[k], z = (count - now.centre[k]) * inverse;
+    const float inverse = now.inverse_scale[k], z = (float(count) - now.centre[k]) * inverse;
     expected.tangent_excess[k] = 0;
-    expected.normal_excess[k] = excess(z * z) * (1 - 0.2 * inverse);
+    expected.normal_excess[k] = excess(z * z) * (1 - 0.2f * inverse);
   }
   expected.weight = now.weight;
   return count;

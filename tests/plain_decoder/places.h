@@ -12,9 +12,9 @@ namespace plain {
 
 // Of a split, from where its vertex stood.
 struct Surroundings {
-  std::array<Vector, 2> middle;  // of the first and the second child
-  Vector thirds, normal;
-  double edge = 0, bend = 0;
+  std::array<FloatVector, 2> middle;  // of the first and the second child
+  FloatVector thirds, normal;
+  float edge = 0, bend = 0;
   std::array<std::size_t, 3> axis{};
 };
 Surroundings surroundings(const Surface& surface, std::uint32_t first, std::uint32_t second,
@@ -40,10 +40,10 @@ struct Child {
   Who who = Who::One;
   bool second = false;
   std::size_t triangles = 0;
-  Vector sibling;
-  std::vector<Vector> ring;  // r_0, the sibling, r_1, ...; empty if no closed fan was split
-  Vector before, after;
-  double share = 0;  // of a second or first between
+  FloatVector sibling;
+  std::vector<FloatVector> ring;  // r_0, the sibling, r_1, ...; empty if no closed fan was split
+  FloatVector before, after;
+  float share = 0;  // of a second or first between
 };
 
 // Along the three axes, from where the parent stood.
@@ -52,7 +52,7 @@ using Along = std::array<std::int32_t, 3>;
 // The steps of a first between: which axis they go along, "unit" and "offset".
 struct Steps {
   std::size_t axis = 2;
-  double unit = 0, offset = 0;
+  float unit = 0, offset = 0;
 };
 
 class PlaceModel {
@@ -78,7 +78,7 @@ class PlaceModel {
  private:
   // What the components expect, and afterwards what they learn from.
   struct Expected {
-    std::array<double, 3> D{0, 0, 1};  // the normal along the three axes
+    std::array<float, 3> D{0, 0, 1};  // the normal along the three axes
     PerComponent weight{}, T{}, N{};
     std::array<PerComponent, 3> centre{};
     PerComponent tangent_excess{}, normal_excess{};

@@ -16,8 +16,8 @@ struct Shape {
   Numbers triangles;       // at v, in the order in which they are taken
   std::vector<bool> goes;  // per triangle: to u
   std::vector<NewTriangle> added;
-  std::optional<Fan> closed;  // the fan that was split as one, if it is closed
-  std::size_t i = 0, j = 0;   // of a fan
+  std::optional<Fan> fan;    // that was split as one
+  std::size_t i = 0, j = 0;  // of a fan
 };
 
 class SplitReader {
@@ -36,6 +36,8 @@ class SplitReader {
   PairOdds::Pair read_pair(std::uint32_t v, const Fan& fan);
   void read_general(std::uint32_t v, Shape& shape);
   void apply(std::uint32_t v, std::uint32_t u, const Shape& shape);
+  void apply_fan(std::uint32_t v, std::uint32_t u, const Shape& shape);
+  void put_beside(std::uint32_t w, std::uint32_t t, std::uint32_t beside, bool after);
   void read_positions(std::uint32_t v, std::uint32_t u, const Point& s, const Shape& shape);
   bool read_stays(std::size_t question, const Surroundings& around, std::uint32_t v,
                   std::uint32_t u);
@@ -84,6 +86,7 @@ void SplitReader::read() {
     const std::uint32_t v = queue.front();
     queue.pop_front();
     const std::optional<Fan> fan = surface_.fan(v);
+    if (fan) surface_.triangles_around[v] = fan->triangles;
     if (!read_flag(v, fan)) continue;
     split(v, fan);
     queue.push_back(v);
@@ -177,14 +180,14 @@ void SplitReader::read_fan(std::uint32_t v, const Fan& fan, Shape& shape) {
   }
   shape.added.push_back({fan.w[shape.j], true});
   if (!single) shape.added.push_back({fan.w[shape.i], false});
-  if (fan.closed) shape.closed = fan;
+  shape.fan = fan;
 }
 
 PairOdds::Pair SplitReader::read_pair(std::uint32_t v, const Fan& fan) {
   std::vector<FanVertex> vertices;
   for (const std::uint32_t w : fan.w) {
-    vertices.push_back({difference(surface_.places[w], surface_.places[v]), surface_.list(w).size(),
-                        block_.vertices[w].generation > 0});
+    vertices.push_back({rounded(difference(surface_.places[w], surface_.places[v])),
+                        surface_.list(w).size(), block_.vertices[w].generation > 0});
   }
   return pair_odds_.read(in_, vertices);
 }
@@ -218,7 +221,44 @@ void SplitReader::read_general(std::uint32_t v, Shape& shape) {
   }
 }
 
+// The lists of a split of the fan.
+void SplitReader::apply_fan(std::uint32_t v, std::uint32_t u, const Shape& shape) {
+  const std::uint32_t A = static_cast<std::uint32_t>(surface_.triangles.size()), B = A + 1;
+  const bool has_B = shape.added.size() > 1;
+  Numbers &at_v = surface_.triangles_around[v], &at_u = surface_.triangles_around[u];
+  at_v.clear();
+  for (std::size_t k = 0; k < shape.triangles.size(); ++k) {
+    if (k == shape.j && has_B) at_v.push_back(B);
+    if (k == shape.j) at_v.push_back(A);
+    (shape.goes[k] ? at_u : at_v).push_back(shape.triangles[k]);
+  }
+  if (shape.j == shape.triangles.size() && has_B) at_v.push_back(B);
+  if (shape.j == shape.triangles.size()) at_v.push_back(A);
+  at_u.push_back(A);
+  if (has_B) at_u.push_back(B);
+  for (const std::uint32_t t : at_u) {
+    if (t >= A) continue;
+    for (std::uint32_t& corner : surface_.triangles[t]) {
+      if (corner == v) corner = u;
+    }
+  }
+  surface_.triangles.push_back({v, u, shape.added[0].third});
+  put_beside(shape.added[0].third, A, shape.triangles[shape.j > 0 ? shape.j - 1 : 0], shape.j == 0);
+  if (!has_B) return;
+  surface_.triangles.push_back({u, v, shape.added[1].third});
+  put_beside(shape.added[1].third, B, shape.triangles[shape.i], true);
+}
+
+// Into the list of w, before or right after a triangle that is in it.
+void SplitReader::put_beside(std::uint32_t w, std::uint32_t t, std::uint32_t beside, bool after) {
+  Numbers& list = surface_.triangles_around[w];
+  auto at = list.end();
+  if (list.size() <= kLongest) at = std::find(list.begin(), list.end(), beside) + (after ? 1 : 0);
+  list.insert(at, t);
+}
+
 void SplitReader::apply(std::uint32_t v, std::uint32_t u, const Shape& shape) {
+  if (shape.fan) return apply_fan(v, u, shape);
   surface_.triangles_around[v].clear();
   for (std::size_t k = 0; k < shape.triangles.size(); ++k) {
     const std::uint32_t t = shape.triangles[k];
@@ -263,7 +303,7 @@ void SplitReader::read_positions(std::uint32_t v, std::uint32_t u, const Point& 
 
 bool SplitReader::read_stays(std::size_t question, const Surroundings& around, std::uint32_t v,
                              std::uint32_t u) {
-  const double a = length(around.middle[0]), b = length(around.middle[1]);
+  const float a = length(around.middle[0]), b = length(around.middle[1]);
   const std::size_t share =
       a + b > 0 ? std::min<std::size_t>(static_cast<std::size_t>(16 * a / (a + b)), 15) : 7;
   const std::size_t m = std::min<std::size_t>(surface_.list(v).size(), 9);
@@ -288,7 +328,7 @@ Miss SplitReader::expected_miss(std::uint32_t v, const Surroundings& around) con
       count += 1;
     }
   }
-  const float e = static_cast<float>(around.edge) * 0.25f;
+  const float e = around.edge * 0.25f;
   return {(t + e) / (count + 1), (n + 0.25f * e) / (count + 1)};
 }
 
@@ -299,11 +339,11 @@ Child SplitReader::child(bool second, Who who, std::uint32_t v, const Point& s,
   child.who = who;
   child.second = second;
   child.triangles = surface_.list(v).size();
-  child.sibling = difference(sibling, s);
-  if (!shape.closed) return child;
-  const std::size_t n = shape.closed->w.size();
+  child.sibling = rounded(difference(sibling, s));
+  if (!shape.fan || !shape.fan->closed) return child;
+  const std::size_t n = shape.fan->w.size();
   const auto place = [&](std::size_t k) {
-    return difference(surface_.places[shape.closed->w[k % n]], s);
+    return rounded(difference(surface_.places[shape.fan->w[k % n]], s));
   };
   const std::size_t from = second ? shape.i : shape.j, to = second ? shape.j : shape.i + n;
   child.ring.push_back(child.sibling);
@@ -331,11 +371,11 @@ Point SplitReader::read_place(std::uint32_t v, const Point& s, const Surrounding
 void SplitReader::read_between(std::uint32_t v, std::uint32_t u, const Point& s,
                                const Surroundings& around, const Shape& shape, Point& at_v,
                                Point& at_u) {
-  const Vector& n = around.normal;
+  const FloatVector& n = around.normal;
   const std::array<std::size_t, 3>& axis = around.axis;
   const Between between = between_.read(in_, length(around.middle[0]), length(around.middle[1]),
                                         {n.along(axis[0]), n.along(axis[1]), n.along(axis[2])});
-  const double eighths = double(between.eighths);
+  const float eighths = float(between.eighths);
   Child second = child(true, Who::SecondBetween, u, s, s, shape);
   second.share = eighths / 8;
   at_u = read_place(u, s, around, second);
@@ -347,9 +387,9 @@ void SplitReader::read_between(std::uint32_t v, std::uint32_t u, const Point& s,
   a[i] = read_other(in_, b[i], 0, between.eighths);
   a[j] = read_other(in_, b[j], 0, between.eighths);
   const std::int64_t step = step_of(std::int64_t(a[i]) - b[i], std::int64_t(a[j]) - b[j]);
-  const double eighths_of_step = 8 * double(step);
+  const float eighths_of_step = 8 * float(step);
   const Steps steps{between.axis, -(8 - eighths) / eighths_of_step,
-                    -(eighths * b[between.axis] + 0.5) / eighths_of_step};
+                    -(eighths * float(b[between.axis]) + 0.5f) / eighths_of_step};
   Child first = child(false, Who::FirstBetween, v, s, at_u, shape);
   first.share = (8 - eighths) / 8;
   const auto finish = [&](std::int32_t count) {

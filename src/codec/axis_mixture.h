@@ -1,0 +1,182 @@
+// Where a number may be, as a mixture of distributions that each have a centre of their own, and
+// the coding of where it is: by narrowing down an interval to one of up to eight parts with the
+// odds that the mixture gives. Which component was right is never coded: what a number tells of
+// that changes the components' weights for the next.
+//
+// Every component has the distribution function 1/2 + z / 2 sqrt(1 + z^2): long tails, and nothing
+// that machines disagree on. Floats without fused products, as in predict_position.h; loops over
+// eight, which compilers turn into instructions for four.
+#pragma once
+
+#include "codec/coded_numbers.h"
+#include "codec/eight_floats.h"
+#include "codec/known_bit.h"
+#include "codec/shares.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace crease::codec {
+
+inline constexpr std::size_t kComponents = 8;
+using PerComponent = std::array<float, kComponents>;
+
+// What each component expects, and how far it may be off.
+struct AxisMixture {
+  PerComponent weight{}, center{}, inverse_scale{};
+};
+
+// The components that count: those of at least one in 256 of the weight, mostly two or three.
+// Places are seen from a whole number near which they are likely.
+class LikelyComponents {
+ public:
+  LikelyComponents(const EightFloats& weight, const EightFloats& center,
+                   const EightFloats& inverse_scale) {
+    const EightFloats least(sum_of(weight) * kLeastShare);
+    const EightInts counts = weight > least;
+    all_ = sum_of(counts & weight);
+    steepest_ = greatest_of(counts & inverse_scale);
+    std::array<std::int32_t, kComponents> one;
+    std::array<float, kComponents> weights, centers, inverses;
+    counts.store(one.data());
+    weight.store(weights);
+    center.store(centers);
+    inverse_scale.store(inverses);
+    for (std::size_t k = 0; k < kComponents; ++k) {
+      weight_[count_] = weights[k];
+      center_[count_] = centers[k];
+      inverse_scale_[count_] = inverses[k];
+      count_ -= static_cast<std::size_t>(std::int64_t(one[k]));
+    }
+    weight_[count_] = center_[count_] = inverse_scale_[count_] = 0;  // makes an even number of them
+  }
+
+  float all() const { return all_; }  // the weight of these
+  // Within so much of each other all places are about as likely: what telling them apart by odds
+  // would save is not worth its time. A power of two, 2^this.
+  int even_bits() const {
+    const float width = kEvenWidth / steepest_;
+    if (!(width > 1)) return 0;
+    return std::bit_width(static_cast<std::uint32_t>(width < kWidest ? width : kWidest)) - 1;
+  }
+
+  // The weighed sum of their distribution functions, each from -1 to 1, before x.
+  float at(std::int64_t x) const {
+    const float y = static_cast<float>(x) - 0.5f;
+    float sum = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const float z = (y - center_[i]) * inverse_scale_[i];
+      sum += weight_[i] * (z / std::sqrt(1 + z * z));
+    }
+    return sum;
+  }
+  // The same at the ends of eight parts of one width that follow each other from `low`.
+  EightFloats at_ends(std::int64_t low, std::int64_t width) const {
+    constexpr std::array<float, 8> kEnds{1, 2, 3, 4, 5, 6, 7, 8};
+    const EightFloats y = EightFloats(static_cast<float>(low)) +
+                          static_cast<float>(width) * EightFloats(kEnds) - 0.5f;
+    EightFloats sum(0.0f);
+    for (std::size_t i = 0; i < count_; i += 2) {
+      const EightFloats z0 = (y - center_[i]) * inverse_scale_[i];
+      const EightFloats z1 = (y - center_[i + 1]) * inverse_scale_[i + 1];
+      sum = sum + weight_[i] * (z0 / root(1.0f + z0 * z0));
+      sum = sum + weight_[i + 1] * (z1 / root(1.0f + z1 * z1));
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr float kLeastShare = 1.0f / 256, kWidest = 1 << 28;
+  static constexpr float kEvenWidth = 1;  // of the smallest scale
+
+  std::size_t count_ = 0;
+  float all_ = 0, steepest_ = 0;
+  std::array<float, kComponents + 1> weight_, center_, inverse_scale_;
+};
+
+// From which whole number on one lies, within a power of two; and the sums before both ends.
+struct AxisInterval {
+  std::int64_t low = 0;
+  int bits = 0;
+  float below = 0, above = 0;
+
+  std::int64_t width() const { return std::int64_t(1) << bits; }
+};
+
+// Away from the start, beyond three steps, interval after interval, each twice as long as the one
+// before.
+template <class Coder>
+void code_far(Coder& coder, const LikelyComponents& likely, bool up, std::int64_t away,
+              AxisInterval& in) {
+  const float all = likely.all();
+  const std::int64_t step = in.width();
+  for (in.bits += 2;; ++in.bits) {
+    const std::int64_t near = in.width() - step;
+    in.low = up ? near : -near - in.width();
+    (up ? in.above : in.below) = likely.at(up ? near + in.width() : in.low);
+    if (in.bits == 31) return;
+    KnownBit is_here(in.above - in.below, up ? all - in.below : in.above + all);
+    if (coder.bit(is_here, in.low <= away && away < in.low + in.width())) return;
+    (up ? in.below : in.above) = up ? in.above : in.below;
+  }
+}
+
+// `value` is coded relative to `start`, near which it is likely, about `size` away; differences go
+// round at 2^32. The weights learn what the value says.
+template <class Coder>
+std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, float size,
+                       std::int32_t value) {
+  using EightShares = Shares<8>;
+  const std::int64_t away = static_cast<std::int32_t>(static_cast<std::uint32_t>(value) -
+                                                      static_cast<std::uint32_t>(start));
+  const EightFloats weight(mixture.weight), inverse(mixture.inverse_scale);
+  const EightFloats center = EightFloats(mixture.center) - static_cast<float>(start);
+  const LikelyComponents likely(weight, center, inverse);
+  const float all = likely.all();
+
+  // Three steps to either side, or farther away.
+  constexpr float kLargest = 1e8f;
+  const float cut = size > 0 ? (size < kLargest ? size : kLargest) : 0;
+  AxisInterval in;
+  in.bits = std::bit_width(static_cast<std::uint32_t>(cut));
+  in.low = -4 * in.width();
+  std::array<float, 8> up_to;
+  likely.at_ends(in.low, in.width()).store(up_to);
+  up_to[7] = all;
+  std::uint32_t part = 0;
+  if constexpr (Coder::kEncodes) {
+    part = static_cast<std::uint32_t>(std::clamp<std::int64_t>((away - in.low) >> in.bits, 0, 7));
+  }
+  part = coder.one_of(EightShares(up_to, -all, 8), part);
+  in.low += std::int64_t(part) << in.bits;
+  in.below = part > 0 ? up_to[part - 1] : -all;
+  in.above = up_to[part];
+  if (part == 0 || part == 7) code_far(coder, likely, part == 7, away, in);
+
+  const int even = likely.even_bits();
+  while (in.bits > even) {
+    const int bits = std::min(3, in.bits - even);
+    in.bits -= bits;
+    likely.at_ends(in.low, in.width()).store(up_to);
+    part = 0;
+    if constexpr (Coder::kEncodes) part = static_cast<std::uint32_t>((away - in.low) >> in.bits);
+    part = coder.one_of(EightShares(up_to, in.below, std::size_t(1) << bits), part);
+    in.low += std::int64_t(part) << in.bits;
+    in.below = part > 0 ? up_to[part - 1] : in.below;
+  }
+
+  const EightFloats low = (static_cast<float>(in.low) - 0.5f - center) * inverse;
+  const EightFloats high = (static_cast<float>(in.low + in.width()) - 0.5f - center) * inverse;
+  (weight * (high / root(1.0f + high * high) - low / root(1.0f + low * low))).store(mixture.weight);
+  const std::uint32_t rest =
+      in.bits == 0 ? 0
+                   : code_index(coder, 1u << in.bits, static_cast<std::uint32_t>(away - in.low));
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(start) +
+                                   static_cast<std::uint32_t>(in.low + rest));
+}
+
+}  // namespace crease::codec

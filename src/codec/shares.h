@@ -1,0 +1,83 @@
+// One of a few, by how likely each is: shares of 2^16 that a range coder takes at once.
+//
+//   const Shares<8> shares(up_to, before, count);   // up_to[i] - before: the odds of 0 to i
+//   together i = coder.one_of(shares, i);
+#pragma once
+
+#include "codec/eight_floats.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace crease::codec {
+
+// Of N at most, a multiple of 8. What is never likely keeps a share of kLeast.
+template <std::size_t N>
+class Shares {
+ public:
+  static constexpr std::uint32_t kAll = 1u << 16;
+
+  // Even ones if there are no odds at all. 1 <= count <= N.
+  Shares(const std::array<float, N>& up_to, float before, std::size_t count) {
+    constexpr float kFree = static_cast<float>(kAll - kLeast * N);
+    const float whole = up_to[count - 1] - before;
+    std::uint32_t first = 1;
+    if (whole > 0) {
+      const float unit = kFree / whole;
+      FourFloats most{};
+      for (; first < N; first += 4) {
+        FourFloats part;
+        std::memcpy(&part, up_to.data() + first - 1, sizeof part);
+        most = growing(greater((part - before) * unit, FourFloats{} + most[3]));
+        place(first, count,
+              __builtin_convertvector(lesser(most, FourFloats{} + kFree), FourInts) +
+                  kLeast * static_cast<std::int32_t>(first));
+      }
+    } else {
+      const std::int32_t share = kAll / static_cast<std::int32_t>(count);
+      for (; first < N; first += 4) {
+        const std::int32_t i = static_cast<std::int32_t>(first);
+        place(first, count,
+              FourInts{i, i + 1, i + 2, i + 3} * share - FourInts{0, 1, 2, 3} * kLeast);
+      }
+    }
+    begin_[0] = 0;
+  }
+
+  // Where it begins; where the last one ends is kAll.
+  std::uint32_t begin(std::size_t i) const { return begin_[i]; }
+  // Whose share `at` is in, below kAll.
+  std::uint32_t find(std::uint32_t at) const {
+    FourInts before{};
+    const std::int32_t most = static_cast<std::int32_t>(at);
+    for (std::size_t i = 1; i < N; i += 4) {
+      FourInts begin;
+      std::memcpy(&begin, begin_.data() + i, sizeof begin);
+      before -= begin <= most;
+    }
+    return static_cast<std::uint32_t>((before[0] + before[1]) + (before[2] + before[3]));
+  }
+
+ private:
+  static constexpr std::int32_t kLeast = 8;
+
+  // Each the greatest up to there: rounded, sums need not grow.
+  static FourFloats growing(const FourFloats& x) {
+    const FourFloats one = greater(x, FourFloats{x[0], x[0], x[1], x[2]});
+    return greater(one, FourFloats{one[0], one[1], one[0], one[1]});
+  }
+  // Those from `first` on; kAll from `count` on.
+  void place(std::uint32_t first, std::size_t count, FourInts begin) {
+    constexpr FourInts kNext{0, 1, 2, 3};
+    const FourInts is_one =
+        kNext < static_cast<std::int32_t>(count) - static_cast<std::int32_t>(first);
+    begin = ((begin + kNext * kLeast) & is_one) | (static_cast<std::int32_t>(kAll) & ~is_one);
+    std::memcpy(begin_.data() + first, &begin, sizeof begin);
+  }
+
+  std::array<std::uint32_t, N + 1> begin_;
+};
+
+}  // namespace crease::codec
