@@ -57,7 +57,8 @@ struct DecodeOptions {
   std::function<bool(const BlockEntry&)> wants{};
   // Calls body(i) for every i < count, in any order and on any threads. Empty: one after the other.
   std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)> for_each{};
-  std::uint64_t max_bytes = std::uint64_t(16) << 30;  // of the decoded blocks together
+  // Of the decoded blocks together: about 150 a triangle of each band, which are 2.5 of the finest.
+  std::uint64_t max_bytes = std::uint64_t(16) << 30;
   bool part_names = true;   // they lie at the file's end; false: the model has no parts
   bool count_bits = false;  // fills DecodedModel::bits; twice as slow
 };
@@ -72,8 +73,8 @@ struct DecodedModel {
 };
 
 // Fails naming the block or page that is wrong. Whatever the bytes are, it takes no more memory
-// than max_bytes and a small multiple of the blocks' payloads. The result depends on the set of
-// blocks alone.
+// than a small multiple of max_bytes and of the blocks' payloads, and what decoding takes of one
+// block on each thread. The result depends on the set of blocks alone.
 Result<DecodedModel> decode_model(const BlockFile& file, const DecodeOptions& options = {});
 
 }  // namespace crease

@@ -87,11 +87,11 @@ class ModelDecoder {
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!is_needed[i]) continue;
       const BlockFacts& facts = all[i].entry.facts;
-      if (codec::decoded_bytes({facts.vertices, facts.triangles_fine}, facts_.layers.size()) >
-          facts.decoded_bytes) {
+      const codec::BlockLimits limits{facts.vertices, facts.triangles_fine};
+      if (codec::decoded_bytes(limits, facts_.layers.size()) > facts.decoded_bytes) {
         return bad_block(all[i].entry.id, "it takes more memory than it says");
       }
-      bytes += facts.decoded_bytes;
+      bytes += codec::kept_bytes(limits, facts_.layers.size());
       if (bytes > options_.max_bytes) {
         return fail(Error::OverLimit, "block " + std::to_string(i) +
                                           ": decoded blocks take more than " +
