@@ -43,6 +43,7 @@ BlockCut::BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy)
       at_rest_(data().hierarchy) {
   held_.assign(data().leaf_of_vertex.size(), 0);
   taken_.assign(data().roots_of_triangle.size(), 0);
+  is_root_split_.assign(data().node_of_root.size(), 0);
   needed_roots_.assign(data().node_of_root.size(), 0);
   takes_.assign(block_->data().coarse_triangles, 0);
 }
@@ -50,7 +51,7 @@ BlockCut::BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy)
 void BlockCut::set_wants(std::vector<char> held, std::vector<char> taken) {
   if (taken != taken_) {
     taken_ = std::move(taken);
-    has_moved_ = true;
+    has_moved_ = has_new_taken_ = true;
   }
   if (held == held_) return;
   held_ = std::move(held);
@@ -76,8 +77,10 @@ bool BlockCut::finish() {
   if (!has_moved_) return false;
   has_moved_ = false;
   drawing_.arrive(cut_, at_rest_);
+  const bool has_changed = find_split_roots() || has_new_taken_;
   const std::vector<char> needed = needed_roots_, takes = takes_;
-  find_shown();
+  if (has_changed) find_shown();
+  has_new_taken_ = false;
   const DrawList all = drawing_.draw_list(cut_);
   copy_shown(all.sn, cut_.parts()[kSnPart], sn_);
   copy_shown(all.fn, cut_.parts()[kFnPart], fn_);
@@ -86,14 +89,21 @@ bool BlockCut::finish() {
   return needed != needed_roots_ || takes != takes_;
 }
 
+// True if they are others than before.
+bool BlockCut::find_split_roots() {
+  bool has_changed = shows_.empty();
+  for (std::size_t r = 0; r < is_root_split_.size(); ++r) {
+    const char is_split = !cut_.is_cut_leaf(data().node_of_root[r]);
+    has_changed |= is_split != is_root_split_[r];
+    is_root_split_[r] = is_split;
+  }
+  return has_changed;
+}
+
 // One pass over the triangles of the fine end, active or not.
 void BlockCut::find_shown() {
-  const VertexHierarchy& h = data().hierarchy.vertices;
-  is_root_split_.clear();
-  for (const NodeId root : data().node_of_root) is_root_split_.push_back(!cut_.is_cut_leaf(root));
   std::fill(needed_roots_.begin(), needed_roots_.end(), 0);
   shows_.resize(data().roots_of_triangle.size());
-  CREASE_ASSERT(h.triangles.size() == shows_.size());
   for (std::size_t t = 0; t < shows_.size(); ++t) {
     const auto& [a, b, c] = data().roots_of_triangle[t];
     const bool is_split = is_root_split_[a] || is_root_split_[b] || is_root_split_[c];

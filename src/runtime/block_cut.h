@@ -75,6 +75,7 @@ class BlockCut {
     std::size_t bytes() const;
   };
 
+  bool find_split_roots();
   void find_shown();
   void copy_shown(const DrawPart& all, const ActiveTriangles& triangles, ShownPart& shown) const;
 
@@ -85,9 +86,9 @@ class BlockCut {
   Refiner refiner_;
   CutDrawing drawing_;
   ViewParameters view_;
-  bool has_view_ = false, is_stale_ = true, has_moved_ = true;
+  bool has_view_ = false, is_stale_ = true, has_moved_ = true, has_new_taken_ = false;
   std::vector<char> held_, taken_;          // per vertex, per triangle
-  std::vector<char> is_root_split_;         // scratch
+  std::vector<char> is_root_split_;         // per root, at the last finish()
   std::vector<char> needed_roots_, takes_;  // per root, per triangle of the coarse end
   std::vector<char> shows_;                 // per triangle
   ShownPart sn_, fn_, nsn_;

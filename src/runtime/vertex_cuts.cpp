@@ -23,15 +23,16 @@ void VertexCuts::insert(BlockHierarchyPtr hierarchy) {
 
 void VertexCuts::drop(std::uint32_t block) {
   if (block >= entries_.size()) return;
+  unlink(block);
   entries_[block] = {};
   has_changed_ = true;
 }
 
 void VertexCuts::clear() {
   for (Entry& entry : entries_) {
-    entry.cut.reset();
-    entry.makers = {};
-    entry.named_by = {};
+    const BlockHierarchyPtr hierarchy = std::move(entry.hierarchy);
+    entry = {};
+    entry.hierarchy = hierarchy;
   }
   has_changed_ = has_arrived_ = true;
 }
@@ -90,22 +91,47 @@ bool VertexCuts::choose_blocks(const Blocks& blocks) {
   return any;
 }
 
-// Which refined blocks start from vertices of which others.
+// Which refined blocks start from vertices of which others, and whom it concerns that a block is
+// shown another way.
 void VertexCuts::link(const Blocks& blocks) {
   for (std::uint32_t block = 0; block < entries_.size(); ++block) {
-    entries_[block].named_by.clear();
-    if (block < blocks.is_refined.size() && blocks.is_refined[block]) continue;
-    entries_[block].makers = {};
-  }
-  has_relinked_ = true;
-  for (const std::uint32_t block : blocks.cut) {
     Entry& entry = entries_[block];
-    if (entry.makers.empty()) find_makers(*blocks.resident[block], entry);
-    for (std::size_t i = 0; i < entry.makers.size(); ++i) {
-      const std::uint32_t maker = entry.makers[i].block;
-      if (i == 0 || maker != entry.makers[i - 1].block) entries_[maker].named_by.push_back(block);
+    const bool is_refined = block < blocks.is_refined.size() && blocks.is_refined[block];
+    const Way way = !is_refined ? Way::Hidden : entry.cut ? Way::ByVertex : Way::Whole;
+    if (way == entry.way) continue;
+    if (way == Way::Hidden) {
+      unlink(block);
+      continue;
     }
+    if (entry.way == Way::Hidden) {
+      find_makers(*blocks.resident[block], entry);
+      for (const std::uint32_t maker : makers_of(entry)) entries_[maker].named_by.push_back(block);
+    }
+    entry.way = way;
+    entry.must_ask = true;
+    for (const std::uint32_t maker : makers_of(entry)) entries_[maker].must_ask = true;
+    for (const std::uint32_t needed : graph_.dependencies(block)) entries_[needed].must_ask = true;
   }
+}
+
+void VertexCuts::unlink(std::uint32_t block) {
+  Entry& entry = entries_[block];
+  for (const std::uint32_t maker : makers_of(entry)) {
+    std::erase(entries_[maker].named_by, block);
+    entries_[maker].must_ask = true;
+  }
+  for (const std::uint32_t needed : graph_.dependencies(block)) entries_[needed].must_ask = true;
+  entry.makers = {};
+  entry.way = Way::Hidden;
+}
+
+// Each once.
+std::vector<std::uint32_t> VertexCuts::makers_of(const Entry& entry) {
+  std::vector<std::uint32_t> blocks;
+  for (const Maker& maker : entry.makers) {
+    if (blocks.empty() || blocks.back() != maker.block) blocks.push_back(maker.block);
+  }
+  return blocks;
 }
 
 void VertexCuts::find_makers(const ResidentBlock& block, Entry& entry) const {
@@ -122,7 +148,7 @@ void VertexCuts::find_makers(const ResidentBlock& block, Entry& entry) const {
 
 // Whether what finer blocks want of it may be another thing than at the last update().
 bool VertexCuts::must_ask(std::uint32_t block) const {
-  if (has_relinked_) return true;
+  if (entries_[block].must_ask) return true;
   const auto has_changed = [this](std::uint32_t b) { return entries_[b].wants_changed; };
   const std::vector<std::uint32_t>& named_by = entries_[block].named_by;
   const std::span<const std::uint32_t> finer = graph_.dependents(block);
@@ -153,8 +179,9 @@ void VertexCuts::ask_for_triangles(std::uint32_t block, const Blocks& blocks,
   const ResidentBlock& resident = *blocks.resident[block];
   const std::vector<std::uint32_t>& labels = resident.data().end.labels;
   struct Group {
-    std::uint32_t finer = kNone;  // refined
-    std::size_t next = 0;         // triangle of its coarse end
+    std::uint32_t finer = kNone;    // refined
+    const BlockCut* cut = nullptr;  // null: shown whole
+    std::size_t next = 0;           // triangle of its coarse end
   };
   std::vector<Group> groups;
   for (const BlockGroup& group : resident.groups()) {
@@ -162,18 +189,22 @@ void VertexCuts::ask_for_triangles(std::uint32_t block, const Blocks& blocks,
     const std::uint32_t finer = graph_.next_finer(resident.facts().band, group.patch);
     if (finer >= blocks.is_refined.size() || !blocks.is_refined[finer]) continue;
     asked.finer = finer;
+    asked.cut = entries_[finer].cut.get();
     asked.next = first_triangle_in(finer, block, blocks);
   }
   taken.assign(labels.size(), 0);
+  const std::span<const BlockGroup> all = resident.groups();
+  Group* asked = nullptr;
   for (std::size_t t = 0; t < labels.size(); ++t) {
-    const auto at = std::lower_bound(
-        resident.groups().begin(), resident.groups().end(), labels[t],
-        [](const BlockGroup& group, std::uint32_t label) { return group.patch < label; });
-    Group& asked = groups[std::size_t(at - resident.groups().begin())];
-    if (asked.finer == kNone) continue;
-    const BlockCut* const cut = entries_[asked.finer].cut.get();
-    taken[t] = cut == nullptr || cut->takes()[asked.next] != 0;
-    ++asked.next;
+    if (t == 0 || labels[t] != labels[t - 1]) {  // mostly it is the same one again
+      const auto at = std::lower_bound(
+          all.begin(), all.end(), labels[t],
+          [](const BlockGroup& group, std::uint32_t label) { return group.patch < label; });
+      asked = &groups[std::size_t(at - all.begin())];
+    }
+    if (asked->finer == kNone) continue;
+    taken[t] = asked->cut == nullptr || asked->cut->takes()[asked->next] != 0;
+    ++asked->next;
   }
 }
 
@@ -212,6 +243,7 @@ void VertexCuts::move(const Blocks& blocks, const ViewParameters& view, Report& 
     if (!entry.cut) continue;
     BlockCut& cut = *entry.cut;
     if (must_ask(block)) ask_finer(block, blocks);
+    entry.must_ask = false;
     const bool may_see =
         !has_clock || !cut.has_view() ||
         (entry.seen_in_round != round_ && view.clock(view.clock_context) < stop_at);
@@ -226,7 +258,6 @@ void VertexCuts::move(const Blocks& blocks, const ViewParameters& view, Report& 
     has_arrived_ &= cut.view() == view;
     entry.wants_changed = cut.finish();
   }
-  has_relinked_ = false;
 }
 
 }  // namespace crease

@@ -60,19 +60,24 @@ class VertexCuts {
   struct Maker {
     std::uint32_t block = 0, vertex = 0, root = 0;
   };
+  enum class Way : std::uint8_t { Hidden, Whole, ByVertex };
   struct Entry {
     BlockHierarchyPtr hierarchy;
     std::unique_ptr<BlockCut> cut;
     std::vector<Maker> makers;            // of its roots, by block; while it is refined
     std::vector<std::uint32_t> named_by;  // refined blocks whose roots it made
-    bool wants_changed = false;           // in this update(): what it wants of coarser ones
+    Way way = Way::Hidden;
+    bool wants_changed = false;  // in this update(): what it wants of coarser ones
+    bool must_ask = false;       // others want something of it than did before
     std::uint64_t seen_in_round = 0;
   };
 
   bool can_be_by_vertex(std::uint32_t block) const;
   bool choose_blocks(const Blocks& blocks);
   void link(const Blocks& blocks);
+  void unlink(std::uint32_t block);
   void find_makers(const ResidentBlock& block, Entry& entry) const;
+  static std::vector<std::uint32_t> makers_of(const Entry& entry);
   void move(const Blocks& blocks, const ViewParameters& view, Report& report);
   bool must_ask(std::uint32_t block) const;
   void ask_finer(std::uint32_t block, const Blocks& blocks);
@@ -84,7 +89,6 @@ class VertexCuts {
   std::vector<Entry> entries_;  // per block
   std::uint64_t round_ = 1;     // each block sees a view once a round
   bool has_changed_ = true;     // hierarchies have come or cuts have gone
-  bool has_relinked_ = false;   // in this update()
   bool has_arrived_ = true;
 };
 

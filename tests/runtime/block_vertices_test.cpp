@@ -4,7 +4,10 @@
 #include "runtime/block_mesh_impl.h"
 #include "runtime/block_mesh_oracle.h"
 #include "runtime/block_vertices_oracle.h"
+#include "runtime/draw_values.h"
+#include "runtime/extract_cut.h"
 #include "support/described_mesh.h"
+#include "support/drawn_triangles.h"
 #include "support/mesh_zoo.h"
 #include "support/random_contractions.h"
 #include "support/sanitized.h"
@@ -206,6 +209,71 @@ TEST_CASE("by vertex, models of many blocks are one cut") {
     check_walk(c, ++seed);
     check_views_by_vertex(c, seed);
   }
+}
+
+// A clock that goes on by one with each look.
+double look_at_clock(void* context) {
+  return ++*static_cast<double*>(context);
+}
+
+TEST_CASE("by vertex, an update without time leaves one cut, and the next ones go on") {
+  const EncodedCase c = simplified_case(smooth_sphere(30, 44), 150, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  Arrivals arrivals = opened_arrivals(file);
+  std::mt19937_64 random(17);
+  double now = 0;
+  std::size_t slow = 0;
+  for (int trial = 0; trial < (kSanitized ? 3 : 10); ++trial) {
+    BlockViewParameters parameters = random_vertex_view(c.mesh, random);
+    parameters.view.hysteresis = 1;
+    arrivals.load_all(parameters);
+    parameters.view.camera.pixels = parameters.view.camera.pixels > 8 ? 1 : 64;
+    parameters.view.clock = look_at_clock;
+    parameters.view.clock_context = &now;
+    parameters.view.max_seconds = 6;
+    for (int updates = 0; updates < 1000; ++updates) {
+      arrivals.mesh.update(parameters);
+      check_by_vertex(arrivals.mesh);
+      slow += !arrivals.mesh.has_arrived();
+      if (arrivals.mesh.has_arrived()) break;
+    }
+    CHECK(arrivals.mesh.has_arrived());
+    check_nothing_is_wrong(arrivals.mesh, parameters.view);
+  }
+  CHECK(slow > 0);
+}
+
+TEST_CASE("by vertex, a cut of which all is held is the block's fine end") {
+  const EncodedCase c = simplified_case(faceted_sphere(30, 44), 150, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  Arrivals arrivals = opened_arrivals(file);
+  BlockViewParameters parameters = view_of_all();
+  parameters.by_vertex = true;
+  arrivals.load_all(parameters);
+  std::size_t blocks = 0;
+  for (const std::uint32_t block : arrivals.mesh.impl().cut) {
+    const ResidentBlockPtr resident = arrivals.mesh.resident(BlockId{block});
+    BlockCut cut(resident, arrivals.mesh.hierarchy(BlockId{block}));
+    const std::size_t triangles = cut.data().roots_of_triangle.size();
+    const std::size_t roots = cut.data().node_of_root.size();
+    cut.set_wants(std::vector<char>(cut.data().leaf_of_vertex.size(), 1),
+                  std::vector<char>(triangles, 0));
+    ViewParameters nothing;
+    nothing.camera.pixels = 1e9;
+    cut.update(nothing);
+    cut.finish();
+    CHECK(cut.cut().triangle_count() == triangles);
+    blocks += roots < cut.data().leaf_of_vertex.size();
+    // As the mesh by block has it, with nothing else shown.
+    const Grid& grid = file.facts().grid;
+    const auto place = [&grid](const Vec3d& p) { return draw_position(grid, grid.nearest(p)); };
+    TriangleBag fine;
+    for (const BlockGroup& group : resident->groups()) {
+      add_drawn(resident->draw_list(), {group.sn, group.fn, group.nsn}, fine);
+    }
+    CHECK((drawn_of_mesh(extract_cut(cut.cut()), place) == fine));
+  }
+  CHECK(blocks > 3);
 }
 
 TEST_CASE("by vertex, real models are one cut") {
