@@ -32,8 +32,8 @@ ViewParameters without_budgets(ViewParameters view) {
 }  // namespace
 
 std::size_t BlockCut::ShownPart::bytes() const {
-  return bytes_of_room(indices) + bytes_of_room(materials) + bytes_of_room(normals) +
-         bytes_of_room(colors);
+  return bytes_of_room(indices) + bytes_of_room(triangles) + bytes_of_room(materials) +
+         bytes_of_room(normals) + bytes_of_room(colors);
 }
 
 BlockCut::BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy)
@@ -117,6 +117,7 @@ void BlockCut::find_shown() {
 void BlockCut::copy_shown(const DrawPart& all, const ActiveTriangles& triangles,
                           ShownPart& shown) const {
   shown.indices.clear();
+  shown.triangles.clear();
   shown.materials.clear();
   shown.normals.clear();
   shown.colors.clear();
@@ -129,6 +130,7 @@ void BlockCut::copy_shown(const DrawPart& all, const ActiveTriangles& triangles,
   for (std::size_t t = 0; t < count; ++t) {
     if (!is_shown(triangles.ids[t])) continue;
     append(shown.indices, all.indices, 3 * t, 3);
+    shown.triangles.push_back(data().triangle_of[index_of(triangles.ids[t])]);
     append(shown.normals, all.normals, normals * t, normals);
     if (!all.materials.empty()) shown.materials.push_back(all.materials[t]);
     if (!all.colors.empty()) append(shown.colors, all.colors, 3 * t, 3);

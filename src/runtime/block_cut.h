@@ -57,6 +57,10 @@ class BlockCut {
   // What is shown. `revision()` is another number whenever it has changed.
   DrawList draw_list() const;
   std::uint64_t revision() const { return revision_; }
+  // Which triangle of the block's fine end one of draw_list() is.
+  std::uint32_t triangle_of(Part part, std::uint32_t shown) const {
+    return (part == kSnPart ? sn_ : part == kFnPart ? fn_ : nsn_).triangles[shown];
+  }
   bool is_shown(TriangleId t) const { return shows_[data().triangle_of[index_of(t)]] != 0; }
   LevelError error() const;  // of the active vertices that something finer stands for
   std::size_t bytes() const;
@@ -68,6 +72,7 @@ class BlockCut {
  private:
   struct ShownPart {
     std::vector<std::uint32_t> indices, materials;
+    std::vector<std::uint32_t> triangles;  // of the fine end
     std::vector<Vec3f> normals;
     std::vector<std::array<float, 4>> colors;
 

@@ -37,6 +37,7 @@ App::App(const ViewerOptions& options, ViewerWindow& window, GlCanvas canvas)
   settings_.wireframe = options.wireframe;
   settings_.creases = options.creases;
   settings_.ambient_occlusion = options.ambient_occlusion;
+  settings_.vertices_in_blocks = options.vertices_in_blocks;
   settings_.pixels = options.pixels;
   settings_.degrees = options.degrees;
   settings_.max_triangles = options.max_triangles;

@@ -25,6 +25,7 @@ SplitSettings split_of(const ViewerOptions& options) {
   split.divider = std::clamp(options.divider, kLeastShare, 1 - kLeastShare);
   const HalfSettings& right = options.right;
   split.right.mode = right.mode;
+  split.right.vertices_in_blocks = right.vertices_in_blocks;
   split.right.coloring = right.coloring;
   split.right.wireframe = right.wireframe;
   split.right.creases = right.creases;

@@ -23,6 +23,7 @@ struct ViewSettings {
   double degrees = 0;  // of shading; 0: any
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
   std::size_t max_bytes = std::size_t(512) << 20;  // of resident blocks
+  bool vertices_in_blocks = false;                 // by block: refined by vertex inside them
   // As fine as there is, within max_bytes; `pixels` is for colours alone.
   bool is_original = false;
 

@@ -1,9 +1,10 @@
-// By block: what has streamed so far. Several show views of one stream, and share on the GPU what
-// another one has there.
+// By block: what has streamed so far, whole or by vertex inside blocks. Several show views of one
+// stream, and share on the GPU what another one has there.
 #pragma once
 
 #include "crease/block_streamer.h"
 #include "render/gl_creases.h"
+#include "render/gl_cuts.h"
 #include "view/shown_mesh.h"
 
 #include <cstddef>
@@ -24,7 +25,7 @@ class ShownBlocks final : public ShownMesh {
   HitFacts facts_of(const Hit& hit) const override;
   std::vector<Vec3f> outline() const override;
   Vec3d origin() const override { return mesh().facts().grid.origin; }
-  Box box() const override { return blocks_.box_of(mesh().shown()); }
+  Box box() const override;
 
   const BlockMesh& mesh() const { return streamer_->mesh(view_); }
 
@@ -33,6 +34,7 @@ class ShownBlocks final : public ShownMesh {
   const std::size_t view_;
   const ShownBlocks* const beside_;
   GlBlocks blocks_;
+  GlCuts cuts_;
   GlBlockCreases creases_;
 };
 

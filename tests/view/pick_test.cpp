@@ -93,8 +93,7 @@ TEST_CASE("a triangle of a block knows its part") {
         pick(streamer.mesh().shown(), streamer.mesh().facts().grid, down);
     if (!hit) continue;
     ++hits;
-    CHECK(part_of(*hit, streamer.mesh().part_names()) ==
-          (hit->corners[0].x < 1.5 ? "left" : "right"));
+    CHECK(part_of(*hit, streamer.mesh()) == (hit->corners[0].x < 1.5 ? "left" : "right"));
   }
   CHECK(hits > 2);
 }
