@@ -43,7 +43,9 @@ FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camer
       blocks_.upload(mesh().shown(), beside_ == nullptr ? nullptr : &beside_->blocks_);
   facts.uploaded_bytes += cuts_.upload(mesh().shown_cuts());
   creases_.drop(report.cut.dropped);
-  if (settings.creases) facts.uploaded_bytes += creases_.update(mesh().shown());
+  if (settings.creases) {
+    facts.uploaded_bytes += creases_.update(mesh().shown(), mesh().shown_cuts());
+  }
   facts.triangles = mesh().triangle_count();
   facts.error_pixels =
       std::min(std::max(1.0, double(mesh().view_error())) * settings.wanted_pixels(),
