@@ -3,7 +3,9 @@
 //
 //   bench_stream city.crease --budget 256 --frames 1200
 //   bench_stream http://127.0.0.1:8080/city.crease --city --csv flight.csv
-//   bench_stream berlin.crease --vertex          beside the mesh by vertex, at the same error
+//   bench_stream berlin.crease --vertex          by block, by vertex in blocks and by vertex over
+//   the
+//                                                whole model, at the same error
 //   bench_stream http://127.0.0.1:8080/city.crease --still      time and bytes until the model,
 //                                                   seen whole, has its first picture and is right
 //
@@ -276,18 +278,17 @@ int compare_granularities(const Options& options) {
       look(f);
       wait_for(streamer, parameters);
     }
-    std::size_t new_blocks = 0;  // whose time is that of making their cuts
+    std::size_t went_on = 0;  // frames with more new blocks than one update makes cuts of
     for (int f = 0; f < options.frames; ++f) {
       look(f);
       time_one(g, update_blocks);
-      new_blocks += !streamer.mesh().has_arrived();
-      if (in_blocks) wait_for(streamer, parameters);
+      went_on += !streamer.mesh().has_arrived();
+      wait_for(streamer, parameters);
       g.triangles.back() = double(streamer.mesh().triangle_count());
     }
-    std::printf("%s: %zu blocks resident, %.1f MB, at the end %.1f MB\n", g.name,
+    std::printf("%s: %zu blocks resident, %.1f MB; %zu frames went on\n", g.name,
                 streamer.mesh().resident_count(), double(streamer.mesh().resident_bytes()) / 1e6,
-                double(streamer.mesh().resident_bytes()) / 1e6);
-    if (in_blocks) std::printf("  %zu frames had to go on\n", new_blocks);
+                went_on);
   }
   for (int f = 0; f < options.frames; ++f) {
     look(f);

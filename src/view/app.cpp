@@ -287,7 +287,7 @@ void App::act(Action action) {
       window_.capture_mouse(input_.is_flying());
       break;
     case Action::NextMode:
-      edited().mode = next_of(edited().mode, 3);
+      edited().set_cut(next_of(edited().cut(), kCutCount));
       break;
     case Action::NextColoring:
       edited().coloring = next_of(edited().coloring, 5);

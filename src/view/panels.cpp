@@ -151,7 +151,9 @@ void settings_panel(const PanelContent& content, ViewSettings& settings, SplitSe
     ImGui::Separator();
   }
   split_controls(split);
-  choice("cut", "##mode", settings.mode, kModeNames);
+  int cut = settings.cut();
+  choice("cut", "##cut", cut, kCutNames);
+  settings.set_cut(cut);
   choice("colours", "##coloring", settings.coloring, kColoringNames);
   ImGui::Checkbox("wireframe", &settings.wireframe);
   ImGui::SameLine();
@@ -163,7 +165,6 @@ void settings_panel(const PanelContent& content, ViewSettings& settings, SplitSe
   budget_slider("triangles", "##triangles", settings.max_triangles, 1000, 10, 100'000,
                 "%llu thousand");
   if (settings.mode == ViewMode::Blocks) {
-    ImGui::Checkbox("by vertex inside blocks", &settings.vertices_in_blocks);
     budget_slider("memory", "##memory", settings.max_bytes, ImU64(1) << 20, 8, 16'384, "%llu MiB");
   } else {
     geomorph_slider(settings.geomorph_seconds);

@@ -10,7 +10,9 @@
 namespace crease {
 
 inline constexpr const char* kColoringNames[] = {"shaded", "kind", "level", "block", "error"};
-inline constexpr const char* kModeNames[] = {"by block", "by vertex", "linear"};
+inline constexpr const char* kCutNames[] = {"by block", "by vertex in blocks", "by vertex",
+                                            "linear"};
+inline constexpr int kCutCount = 4;
 inline constexpr const char* kSplitNames[] = {"one picture", "beside the original", "two settings"};
 
 struct ViewSettings {
@@ -26,6 +28,13 @@ struct ViewSettings {
   bool vertices_in_blocks = false;                 // by block: refined by vertex inside them
   // As fine as there is, within max_bytes; `pixels` is for colours alone.
   bool is_original = false;
+
+  // Mode and vertices_in_blocks as one, as kCutNames has them.
+  int cut() const { return mode == ViewMode::Blocks ? int(vertices_in_blocks) : 1 + int(mode); }
+  void set_cut(int cut) {
+    vertices_in_blocks = cut == 1;
+    mode = cut < 2 ? ViewMode::Blocks : ViewMode(cut - 1);
+  }
 
   double wanted_pixels() const { return is_original ? 1e-9 : pixels; }
   double geomorph_seconds = 0.25;  // by vertex and linear; 0: none
