@@ -57,7 +57,7 @@ struct Options {
   std::string file, csv;
   double budget_mb = 256, pixels = 1, frames_per_second = 30;
   int frames = 900, threads = 1;
-  bool is_city = false, by_vertex = false, is_still = false;
+  bool is_city = false, by_vertex = false, in_blocks = false, is_still = false;
 };
 
 struct Frame {
@@ -170,6 +170,7 @@ int fly(const Options& options) {
               double(at_start.source.bytes_transferred) / 1e3);
   BlockViewParameters parameters;
   parameters.max_bytes = std::size_t(options.budget_mb * 1e6);
+  parameters.by_vertex = options.in_blocks;
   std::vector<Frame> frames;
   const Clock::time_point begin = Clock::now();
   for (int f = 0; f < options.frames; ++f) {
@@ -321,6 +322,7 @@ int run(int argc, char** argv) {
   app.add_option("--threads", options.threads, "that decode");
   app.add_flag("--city", options.is_city, "fly over it, low, instead of around");
   app.add_flag("--vertex", options.by_vertex, "beside the mesh by vertex, with all in memory");
+  app.add_flag("--in-blocks", options.in_blocks, "the flight by vertex inside blocks");
   app.add_flag("--still", options.is_still, "until a camera that sees all of it is satisfied");
   app.add_option("--csv", options.csv, "a line for each frame");
   CLI11_PARSE(app, argc, argv);

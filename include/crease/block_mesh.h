@@ -133,7 +133,8 @@ struct BlockViewParameters {
   // refined so, all others as well; but max_triangles stays a bound of what would be shown by
   // block, and max_seconds leaves some blocks as they were seen before, for the next update().
   ViewParameters view;
-  // Of resident blocks. The most visible errors first; what does not fit stays coarse.
+  // Of resident blocks. The most visible errors first; what does not fit stays coarse. By vertex,
+  // hierarchies and cuts count as well, and cuts that grow may exceed it until the next update().
   std::size_t max_bytes = std::size_t(256) << 20;
   // May change with every update(). Blocks change over a few at a time, what they need first.
   bool by_vertex = false;

@@ -62,6 +62,9 @@ void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, Block
     lists |= moved.have_changed;
     has_changed |= !cuts.has_arrived();
     for (const std::uint32_t block : cut) count_bytes(block);
+    // What has grown beyond the budget is dropped by the next one.
+    const bool has_grown = moved.splits + moved.merges > 0 || moved.have_changed;
+    has_changed |= has_grown && resident_bytes > parameters.max_bytes;
   } else if (was_by_vertex) {
     cuts.clear();
     lists = true;
