@@ -188,6 +188,9 @@ void VertexCuts::ask_for_triangles(std::uint32_t block, const Blocks& blocks,
     Group& asked = groups.emplace_back();
     const std::uint32_t finer = graph_.next_finer(resident.facts().band, group.patch);
     if (finer >= blocks.is_refined.size() || !blocks.is_refined[finer]) continue;
+    const std::span<const std::uint32_t> needed = graph_.dependencies(finer);
+    // A file may say of a triangle that a block goes on with it which does not start from it.
+    if (std::find(needed.begin(), needed.end(), block) == needed.end()) continue;
     asked.finer = finer;
     asked.cut = entries_[finer].cut.get();
     asked.next = first_triangle_in(finer, block, blocks);

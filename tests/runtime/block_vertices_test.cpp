@@ -1,5 +1,6 @@
 // By vertex inside resident blocks, against the definition: whatever blocks and hierarchies have
 // come, and however the view went, what is shown is one cut.
+#include "codec/checksum.h"
 #include "crease/import.h"
 #include "runtime/block_mesh_impl.h"
 #include "runtime/block_mesh_oracle.h"
@@ -274,6 +275,47 @@ TEST_CASE("by vertex, a cut of which all is held is the block's fine end") {
     CHECK((drawn_of_mesh(extract_cut(cut.cut()), place) == fine));
   }
   CHECK(blocks > 3);
+}
+
+// Payloads that decode to something else than was written; what is shown is nonsense then, and that
+// is all.
+TEST_CASE("by vertex, blocks that lie are shown or refused") {
+  const EncodedCase c = simplified_case(city_blocks(3, 2), 60, 12, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  std::mt19937_64 random(9);
+  std::size_t lies = 0;
+  for (int trial = 0; trial < (kSanitized ? 40 : 150); ++trial) {
+    Result<BlockMesh> mesh = BlockMesh::open(file);
+    REQUIRE(mesh.ok());
+    Result<DirectoryPage> page = file.read_page(0);
+    REQUIRE(page.ok());
+    std::vector<std::vector<std::byte>> payloads;
+    for (BlockEntry& entry : page->blocks) {
+      payloads.push_back(*file.read_block(entry));
+      if (random() % 2) payloads.back()[random() % payloads.back().size()] ^= std::byte{32};
+      entry.checksum = checksum(payloads.back());
+    }
+    REQUIRE(mesh->add_page(*page).ok());
+    for (std::size_t b = 0; b < payloads.size(); ++b) {
+      const std::optional<BlockDecodeJob> job = mesh->decode_job(BlockId{std::uint32_t(b)});
+      if (!job) continue;
+      const Result<ResidentBlockPtr> block = job->run(payloads[b]);
+      if (block.ok()) mesh->insert(*block);
+    }
+    for (int view = 0; view < 4; ++view) {
+      const BlockViewParameters parameters = random_vertex_view(c.mesh, random);
+      for (int round = 0; round < 3; ++round) {
+        mesh->update(parameters);
+        for (const BlockId id : std::vector<BlockId>(mesh->missing_hierarchies().begin(),
+                                                     mesh->missing_hierarchies().end())) {
+          mesh->insert(mesh->hierarchy_job(id)->run());
+        }
+      }
+      lies += mesh->resident_count();
+      CHECK(mesh->extract().triangle_count() == mesh->triangle_count());
+    }
+  }
+  CHECK(lies > 0);
 }
 
 TEST_CASE("by vertex, real models are one cut") {
