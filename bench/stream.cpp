@@ -3,7 +3,9 @@
 //
 //   bench_stream city.crease --budget 256 --frames 1200
 //   bench_stream http://127.0.0.1:8080/city.crease --city --csv flight.csv
-//   bench_stream berlin.crease --vertex          beside the mesh by vertex, at the same error
+//   bench_stream berlin.crease --vertex          by block, by vertex in blocks and by vertex over
+//   the
+//                                                whole model, at the same error
 //   bench_stream http://127.0.0.1:8080/city.crease --still      time and bytes until the model,
 //                                                   seen whole, has its first picture and is right
 //
@@ -55,7 +57,7 @@ struct Options {
   std::string file, csv;
   double budget_mb = 256, pixels = 1, frames_per_second = 30;
   int frames = 900, threads = 1;
-  bool is_city = false, by_vertex = false, is_still = false;
+  bool is_city = false, by_vertex = false, in_blocks = false, is_still = false;
 };
 
 struct Frame {
@@ -168,6 +170,7 @@ int fly(const Options& options) {
               double(at_start.source.bytes_transferred) / 1e3);
   BlockViewParameters parameters;
   parameters.max_bytes = std::size_t(options.budget_mb * 1e6);
+  parameters.by_vertex = options.in_blocks;
   std::vector<Frame> frames;
   const Clock::time_point begin = Clock::now();
   for (int f = 0; f < options.frames; ++f) {
@@ -217,6 +220,33 @@ int stand_still(const Options& options) {
   return 0;
 }
 
+struct Granularity {
+  const char* name;
+  std::vector<double> update_ms, triangles, ratios;  // per frame; ratios: to by vertex
+};
+
+void print(const Granularity& g) {
+  std::printf("  %-28s update %8.4f ms median, %8.4f 99 %%; %8.0f triangles median", g.name,
+              of_all(g.update_ms, 0.5), of_all(g.update_ms, 0.99), of_all(g.triangles, 0.5));
+  if (!g.ratios.empty()) {
+    std::printf(", %.2f times median, %.2f most", of_all(g.ratios, 0.5), of_all(g.ratios, 1));
+  }
+  std::printf("\n");
+}
+
+// Blocks by vertex are worked out in the background and come over a few with each update.
+void wait_for(BlockStreamer& streamer, const BlockViewParameters& parameters) {
+  while (!streamer.update(parameters).is_complete) streamer.wait(std::chrono::milliseconds(100));
+}
+
+template <typename Update>
+void time_one(Granularity& g, Update update) {
+  const double start = thread_seconds();
+  const std::size_t triangles = update();
+  g.update_ms.push_back((thread_seconds() - start) * 1e3);
+  g.triangles.push_back(double(triangles));
+}
+
 // Everything in memory: triangles and time at the same error, along the same path.
 int compare_granularities(const Options& options) {
   Result<BlockStreamer> opened = open(options);
@@ -229,36 +259,55 @@ int compare_granularities(const Options& options) {
   if (!model.ok()) return failed(model.failure());
   Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
   if (!hierarchy.ok()) return failed(hierarchy.failure());
-  AdaptiveMesh by_vertex(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
+  AdaptiveMesh whole(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
+  Granularity by_vertex{"by vertex, whole model", {}, {}, {}}, by_block{"by block", {}, {}, {}},
+      within_blocks{"by vertex in blocks", {}, {}, {}};
   BlockViewParameters parameters;
   parameters.max_bytes = std::size_t(8) << 30;
-  std::vector<double> block_ms, vertex_ms, ratios, blocks;
-  for (int f = 0; f < options.frames; ++f) {
+  const auto look = [&](int f) {
     parameters.view.camera = camera_at(box, options.is_city, double(f) / options.frames);
     parameters.view.camera.pixels = options.pixels;
-    while (!streamer.update(parameters).is_complete) streamer.wait(std::chrono::milliseconds(100));
+  };
+  const auto update_blocks = [&] {
+    streamer.update(parameters);
+    return streamer.mesh().triangle_count();
+  };
+  for (const bool in_blocks : {false, true}) {
+    parameters.by_vertex = in_blocks;
+    Granularity& g = in_blocks ? within_blocks : by_block;
+    for (int f = 0; f < options.frames; ++f) {
+      look(f);
+      wait_for(streamer, parameters);
+    }
+    std::size_t went_on = 0;  // frames with more new blocks than one update makes cuts of
+    for (int f = 0; f < options.frames; ++f) {
+      look(f);
+      time_one(g, update_blocks);
+      went_on += !streamer.mesh().has_arrived();
+      wait_for(streamer, parameters);
+      g.triangles.back() = double(streamer.mesh().triangle_count());
+    }
+    std::printf("%s: %zu blocks resident, %.1f MB; %zu frames went on\n", g.name,
+                streamer.mesh().resident_count(), double(streamer.mesh().resident_bytes()) / 1e6,
+                went_on);
   }
   for (int f = 0; f < options.frames; ++f) {
-    parameters.view.camera = camera_at(box, options.is_city, double(f) / options.frames);
-    parameters.view.camera.pixels = options.pixels;
-    double start = thread_seconds();
-    streamer.update(parameters);
-    block_ms.push_back((thread_seconds() - start) * 1e3);
-    start = thread_seconds();
-    by_vertex.update(parameters.view);
-    vertex_ms.push_back((thread_seconds() - start) * 1e3);
-    blocks.push_back(double(streamer.mesh().resident_count()));
-    if (by_vertex.triangle_count() > 0) {
-      ratios.push_back(double(streamer.mesh().triangle_count()) /
-                       double(by_vertex.triangle_count()));
+    look(f);
+    time_one(by_vertex, [&] {
+      whole.update(parameters.view);
+      return whole.triangle_count();
+    });
+  }
+  for (Granularity* g : {&by_block, &within_blocks}) {
+    for (std::size_t f = 0; f < g->triangles.size(); ++f) {
+      if (by_vertex.triangles[f] > 0) {
+        g->ratios.push_back(g->triangles[f] / by_vertex.triangles[f]);
+      }
     }
   }
-  std::printf(
-      "%s at %.3g px: update by block %.4f ms median, %.4f 99 %% (%.0f blocks resident); by vertex "
-      "%.3f ms median, %.3f 99 %%; triangles by block / by vertex %.2f median, %.2f most\n",
-      options.file.c_str(), options.pixels, of_all(block_ms, 0.5), of_all(block_ms, 0.99),
-      of_all(blocks, 1), of_all(vertex_ms, 0.5), of_all(vertex_ms, 0.99), of_all(ratios, 0.5),
-      of_all(ratios, 1));
+  std::printf("%s at %.3g px, %zu blocks resident\n", options.file.c_str(), options.pixels,
+              streamer.mesh().resident_count());
+  for (const Granularity* g : {&by_block, &within_blocks, &by_vertex}) print(*g);
   return 0;
 }
 
@@ -273,6 +322,7 @@ int run(int argc, char** argv) {
   app.add_option("--threads", options.threads, "that decode");
   app.add_flag("--city", options.is_city, "fly over it, low, instead of around");
   app.add_flag("--vertex", options.by_vertex, "beside the mesh by vertex, with all in memory");
+  app.add_flag("--in-blocks", options.in_blocks, "the flight by vertex inside blocks");
   app.add_flag("--still", options.is_still, "until a camera that sees all of it is satisfied");
   app.add_option("--csv", options.csv, "a line for each frame");
   CLI11_PARSE(app, argc, argv);

@@ -19,7 +19,7 @@ set(CREASE_LAYER_pipeline  base parallel mesh hierarchy io simplify codec codec_
 set(CREASE_LAYER_stream    base codec)
 set(CREASE_LAYER_http      base codec stream)
 set(CREASE_LAYER_serve     base)
-set(CREASE_LAYER_runtime   base mesh hierarchy codec stream)
+set(CREASE_LAYER_runtime   base mesh hierarchy assemble codec stream)
 set(CREASE_LAYER_render    base mesh runtime)
 set(CREASE_LAYER_view      base parallel mesh hierarchy assemble io codec codec_encode pipeline stream
                            http runtime render)

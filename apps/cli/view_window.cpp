@@ -85,7 +85,8 @@ class SplitWords {
     }
     if (name == "mode") {
       half.mode = mode_of(value);
-      return value == "block" || value == "vertex" || value == "linear";
+      half.vertices_in_blocks = value == "hybrid";
+      return value == "block" || value == "hybrid" || value == "vertex" || value == "linear";
     }
     if (name == "color") {
       half.coloring = coloring_named(value);
@@ -99,10 +100,11 @@ class SplitWords {
   }
 
   Failure wrong(const std::string& word) const {
-    return fail(Error::CommandLine,
-                "--split " + text_ + ": \"" + word +
-                    "\" is none of original, pixels=N, degrees=N, triangles=N, "
-                    "mode=block|vertex|linear, color=BY, wireframe, creases, ambient-occlusion");
+    return fail(
+        Error::CommandLine,
+        "--split " + text_ + ": \"" + word +
+            "\" is none of original, pixels=N, degrees=N, triangles=N, "
+            "mode=block|hybrid|vertex|linear, color=BY, wireframe, creases, ambient-occlusion");
   }
 
   const std::string& text_;
@@ -111,6 +113,7 @@ class SplitWords {
 // The right half begins as the left one.
 Status set_split(const std::string& text, ViewerOptions& viewer) {
   viewer.right = {.mode = viewer.mode,
+                  .vertices_in_blocks = viewer.vertices_in_blocks,
                   .coloring = viewer.coloring,
                   .wireframe = viewer.wireframe,
                   .creases = viewer.creases,
@@ -139,6 +142,7 @@ Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common&
   ViewerOptions viewer;
   viewer.source = options.source;
   viewer.mode = mode_of(options.mode);
+  viewer.vertices_in_blocks = options.mode == "hybrid";
   viewer.coloring = coloring_named(options.coloring);
   viewer.wireframe = options.wireframe;
   viewer.creases = options.creases;
@@ -237,9 +241,11 @@ Command add_view(CLI::App& app, const Common& common) {
       ->check(CLI::Range(0.1, 1e9))
       ->type_name("KB");
   command
-      ->add_option("--mode", options->mode,
-                   "block: streams, and cuts along blocks | vertex, linear: load all of the model")
-      ->check(CLI::IsMember({"block", "vertex", "linear"}))
+      ->add_option(
+          "--mode", options->mode,
+          "block: streams, and cuts along blocks | hybrid: and along vertices inside them | "
+          "vertex, linear: load all of the model")
+      ->check(CLI::IsMember({"block", "hybrid", "vertex", "linear"}))
       ->capture_default_str();
   command->add_option("--color", options->coloring, "shaded | kind | level | block | error")
       ->check(CLI::IsMember({"shaded", "kind", "level", "block", "error"}))

@@ -12,6 +12,20 @@
 //     if (auto job = mesh->decode_job(id)) block = job->run(payload);  // on any thread
 //     mesh->insert(*block);
 //
+// By vertex, what is shown is as fine as AdaptiveMesh would have it, vertex by vertex, as far as
+// blocks are resident:
+//
+//   mesh->update({.view = {.camera = camera}, .by_vertex = true});
+//   for (const ShownRange& range : mesh->shown()) ...                 // blocks that are shown
+//   whole for (const ShownCut& cut : mesh->shown_cuts()) draw(cut.list);    // and those by vertex
+//   for (BlockId id : mesh->missing_hierarchies())                    // whenever there is time
+//     if (auto job = mesh->hierarchy_job(id)) mesh->insert(job->run());  // on any thread
+//
+// A block has a vertex hierarchy of its own, made of what its splits did, and a cut through it. A
+// vertex of a finer block's coarse end is split only where all vertices that share a triangle with
+// it are active in the coarser blocks; so much more than by vertex over the whole model is shown.
+// A triangle is shown by the finest block in which one of its vertices is split.
+//
 // BlockMesh does no input and has no threads: crease/block_streamer.h feeds one. What is shown is
 // at every moment a cut of blocks that are resident, however few they are; without any it is empty.
 #pragma once
@@ -81,12 +95,49 @@ class BlockDecodeJob {
   std::unique_ptr<const Data> data_;
 };
 
+// The vertices of one block between its two ends. Does not change.
+class BlockHierarchy {
+ public:
+  struct Data;
+  explicit BlockHierarchy(std::unique_ptr<const Data> data);
+  ~BlockHierarchy();
+
+  BlockId id() const;
+  std::size_t bytes() const;                   // of memory that it takes
+  const Data& data() const { return *data_; }  // for the library
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+using BlockHierarchyPtr = std::shared_ptr<const BlockHierarchy>;
+
+// Holds what making it takes, so that it runs on any thread.
+class BlockHierarchyJob {
+ public:
+  // `needed`: the blocks that `block` needs, ascending.
+  BlockHierarchyJob(ResidentBlockPtr block, std::vector<ResidentBlockPtr> needed);
+  BlockId id() const { return block_->id(); }
+  // Time: about that of decoding the block three times; memory while it runs likewise. A block that
+  // has no hierarchy, since a vertex has more than 65,534 attributes, gets an empty one and is
+  // shown whole.
+  BlockHierarchyPtr run() const;
+
+ private:
+  ResidentBlockPtr block_;
+  std::vector<ResidentBlockPtr> needed_;
+};
+
 struct BlockViewParameters {
-  // Of these: camera, degrees, max_triangles, hysteresis, coarse_outside, silhouette_weight. The
-  // errors are bounds of whole blocks.
+  // By block, of these: camera, degrees, max_triangles, hysteresis, coarse_outside,
+  // silhouette_weight. The errors are bounds of whole blocks. By vertex, inside the blocks that are
+  // refined so, all others as well; but max_triangles stays a bound of what would be shown by
+  // block, and max_seconds leaves some blocks as they were seen before, for the next update().
   ViewParameters view;
-  // Of resident blocks. The most visible errors first; what does not fit stays coarse.
+  // Of resident blocks. The most visible errors first; what does not fit stays coarse. By vertex,
+  // hierarchies and cuts count as well, and cuts that grow may exceed it until the next update().
   std::size_t max_bytes = std::size_t(256) << 20;
+  // May change with every update(). Blocks change over a few at a time, what they need first.
+  bool by_vertex = false;
 };
 
 // A run of groups of one block. Ranges are in triangles of the parts of its draw list.
@@ -97,8 +148,21 @@ struct ShownRange {
   std::size_t triangle_count() const { return std::size_t(sn.count) + fn.count + nsn.count; }
 };
 
+// What a block shows of its triangles by vertex.
+struct ShownCut {
+  const ResidentBlock* block = nullptr;
+  DrawList list;  // into the mesh; as for AdaptiveMesh, with positions that no triangle uses
+  // Another one whenever `list` has changed, however often the block comes and goes.
+  std::uint64_t revision = 0;
+
+  std::size_t triangle_count() const {
+    return list.sn.triangle_count() + list.fn.triangle_count() + list.nsn.triangle_count();
+  }
+};
+
 struct BlockUpdate {
   std::size_t refined = 0, coarsened = 0;  // blocks that the cut went through
+  std::size_t splits = 0, merges = 0;      // by vertex
   std::size_t evaluated = 0;               // blocks of which it was asked whether they are wrong
   std::vector<BlockId> dropped;            // no longer resident: a renderer frees its copies
 };
@@ -142,9 +206,21 @@ class BlockMesh {
   // update().
   void insert(ResidentBlockPtr block);
 
-  std::span<const ShownRange> shown() const;  // coarse blocks first
-  std::size_t triangle_count() const;         // of what is shown
-  // The largest of what is shown.
+  // By vertex: blocks that are shown whole only because they have no hierarchy; coarse ones first.
+  std::span<const BlockId> missing_hierarchies() const;
+  // None where the block, or one that it needs, is not resident.
+  std::optional<BlockHierarchyJob> hierarchy_job(BlockId id) const;
+  // As for blocks. What is not resident any more is let go.
+  void insert(BlockHierarchyPtr hierarchy);
+  BlockHierarchyPtr hierarchy(BlockId id) const;  // null: there is none
+  // All of the view is shown as the last update() wanted it, as far as blocks are resident.
+  bool has_arrived() const;
+
+  // Both until the next update(). Coarse blocks first.
+  std::span<const ShownRange> shown() const;     // whole groups
+  std::span<const ShownCut> shown_cuts() const;  // by vertex
+  std::size_t triangle_count() const;            // of what is shown
+  // The largest of what is shown. By vertex O(vertices).
   LevelError error() const;
   // How wrong the worst of it is seen to be by the last update()'s view: what is off by just as
   // much as is allowed counts 1. 0: nothing is off by more than that. Where the eye is inside of a
@@ -164,8 +240,10 @@ class BlockMesh {
   // What is shown as a mesh of its own, all attribute layers, materials and parts. Time O(shown).
   Mesh extract() const;
 
- private:
   struct Impl;
+  const Impl& impl() const { return *impl_; }  // for the library
+
+ private:
   explicit BlockMesh(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

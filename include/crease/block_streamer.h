@@ -11,6 +11,9 @@
 //   streamer->set_view_count(2);
 //   every frame: for (std::size_t v = 0; v < 2; ++v) streamer->update(parameters[v], v);
 //
+// By vertex, hierarchies are made on the threads that decode, when there is nothing to decode;
+// until then blocks are shown whole.
+//
 // Memory: what BlockViewParameters::max_bytes allows of resident blocks, and beside that at most
 // StreamOptions::max_pending_bytes of payloads, of each thread the BlockFacts::decoded_bytes of
 // what it decodes, and eight decoded blocks that wait for the next update().
@@ -47,7 +50,7 @@ struct StreamOptions {
 struct StreamReport {
   BlockUpdate cut;
   std::size_t inserted = 0;  // blocks
-  bool is_complete = false;  // all that the view wants is there
+  bool is_complete = false;  // all that the view wants is there, and shown
 };
 
 // Since the streamer was opened.

@@ -47,6 +47,7 @@ enum class ViewSplit : std::uint8_t {
 // What one half of the picture has for itself.
 struct HalfSettings {
   ViewMode mode = ViewMode::Blocks;
+  bool vertices_in_blocks = false;  // as in ViewerOptions
   ViewColoring coloring = ViewColoring::Shaded;
   bool wireframe = false, creases = false, ambient_occlusion = false;
   double pixels = 1, degrees = 0;  // as in ViewerOptions
@@ -69,6 +70,7 @@ struct ViewerOptions {
   std::string source;                    // path or URL; empty: waits for files to be dropped
   int width_px = 1280, height_px = 800;  // of the window
   ViewMode mode = ViewMode::Blocks;
+  bool vertices_in_blocks = false;  // by block: and by vertex inside them, with fewer triangles
   ViewColoring coloring = ViewColoring::Shaded;
   bool wireframe = false;
   bool creases = false;  // hard edges of what is shown as lines, and its borders in another tint

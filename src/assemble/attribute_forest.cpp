@@ -268,7 +268,7 @@ class AttributeForest {
   const AttributeInput& in_;
   const std::size_t layer_;
   const LeafAttributes& leaves_;
-  LayerValues values_;
+  RuledValues values_;
   DisjointSets sets_;                      // of leaf attributes
   std::vector<Standing> standing_;         // per leaf attribute, valid at the smallest of a set
   std::vector<std::uint32_t> next_wedge_;  // per wedge

@@ -9,7 +9,7 @@
 
 namespace crease {
 
-LayerValues::LayerValues(const AttributeLayer& source, const ContractionSequence& sequence,
+RuledValues::RuledValues(const AttributeLayer& source, const ContractionSequence& sequence,
                          std::size_t layer)
     : source_(source),
       sequence_(sequence),
@@ -19,13 +19,13 @@ LayerValues::LayerValues(const AttributeLayer& source, const ContractionSequence
   if (const auto bits = octahedral_bits_of(source.values)) lattice_.emplace(*bits);
 }
 
-std::span<const float> LayerValues::value(AttributeId id) const {
+std::span<const float> RuledValues::value(AttributeId id) const {
   if (index_of(id) < known_count_) return attribute_value(source_, sequence_, layer_, id);
   return std::span<const float>(blended_).subspan((index_of(id) - known_count_) * source_.dimension,
                                                   source_.dimension);
 }
 
-AttributeId LayerValues::blend(std::span<const AttributeId> ids) {
+AttributeId RuledValues::blend(std::span<const AttributeId> ids) {
   if (sequence_.placement == Placement::Endpoint) return ids[0];
   std::array<double, 4> sum{};
   double square = 0;
@@ -72,7 +72,7 @@ void AttributeRules::link_equal_ids(std::span<const Candidate> candidates) {
 std::span<const AttributeId> AttributeRules::apply(
     std::span<const Candidate> candidates,
     std::span<const std::pair<std::uint32_t, std::uint32_t>> links,
-    std::span<const AttributeChange> changes, std::size_t layer, LayerValues& values) {
+    std::span<const AttributeChange> changes, std::size_t layer, RuledValues& values) {
   parent_.resize(candidates.size());
   std::iota(parent_.begin(), parent_.end(), 0u);
   order_ = parent_;
@@ -104,7 +104,7 @@ std::span<const AttributeId> AttributeRules::apply(
 }
 
 void AttributeRules::decide_unshown(std::span<const Candidate> candidates,
-                                    std::span<const std::uint32_t> linked, LayerValues& values) {
+                                    std::span<const std::uint32_t> linked, RuledValues& values) {
   ids_.clear();
   AttributeId decided = kNoAttribute, face_value = kNoAttribute;
   bool several_decided = false, several_face_values = false;

@@ -34,9 +34,9 @@ struct Candidate {
 };
 
 // The values of a layer: the input's, the sequence's, and those that rule (3) makes.
-class LayerValues {
+class RuledValues {
  public:
-  LayerValues(const AttributeLayer& source, const ContractionSequence& sequence, std::size_t layer);
+  RuledValues(const AttributeLayer& source, const ContractionSequence& sequence, std::size_t layer);
 
   std::span<const float> value(AttributeId id) const;
   // A new attribute between these: on the sphere, and on the source's lattice if that has one, or
@@ -63,14 +63,14 @@ class AttributeRules {
   std::span<const AttributeId> apply(std::span<const Candidate> candidates,
                                      std::span<const std::pair<std::uint32_t, std::uint32_t>> links,
                                      std::span<const AttributeChange> changes, std::size_t layer,
-                                     LayerValues& values);
+                                     RuledValues& values);
 
  private:
   void link(std::uint32_t a, std::uint32_t b);
   std::uint32_t root(std::uint32_t i);
   void link_equal_ids(std::span<const Candidate> candidates);
   void decide_unshown(std::span<const Candidate> candidates, std::span<const std::uint32_t> linked,
-                      LayerValues& values);
+                      RuledValues& values);
 
   std::vector<std::uint32_t> parent_, order_;
   std::vector<AttributeId> result_, ids_;

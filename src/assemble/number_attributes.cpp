@@ -11,7 +11,7 @@ namespace {
 // An index an attribute where values repeat, or a value each, whichever is smaller. Returns, where
 // there are indices, the value of each id.
 std::vector<std::uint32_t> store_values(const std::vector<AttributeId>& ids,
-                                        const LayerValues& values, AttributeHierarchy& result) {
+                                        const RuledValues& values, AttributeHierarchy& result) {
   std::uint32_t id_count = 0;
   for (AttributeId id : ids) {
     id_count = std::max(id_count, static_cast<std::uint32_t>(index_of(id)) + 1);
@@ -113,7 +113,7 @@ void store_leaves(const LeafAttributes& leaves, AttributeHierarchy& result) {
 }  // namespace
 
 AttributeHierarchy number_attributes(const AttributeInput& input, std::size_t layer,
-                                     const LayerValues& values, const GrownAttributes& grown) {
+                                     const RuledValues& values, const GrownAttributes& grown) {
   AttributeHierarchy result;
   const AttributeLayer& source = values.source();
   result.name = source.name;

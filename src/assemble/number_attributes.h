@@ -33,6 +33,6 @@ struct GrownAttributes {
 
 // From births to nodes, from contractions to splits, from ids to values.
 AttributeHierarchy number_attributes(const AttributeInput& input, std::size_t layer,
-                                     const LayerValues& values, const GrownAttributes& grown);
+                                     const RuledValues& values, const GrownAttributes& grown);
 
 }  // namespace crease

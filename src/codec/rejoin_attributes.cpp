@@ -81,7 +81,8 @@ void AttributeRejoiner::derive(const UnfoldedBlock& block, const ContractingPatc
                                std::uint32_t v, std::vector<TriangleId>& derived) {
   if (!has_normals_) return;
   for (const std::uint32_t t : patch.around(v)) {
-    if (t >= block.coarse_triangle_count() || !block.coarse_derived[t]) continue;
+    const bool is_coarse = t < block.coarse_triangle_count();
+    if (!block.end.derived[t] && !(is_coarse && block.coarse_derived[t])) continue;
     char& is_derived = is_derived_[block.triangles[t]];
     if (is_derived) continue;
     is_derived = 1;

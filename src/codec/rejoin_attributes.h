@@ -5,7 +5,8 @@
 // is best for the triangles that they stand for (codec/wedge_quadrics.h), or where that is not
 // known, what they are at where the parent stands between the children; with its last contraction
 // every corner gets what it has at the coarse end. Triangles that show their geometric normal at
-// the coarse end do so from the first contraction that touches them.
+// the coarse end do so from the first contraction that touches them; so do those that show it at
+// the fine end already, where that is not the model's.
 #pragma once
 
 #include "codec/contracting_patch.h"

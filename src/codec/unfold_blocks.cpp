@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "crease/ids.h"
 
+#include <numeric>
 #include <utility>
 
 namespace crease::codec {
@@ -44,6 +45,27 @@ void BlockUnfolder::add(const BlockEntry& entry, DecodedBlock decoded, const Sta
 
   block_of_id_.resize(index_of(entry.id) + 1, kNone);
   block_of_id_[index_of(entry.id)] = static_cast<std::uint32_t>(blocks_.size());
+  blocks_.push_back(std::move(block));
+}
+
+void BlockUnfolder::add_alone(const BlockFacts& facts, PatchMesh end, std::vector<Split> splits,
+                              const CoarseEnd& start) {
+  UnfoldedBlock block;
+  block.band = facts.band;
+  block.coarse = facts.coarse;
+  block.fine = facts.fine;
+  block.coarse_vertex_count = static_cast<std::uint32_t>(start.names.size());
+  block.coarse_derived = start.mesh.derived;
+  block.coarse_values = start.mesh.values;
+  block.end = std::move(end);
+  block.coarse_values.resize(block.end.values.size());
+  block.splits = std::move(splits);
+  slot_count_ = static_cast<std::uint32_t>(block.end.positions.size());
+  triangle_count_ = static_cast<std::uint32_t>(block.end.triangles.size());
+  block.vertices.resize(slot_count_);
+  std::iota(block.vertices.begin(), block.vertices.end(), 0);
+  block.triangles.resize(triangle_count_);
+  std::iota(block.triangles.begin(), block.triangles.end(), 0);
   blocks_.push_back(std::move(block));
 }
 

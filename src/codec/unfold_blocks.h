@@ -44,6 +44,10 @@ class BlockUnfolder {
     std::vector<TriangleSource> sources;
   };
   void add(const BlockEntry& entry, DecodedBlock decoded, const Start& start);
+  // One block and no other: slots and numbers are those of its fine end. `start`: what it started
+  // from, with all values.
+  void add_alone(const BlockFacts& facts, PatchMesh end, std::vector<Split> splits,
+                 const CoarseEnd& start);
 
   std::span<const UnfoldedBlock> blocks() const { return blocks_; }
   // Whether a block that was added has such a vertex.

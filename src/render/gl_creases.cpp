@@ -176,9 +176,31 @@ const GlBlockCreases::BlockLines& GlBlockCreases::lines_of_block(const ResidentB
   return lines;
 }
 
-std::size_t GlBlockCreases::update(std::span<const ShownRange> shown) {
-  if (std::equal(shown.begin(), shown.end(), of_.begin(), of_.end(), is_same_run)) return 0;
+const GroupLines& GlBlockCreases::lines_of_cut(const ShownCut& cut) {
+  CutLines& here = cuts_[number_of(cut.block->id())];
+  if (here.revision != cut.revision) {
+    here.revision = cut.revision;
+    here.lines = lines_of(cut.list, all_of(cut.list));
+  }
+  return here.lines;
+}
+
+std::size_t GlBlockCreases::update(std::span<const ShownRange> shown,
+                                   std::span<const ShownCut> cuts) {
+  const bool has_same_cuts = std::equal(
+      cuts.begin(), cuts.end(), of_revisions_.begin(), of_revisions_.end(),
+      [](const ShownCut& cut, std::uint64_t revision) { return cut.revision == revision; });
+  if (has_same_cuts &&
+      std::equal(shown.begin(), shown.end(), of_.begin(), of_.end(), is_same_run)) {
+    return 0;
+  }
   of_.assign(shown.begin(), shown.end());
+  of_revisions_.clear();
+  for (const ShownCut& cut : cuts) of_revisions_.push_back(cut.revision);
+  std::erase_if(cuts_, [this](const auto& cut) {
+    return std::find(of_revisions_.begin(), of_revisions_.end(), cut.second.revision) ==
+           of_revisions_.end();
+  });
   shown_.clear();
   std::size_t uploaded = 0;
   std::vector<std::span<const RimEdge>> rims;
@@ -186,8 +208,18 @@ std::size_t GlBlockCreases::update(std::span<const ShownRange> shown) {
     const BlockLines& lines = lines_of_block(*run.block, uploaded);
     shown_.push_back({&lines, hard_of_run(run, lines.creases, rims)});
   }
-  origin_ = shown.empty() ? Vec3d{} : shown.front().block->draw_list().origin;
-  return uploaded + between_.set(join_rims(rims), origin_);
+  std::vector<Line3f> hard;
+  for (const ShownCut& cut : cuts) {
+    const GroupLines& lines = lines_of_cut(cut);
+    hard.insert(hard.end(), lines.hard.begin(), lines.hard.end());
+    rims.push_back(lines.rim);
+  }
+  origin_ = !shown.empty()  ? shown.front().block->draw_list().origin
+            : !cuts.empty() ? cuts.front().list.origin
+                            : Vec3d{};
+  CreaseLines between = join_rims(rims);
+  between.hard.insert(between.hard.end(), hard.begin(), hard.end());
+  return uploaded + between_.set(between, origin_);
 }
 
 void GlBlockCreases::drop(std::span<const BlockId> blocks) {

@@ -21,6 +21,7 @@
 #include "render/gl_shaders.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -45,7 +46,8 @@ class GlCreases {
 // between groups each time that something else is shown.
 class GlBlockCreases {
  public:
-  std::size_t update(std::span<const ShownRange> shown);  // the same
+  // Cuts by vertex are gone through again whenever they show another thing. The same.
+  std::size_t update(std::span<const ShownRange> shown, std::span<const ShownCut> cuts = {});
   void drop(std::span<const BlockId> blocks);
   Status draw(ProgramCache& programs, const DrawPass& pass, const DrawStyle& style) const;
   std::size_t bytes() const;
@@ -60,10 +62,17 @@ class GlBlockCreases {
     const BlockLines* block = nullptr;
     Range hard;
   };
+  struct CutLines {
+    std::uint64_t revision = 0;
+    GroupLines lines;
+  };
+  const GroupLines& lines_of_cut(const ShownCut& cut);
   const BlockLines& lines_of_block(const ResidentBlock& block, std::size_t& uploaded);
 
   std::unordered_map<std::uint32_t, BlockLines> blocks_;  // by block; what is in it stays in place
+  std::unordered_map<std::uint32_t, CutLines> cuts_;      // by block, of what is shown
   std::vector<ShownRange> of_;                            // what the rest is of
+  std::vector<std::uint64_t> of_revisions_;               // and of these cuts
   std::vector<ShownLines> shown_;
   Vec3d origin_;  // of all blocks
   GlCreases between_;

@@ -1,65 +1,15 @@
 #include "crease/block_mesh.h"
 
 #include "base/assert.h"
-#include "codec/join_ends.h"
-#include "runtime/block_choice.h"
-#include "runtime/block_graph.h"
-#include "runtime/resident_block.h"
+#include "runtime/block_mesh_impl.h"
+#include "runtime/extract_blocks.h"
 
 #include <algorithm>
-#include <unordered_map>
 #include <utility>
 
 namespace crease {
 
 using codec::ModelSchema;
-
-struct BlockMesh::Impl {
-  Impl(ModelSchema s, std::uint32_t blocks, std::uint32_t pages)
-      : schema(std::make_shared<const ModelSchema>(std::move(s))),
-        page_count(pages),
-        graph(schema->facts, blocks),
-        chooser(graph, schema->facts.grid) {}
-  // Of the same file, with no block.
-  explicit Impl(const Impl* other)
-      : schema(other->schema),
-        part_names(other->part_names),
-        page_count(other->page_count),
-        graph(other->graph),
-        chooser(graph, schema->facts.grid) {
-    make_room();
-  }
-
-  void make_room();  // for what the graph has
-  BlockUpdate update(const BlockViewParameters& parameters);
-  void move_cut(std::span<const std::uint32_t> chosen, BlockUpdate& report);
-  void drop_beyond(std::size_t max_bytes, BlockUpdate& report);
-  void list_shown();
-  void list_shown_of(std::uint32_t block);
-  bool is_shown(std::uint32_t block, std::uint32_t patch) const;
-  LevelError error_of_cut() const;
-  BlockChooser::Limits limits(const BlockViewParameters& parameters) const;
-
-  std::shared_ptr<const ModelSchema> schema;
-  std::vector<std::string> part_names;
-  std::uint32_t page_count;
-  BlockGraph graph;
-  BlockChooser chooser;
-  // Per block.
-  std::vector<ResidentBlockPtr> resident;
-  std::vector<std::size_t> bytes_of_block;  // what it takes, or at most would
-  std::vector<char> is_refined;             // it is in the cut: resident, and so is what it needs
-  std::vector<std::uint64_t> wanted_at;     // the last update that wanted it
-  std::vector<std::uint32_t> cut;           // those that are refined, ascending
-  std::vector<BlockEntry> missing;
-  std::vector<ShownRange> shown;
-  LevelError shown_error;
-  float view_error = 0;
-  std::size_t shown_triangles = 0, resident_count = 0, resident_bytes = 0;
-  std::uint64_t updates = 0;
-  BlockViewParameters last;
-  bool has_changed = true;  // since the last update
-};
 
 void BlockMesh::Impl::make_room() {
   const std::uint32_t count = graph.size();
@@ -67,6 +17,7 @@ void BlockMesh::Impl::make_room() {
   for (auto block = static_cast<std::uint32_t>(bytes_of_block.size()); block < count; ++block) {
     bytes_of_block.push_back(resident_bytes_of(graph.entry(block).facts, *schema));
   }
+  vertex_bytes.resize(count, 0);
   is_refined.resize(count, 0);
   wanted_at.resize(count, 0);
   has_changed = true;
@@ -78,7 +29,8 @@ BlockChooser::Limits BlockMesh::Impl::limits(const BlockViewParameters& paramete
 
 BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
   BlockUpdate report;
-  const bool is_same = parameters.view == last.view && parameters.max_bytes == last.max_bytes;
+  const bool is_same = parameters.view == last.view && parameters.max_bytes == last.max_bytes &&
+                       parameters.by_vertex == last.by_vertex;
   if (is_same && !has_changed) return report;
   has_changed = false;
   last = parameters;
@@ -96,7 +48,62 @@ BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
     if (!is_refined[wrong.block]) view_error = std::max(view_error, wrong.error);
   }
   drop_beyond(parameters.max_bytes, report);
+  move_vertices(parameters, report);
   return report;
+}
+
+void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, BlockUpdate& report) {
+  bool lists = report.refined + report.coarsened > 0;
+  if (parameters.by_vertex) {
+    const VertexCuts::Report moved =
+        cuts.update({resident, cut, is_refined}, parameters.view, lists || !was_by_vertex);
+    report.splits = moved.splits;
+    report.merges = moved.merges;
+    lists |= moved.have_changed;
+    has_changed |= !cuts.has_arrived();
+    for (const std::uint32_t block : cut) count_bytes(block);
+    // What has grown beyond the budget is dropped by the next one.
+    const bool has_grown = moved.splits + moved.merges > 0 || moved.have_changed;
+    has_changed |= has_grown && resident_bytes > parameters.max_bytes;
+  } else if (was_by_vertex) {
+    cuts.clear();
+    lists = true;
+    for (std::uint32_t block = 0; block < resident.size(); ++block) count_bytes(block);
+  }
+  was_by_vertex = parameters.by_vertex;
+  if (lists) list_shown();
+  list_cuts();
+  list_missing_hierarchies();
+}
+
+void BlockMesh::Impl::list_cuts() {
+  shown_cuts.clear();
+  cut_triangles = 0;
+  if (!was_by_vertex) return;
+  for (const std::uint32_t block : cut) {
+    const BlockCut* const by_vertex = cuts.cut(block);
+    if (by_vertex == nullptr) continue;
+    shown_cuts.push_back({resident[block].get(), by_vertex->draw_list(), by_vertex->revision()});
+    cut_triangles += shown_cuts.back().triangle_count();
+    if (shown_cuts.back().triangle_count() == 0) shown_cuts.pop_back();
+  }
+}
+
+void BlockMesh::Impl::list_missing_hierarchies() {
+  missing_hierarchies.clear();
+  if (!was_by_vertex) return;
+  for (const std::uint32_t block : cut) {
+    if (!cuts.hierarchy(block)) missing_hierarchies.push_back(graph.entry(block).id);
+  }
+}
+
+// Of a resident block, what being by vertex takes.
+void BlockMesh::Impl::count_bytes(std::uint32_t block) {
+  if (!resident[block]) return;
+  const std::size_t now = cuts.bytes_of(block);
+  resident_bytes = resident_bytes + now - vertex_bytes[block];
+  bytes_of_block[block] = bytes_of_block[block] + now - vertex_bytes[block];
+  vertex_bytes[block] = now;
 }
 
 void BlockMesh::Impl::move_cut(std::span<const std::uint32_t> chosen, BlockUpdate& report) {
@@ -115,7 +122,6 @@ void BlockMesh::Impl::move_cut(std::span<const std::uint32_t> chosen, BlockUpdat
   if (report.refined + report.coarsened == 0) return;
   is_refined = std::move(will_be);
   cut = std::move(next);
-  list_shown();
 }
 
 // The one that nobody wanted for longest goes first.
@@ -131,7 +137,9 @@ void BlockMesh::Impl::drop_beyond(std::size_t max_bytes, BlockUpdate& report) {
   for (const std::uint32_t block : unwanted) {
     if (resident_bytes <= max_bytes) return;
     CREASE_ASSERT(!is_refined[block]);
-    resident_bytes -= resident[block]->bytes();
+    resident_bytes -= resident[block]->bytes() + vertex_bytes[block];
+    vertex_bytes[block] = 0;  // bytes_of_block still tells what it takes
+    cuts.drop(block);
     --resident_count;
     resident[block] = nullptr;
     report.dropped.push_back(graph.entry(block).id);
@@ -161,7 +169,9 @@ LevelError BlockMesh::Impl::error_of_cut() const {
 void BlockMesh::Impl::list_shown() {
   shown.clear();
   shown_triangles = 0;
-  for (const std::uint32_t block : cut) list_shown_of(block);
+  for (const std::uint32_t block : cut) {
+    if (cuts.cut(block) == nullptr) list_shown_of(block);
+  }
   for (const ShownRange& range : shown) shown_triangles += range.triangle_count();
   shown_error = error_of_cut();
 }
@@ -272,16 +282,57 @@ void BlockMesh::insert(ResidentBlockPtr block) {
   impl_->has_changed = true;
 }
 
+std::span<const BlockId> BlockMesh::missing_hierarchies() const {
+  return impl_->missing_hierarchies;
+}
+
+std::optional<BlockHierarchyJob> BlockMesh::hierarchy_job(BlockId id) const {
+  ResidentBlockPtr block = resident(id);
+  if (!block) return std::nullopt;
+  std::vector<ResidentBlockPtr> needed;
+  for (const std::uint32_t n : impl_->graph.dependencies(std::uint32_t(index_of(id)))) {
+    if (!impl_->resident[n]) return std::nullopt;
+    needed.push_back(impl_->resident[n]);
+  }
+  return BlockHierarchyJob(std::move(block), std::move(needed));
+}
+
+void BlockMesh::insert(BlockHierarchyPtr hierarchy) {
+  CREASE_ASSERT(hierarchy != nullptr);
+  const auto block = static_cast<std::uint32_t>(index_of(hierarchy->id()));
+  if (!is_resident(hierarchy->id())) return;
+  impl_->cuts.insert(std::move(hierarchy));
+  impl_->count_bytes(block);
+  impl_->has_changed = true;
+}
+
+BlockHierarchyPtr BlockMesh::hierarchy(BlockId id) const {
+  return impl_->cuts.hierarchy(static_cast<std::uint32_t>(index_of(id)));
+}
+
+bool BlockMesh::has_arrived() const {
+  return !impl_->was_by_vertex || impl_->cuts.has_arrived();
+}
+
 std::span<const ShownRange> BlockMesh::shown() const {
   return impl_->shown;
 }
 
+std::span<const ShownCut> BlockMesh::shown_cuts() const {
+  return impl_->shown_cuts;
+}
+
 std::size_t BlockMesh::triangle_count() const {
-  return impl_->shown_triangles;
+  return impl_->shown_triangles + impl_->cut_triangles;
 }
 
 LevelError BlockMesh::error() const {
-  return impl_->shown_error;
+  LevelError error = impl_->shown_error;
+  for (const std::uint32_t block : impl_->cut) {
+    const BlockCut* const by_vertex = impl_->cuts.cut(block);
+    if (by_vertex != nullptr) error = larger(error, by_vertex->error());
+  }
+  return error;
 }
 
 float BlockMesh::view_error() const {
@@ -321,36 +372,7 @@ std::span<const Material> BlockMesh::materials() const {
 }
 
 Mesh BlockMesh::extract() const {
-  std::vector<codec::PatchMesh> ends;
-  std::vector<codec::EndPiece> pieces;
-  std::vector<codec::PlacedTriangle> triangles;
-  std::vector<Vec3i> positions;
-  std::vector<std::vector<std::uint32_t>> vertices(impl_->cut.size());
-  std::unordered_map<std::uint64_t, std::uint32_t> vertex_of_name;
-  for (std::uint32_t i = 0; i < impl_->cut.size(); ++i) {
-    const std::uint32_t block = impl_->cut[i];
-    const codec::FineEnd& end = impl_->resident[block]->data().end;
-    vertices[i].assign(end.names.size(), kNone);
-    for (std::uint32_t t = 0; t < end.labels.size(); ++t) {
-      if (!impl_->is_shown(block, end.labels[t])) continue;
-      triangles.push_back({i, t});
-      for (const std::uint32_t v : end.mesh.triangles[t]) {
-        if (vertices[i][v] != kNone) continue;
-        const codec::VertexName& name = end.names[v];
-        const auto [at, is_new] =
-            vertex_of_name.try_emplace(std::uint64_t(name.block) << 32 | name.vertex,
-                                       static_cast<std::uint32_t>(positions.size()));
-        if (is_new) positions.push_back(end.mesh.positions[v]);
-        vertices[i][v] = at->second;
-      }
-    }
-    ends.push_back(whole_end(impl_->resident[block]->data()));
-  }
-  for (std::uint32_t i = 0; i < ends.size(); ++i) pieces.push_back({&ends[i], vertices[i]});
-  ModelSchema schema = *impl_->schema;
-  schema.parts = impl_->part_names;
-  codec::LayerPools layers(schema);
-  return codec::join_ends(schema, pieces, triangles, positions, layers.pools());
+  return extract_blocks(*impl_);
 }
 
 }  // namespace crease

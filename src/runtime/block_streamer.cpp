@@ -3,9 +3,11 @@
 #include "base/assert.h"
 #include "codec/decode_container.h"
 #include "runtime/decode_workers.h"
+#include "runtime/waiting_source.h"
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -19,7 +21,6 @@ constexpr float kPagePriority = 1e9f;          // before any block
 constexpr std::size_t kDecodingPerThread = 8;  // so that none is idle between two frames
 constexpr int kUpdatesBetweenPrefetches = 8;
 constexpr std::chrono::milliseconds kLongestPause{60'000};
-constexpr std::chrono::milliseconds kGlance{100};  // how often open() asks whether to stop
 
 // On its way from the source to the mesh.
 struct Pending {
@@ -52,6 +53,8 @@ struct BlockStreamer::Impl {
   void take_payload(BlockId id, Result<std::vector<std::byte>> bytes);
   void take_decoded(StreamReport& report);
   void take_from_others(std::size_t view, StreamReport& report);
+  void take_hierarchies();
+  void make_hierarchies(std::size_t view);
   bool others_have(BlockId id) const;
   void ask_for_page();
   void ask_for_names();
@@ -80,6 +83,7 @@ struct BlockStreamer::Impl {
   std::vector<BlockMesh> meshes;  // one a view; all have the same pages
   AsyncSourcePtr source;
   StreamOptions options;
+  std::set<BlockId> making;            // hierarchies
   std::map<BlockId, Pending> pending;  // by id: coarse ones first
   std::unordered_map<std::uint64_t, BlockId> block_of_ticket;
   std::size_t pending_bytes = 0;
@@ -98,6 +102,7 @@ StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters, 
   StreamReport report;
   take_answers();
   take_decoded(report);
+  take_hierarchies();
   take_from_others(view, report);
   BlockMesh& mesh = meshes[view];
   report.cut = mesh.update(parameters);
@@ -107,7 +112,9 @@ StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters, 
   ask_for_blocks(parameters, view);
   forget_unwanted();
   decode_what_can_be();
-  report.is_complete = mesh.missing().empty() && !mesh.next_page();
+  make_hierarchies(view);
+  report.is_complete = mesh.missing().empty() && !mesh.next_page() &&
+                       mesh.missing_hierarchies().empty() && mesh.has_arrived();
   return report;
 }
 
@@ -214,6 +221,31 @@ void BlockStreamer::Impl::take_from_others(std::size_t view, StreamReport& repor
       meshes[view].insert(std::move(block));
       ++report.inserted;
       break;
+    }
+  }
+}
+
+void BlockStreamer::Impl::take_hierarchies() {
+  for (const BlockHierarchyPtr& hierarchy : workers.take_hierarchies()) {
+    making.erase(hierarchy->id());
+    for (BlockMesh& mesh : meshes) mesh.insert(hierarchy);
+  }
+}
+
+// Of blocks that are shown, so that they are resident, and so is what they need.
+void BlockStreamer::Impl::make_hierarchies(std::size_t view) {
+  const std::span<const BlockId> missing = meshes[view].missing_hierarchies();
+  for (const BlockId id : std::vector<BlockId>(missing.begin(), missing.end())) {
+    if (making.size() >= most_decoding()) return;
+    if (making.contains(id)) continue;
+    const auto other = std::find_if(meshes.begin(), meshes.end(), [id](const BlockMesh& mesh) {
+      return mesh.hierarchy(id) != nullptr;
+    });
+    if (other != meshes.end()) {
+      meshes[view].insert(other->hierarchy(id));
+    } else if (std::optional<BlockHierarchyJob> job = meshes[view].hierarchy_job(id)) {
+      making.insert(id);
+      workers.add(*std::move(job));
     }
   }
 }
@@ -341,43 +373,6 @@ void BlockStreamer::Impl::decode_what_can_be() {
   }
 }
 
-namespace {
-
-// An asynchronous source of which nothing else is asked, as one that waits.
-class WaitingSource : public ByteSource {
- public:
-  WaitingSource(AsyncSourcePtr source, std::function<bool()> stopped)
-      : source_(std::move(source)), stopped_(std::move(stopped)) {}
-
-  std::string name() const override { return source_->name(); }
-  std::uint64_t size() const override { return source_->size().value_or(0); }
-  // Until the size is known.
-  Status begin() const { return read_at(0, {}); }
-
- private:
-  Status read_at(std::uint64_t offset, std::span<std::byte> into) const override {
-    const Ticket ticket = source_->request({offset, into.size()});
-    for (;;) {
-      source_->wait(kGlance);
-      if (stopped_ && stopped_()) {
-        source_->cancel(ticket);
-        return fail(Error::Interrupted, "interrupted");
-      }
-      for (const AsyncAnswer& answer : source_->poll()) {
-        if (answer.ticket != ticket) continue;
-        if (!answer.bytes.ok()) return answer.bytes.failure();
-        std::copy(answer.bytes->begin(), answer.bytes->end(), into.begin());
-        return Done{};
-      }
-    }
-  }
-
-  const AsyncSourcePtr source_;
-  const std::function<bool()> stopped_;
-};
-
-}  // namespace
-
 Result<BlockStreamer> BlockStreamer::open(AsyncSourcePtr source, const StreamOptions& options) {
   const auto waiting = std::make_shared<const WaitingSource>(source, options.stopped);
   if (Status status = waiting->begin(); !status.ok()) return status.failure();
@@ -441,9 +436,12 @@ const std::optional<Failure>& BlockStreamer::trouble() const {
 bool BlockStreamer::wait(std::chrono::milliseconds timeout) {
   constexpr std::chrono::milliseconds kLook{2};  // at the one while waiting for the other
   const Clock::time_point end = Clock::now() + timeout;
+  const auto is_on_its_way = [](const BlockMesh& mesh) { return !mesh.has_arrived(); };
+  if (std::any_of(impl_->meshes.begin(), impl_->meshes.end(), is_on_its_way)) return true;
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
-    const bool is_decoding = impl_->workers.outstanding() > 0;
+    const DecodeWorkers& workers = impl_->workers;
+    const bool is_decoding = workers.outstanding() + workers.outstanding_hierarchies() > 0;
     if (is_decoding && impl_->options.decode_threads == 0) return true;
     if (is_decoding && impl_->workers.wait(std::min(left, kLook))) return true;
     if (impl_->source->wait(is_decoding ? std::min(left, kLook) : left)) return true;

@@ -28,9 +28,29 @@ void DecodeWorkers::add(BlockDecodeJob job, std::vector<std::byte> payload) {
 
 std::vector<DecodeWorkers::Decoded> DecodeWorkers::take() {
   std::unique_lock lock(mutex_);
-  if (threads_.empty() && !waiting_.empty()) decode_next(lock);
+  if (threads_.empty() && has_waiting()) do_next(lock);
   outstanding_ -= done_.size();
   return std::exchange(done_, {});
+}
+
+void DecodeWorkers::add(BlockHierarchyJob job) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_hierarchies_.push_back(std::move(job));
+    ++outstanding_hierarchies_;
+  }
+  has_work_.notify_one();
+}
+
+std::vector<BlockHierarchyPtr> DecodeWorkers::take_hierarchies() {
+  const std::lock_guard lock(mutex_);
+  outstanding_hierarchies_ -= done_hierarchies_.size();
+  return std::exchange(done_hierarchies_, {});
+}
+
+std::size_t DecodeWorkers::outstanding_hierarchies() const {
+  const std::lock_guard lock(mutex_);
+  return outstanding_hierarchies_;
 }
 
 std::size_t DecodeWorkers::outstanding() const {
@@ -45,16 +65,28 @@ double DecodeWorkers::seconds() const {
 
 bool DecodeWorkers::wait(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  return has_results_.wait_for(lock, timeout, [this] { return !done_.empty(); });
+  return has_results_.wait_for(lock, timeout,
+                               [this] { return !done_.empty() || !done_hierarchies_.empty(); });
 }
 
 void DecodeWorkers::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    has_work_.wait(lock, [this] { return is_ending_ || !waiting_.empty(); });
+    has_work_.wait(lock, [this] { return is_ending_ || has_waiting(); });
     if (is_ending_) return;
-    decode_next(lock);
+    do_next(lock);
   }
+}
+
+void DecodeWorkers::do_next(std::unique_lock<std::mutex>& lock) {
+  if (!waiting_.empty()) return decode_next(lock);
+  const BlockHierarchyJob job = std::move(waiting_hierarchies_.front());
+  waiting_hierarchies_.pop_front();
+  lock.unlock();
+  BlockHierarchyPtr hierarchy = job.run();
+  lock.lock();
+  done_hierarchies_.push_back(std::move(hierarchy));
+  has_results_.notify_all();
 }
 
 void DecodeWorkers::decode_next(std::unique_lock<std::mutex>& lock) {

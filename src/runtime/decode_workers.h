@@ -1,4 +1,5 @@
-// Threads that decode blocks, one after the other, in the order in which they were given.
+// Threads that decode blocks, one after the other, in the order in which they were given, and while
+// there is nothing to decode make vertex hierarchies of those that are there.
 #pragma once
 
 #include "crease/block_mesh.h"
@@ -20,7 +21,7 @@ class DecodeWorkers {
     Result<ResidentBlockPtr> block;
   };
 
-  // 0: take() decodes one block on the caller's.
+  // 0: take() does one of both on the caller's.
   explicit DecodeWorkers(int threads);
   ~DecodeWorkers();  // waits for those that are being decoded; what waits is left
   DecodeWorkers(const DecodeWorkers&) = delete;
@@ -30,9 +31,13 @@ class DecodeWorkers {
   // Those that are done since the last call.
   std::vector<Decoded> take();
 
-  std::size_t outstanding() const;  // added and not taken
-  double seconds() const;           // spent decoding, over all threads
-  // Until take() has something (true), or the time is over. Not without threads.
+  void add(BlockHierarchyJob job);
+  std::vector<BlockHierarchyPtr> take_hierarchies();  // after take()
+
+  std::size_t outstanding() const;              // blocks added and not taken
+  std::size_t outstanding_hierarchies() const;  // likewise
+  double seconds() const;                       // spent decoding, over all threads
+  // Until one of both has something (true), or the time is over. Not without threads.
   bool wait(std::chrono::milliseconds timeout);
 
  private:
@@ -42,14 +47,18 @@ class DecodeWorkers {
   };
 
   void work();
-  // The lock is held before and after, not while it decodes.
+  bool has_waiting() const { return !waiting_.empty() || !waiting_hierarchies_.empty(); }
+  // The lock is held before and after, not while it works. Something must be waiting.
+  void do_next(std::unique_lock<std::mutex>& lock);
   void decode_next(std::unique_lock<std::mutex>& lock);
 
   mutable std::mutex mutex_;
   std::condition_variable has_work_, has_results_;
   std::deque<Waiting> waiting_;
+  std::deque<BlockHierarchyJob> waiting_hierarchies_;
   std::vector<Decoded> done_;
-  std::size_t outstanding_ = 0;
+  std::vector<BlockHierarchyPtr> done_hierarchies_;
+  std::size_t outstanding_ = 0, outstanding_hierarchies_ = 0;
   double seconds_ = 0;
   bool is_ending_ = false;
   std::vector<std::thread> threads_;

@@ -17,12 +17,15 @@ struct ActiveTriangle {
   std::uint32_t place = 0;
 };
 
-std::vector<ActiveTriangle> in_order(const ActiveCut& cut) {
+std::vector<ActiveTriangle> in_order(const ActiveCut& cut,
+                                     const std::function<bool(TriangleId)>& is_in) {
   std::vector<ActiveTriangle> all;
   all.reserve(cut.triangle_count());
   for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
     const ActiveTriangles& part = cut.parts()[p];
-    for (std::uint32_t i = 0; i < part.size(); ++i) all.push_back({part.ids[i], p, i});
+    for (std::uint32_t i = 0; i < part.size(); ++i) {
+      if (!is_in || is_in(part.ids[i])) all.push_back({part.ids[i], p, i});
+    }
   }
   std::sort(all.begin(), all.end(),
             [](const ActiveTriangle& a, const ActiveTriangle& b) { return a.id < b.id; });
@@ -30,11 +33,16 @@ std::vector<ActiveTriangle> in_order(const ActiveCut& cut) {
 }
 
 void extract_vertices(const ActiveCut& cut, const std::vector<ActiveTriangle>& triangles,
-                      Mesh& mesh) {
+                      CutPiece& piece) {
+  Mesh& mesh = piece.mesh;
   const std::span<const ActiveVertex> vertices = cut.vertices();
   std::vector<std::uint32_t> order, vertex_of_slot(vertices.size(), kNone);
-  for (std::uint32_t slot = 0; slot < vertices.size(); ++slot) {
-    if (vertices[slot].node != kNoNode && !cut.corners_of(slot).empty()) order.push_back(slot);
+  for (const ActiveTriangle& t : triangles) {
+    const std::uint32_t* const slots = &cut.parts()[t.part].slots[3 * std::size_t(t.place)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (vertex_of_slot[slots[k]] == kNone) order.push_back(slots[k]);
+      vertex_of_slot[slots[k]] = 0;
+    }
   }
   std::sort(order.begin(), order.end(), [vertices](std::uint32_t a, std::uint32_t b) {
     return vertices[a].begin < vertices[b].begin;
@@ -42,6 +50,7 @@ void extract_vertices(const ActiveCut& cut, const std::vector<ActiveTriangle>& t
   for (const std::uint32_t slot : order) {
     vertex_of_slot[slot] = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.positions.push_back(cut.hierarchy().vertices.grid.position(vertices[slot].position));
+    piece.node_of_vertex.push_back(vertices[slot].node);
   }
   for (const ActiveTriangle& t : triangles) {
     const std::uint32_t* const slots = &cut.parts()[t.part].slots[3 * std::size_t(t.place)];
@@ -84,17 +93,23 @@ AttributeLayer extract_layer(const ActiveCut& cut, const std::vector<ActiveTrian
 }  // namespace
 
 Mesh extract_cut(const ActiveCut& cut) {
+  return extract_piece(cut, {}).mesh;
+}
+
+CutPiece extract_piece(const ActiveCut& cut, const std::function<bool(TriangleId)>& is_in) {
   const MeshHierarchy& hierarchy = cut.hierarchy();
-  const std::vector<ActiveTriangle> triangles = in_order(cut);
-  Mesh mesh;
+  const std::vector<ActiveTriangle> triangles = in_order(cut, is_in);
+  CutPiece piece;
+  Mesh& mesh = piece.mesh;
   mesh.materials = hierarchy.materials;
   mesh.parts = hierarchy.parts;
-  extract_vertices(cut, triangles, mesh);
+  extract_vertices(cut, triangles, piece);
   for (std::uint32_t l = 0; l < hierarchy.layers.size(); ++l) {
     mesh.layers.push_back(extract_layer(cut, triangles, l));
   }
   const VertexHierarchy& h = hierarchy.vertices;
   for (const ActiveTriangle& t : triangles) {
+    piece.id_of_triangle.push_back(t.id);
     if (!h.material_of_triangle.empty()) {
       mesh.material_of_triangle.push_back(h.material_of_triangle[index_of(t.id)]);
     }
@@ -102,7 +117,7 @@ Mesh extract_cut(const ActiveCut& cut) {
       mesh.part_of_triangle.push_back(h.part_of_triangle[index_of(t.id)]);
     }
   }
-  return mesh;
+  return piece;
 }
 
 }  // namespace crease

@@ -4,11 +4,22 @@
 #include "crease/mesh.h"
 #include "runtime/active_cut.h"
 
+#include <functional>
+#include <vector>
+
 namespace crease {
 
 // Triangles in the hierarchy's order; used vertices, in the order of their wedges, and used values
 // only. Two corners share an attribute iff they have the same value of the hierarchy; a derived
 // normal is one of its own.
 Mesh extract_cut(const ActiveCut& cut);
+
+// Of some triangles of a cut only, and what they are in the hierarchy.
+struct CutPiece {
+  Mesh mesh;
+  std::vector<NodeId> node_of_vertex;
+  std::vector<TriangleId> id_of_triangle;  // ascending
+};
+CutPiece extract_piece(const ActiveCut& cut, const std::function<bool(TriangleId)>& is_in);
 
 }  // namespace crease

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace crease {
 
@@ -26,9 +27,15 @@ Refiner::Wish Refiner::take(Queue& queue, Later later) const {
 
 UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
   report_ = {};
-  if (!has_view_ || !(view == view_)) {
+  const bool looks_anew = !has_view_ || !(view == view_);
+  if (looks_anew) {
     look_from(cut, view);
     turn_back(cut);
+  }
+  const bool requires_anew = std::exchange(requires_anew_, false);
+  if (looks_anew || requires_anew) {
+    splits_.clear();
+    merges_.clear();
     find_merges(cut);
     finds_splits_ = true;
   }
@@ -40,6 +47,7 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
     keep_to_budget(cut, {std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot}, 0);
   }
   do_merges(cut);
+  if (requires_anew) split_required(cut);
   if (finds_splits_ && merges_.empty()) {
     find_splits(cut);
     finds_splits_ = false;
@@ -284,8 +292,34 @@ void Refiner::split_consistently(ActiveCut& cut, std::uint32_t slot) {
   }
 }
 
-// Consistent mode: something that is split has a third vertex below s, and a smaller error than s.
+void Refiner::require(const ActiveCut& cut, std::vector<Required> leaves) {
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  required_ = std::move(leaves);
+  requires_anew_ = true;
+  is_required_.assign(required_.empty() ? 0 : h.split_count(), 0);
+  for (const Required& required : required_) {
+    for (NodeId n = required.leaf; !h.is_root(n); n = h.parent(n)) {
+      char& is_required = is_required_[index_of(h.split_above(n))];
+      if (is_required) break;
+      is_required = 1;
+    }
+  }
+}
+
+void Refiner::split_required(ActiveCut& cut) {
+  for (const Required& required : required_) {
+    for (;;) {
+      const std::uint32_t slot = cut.slot_at(required.wedge);
+      if (cut.vertices()[slot].node == required.leaf) break;
+      split(cut, slot);
+    }
+  }
+}
+
+// Required, or in consistent mode: something that is split has a third vertex below s, and a
+// smaller error than s.
 bool Refiner::is_needed(const ActiveCut& cut, SplitId s) const {
+  if (!is_required_.empty() && is_required_[index_of(s)]) return true;
   if (!view_.consistent) return false;
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const float error = h.bounds[index_of(s)].surface.value();

@@ -30,10 +30,19 @@ class Refiner {
 
   UpdateReport update(ActiveCut& cut, const ViewParameters& view);
   UpdateReport set_error(ActiveCut& cut, float error);
+
+  // Whatever the view says, these leaves of the hierarchy are active from the next update() on,
+  // until others are required. Not with a budget.
+  struct Required {
+    WedgeId wedge{};  // the leaf's first one
+    NodeId leaf = kNoNode;
+  };
+  void require(const ActiveCut& cut, std::vector<Required> leaves);
   std::size_t bytes() const {
     return wrong_.bytes() + merged_.bytes() + 4 * pair_of_slot_.capacity() +
            sizeof(Pair) * pairs_.capacity() +
-           sizeof(Wish) * (splits_.capacity() + merges_.capacity());
+           sizeof(Wish) * (splits_.capacity() + merges_.capacity()) +
+           sizeof(Required) * required_.capacity() + is_required_.capacity();
   }
 
  private:
@@ -93,6 +102,7 @@ class Refiner {
   void merge(ActiveCut& cut, SplitId s, const ActiveCut::Children& children);
   bool needs_split(const ActiveCut& cut, SplitId s, std::uint32_t& third) const;
   bool is_needed(const ActiveCut& cut, SplitId s) const;
+  void split_required(ActiveCut& cut);
 
   Geomorphs* geomorphs_;
   ViewParameters view_;
@@ -108,6 +118,9 @@ class Refiner {
   std::vector<std::uint32_t> pair_of_slot_;  // or kNone
   Queue splits_, merges_;
   bool finds_splits_ = false;  // still to be done for this view
+  std::vector<Required> required_;
+  std::vector<char> is_required_;  // per split; empty: none is
+  bool requires_anew_ = false;
   std::vector<Wish>
       least_visible_;  // a heap of every possible merge, while a triangle budget binds
   bool counts_all_merges_ = false;

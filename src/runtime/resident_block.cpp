@@ -57,7 +57,8 @@ std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema&
   const bool has_texcoords = painted_layer(schema.facts.layers, schema.materials) != kNone;
   const std::size_t layers = schema.facts.layers.size();
   const std::size_t of_vertex =
-      sizeof(Vec3i) + sizeof(codec::VertexName) + sizeof(std::uint32_t) + 2 * sizeof(Vec3f);
+      sizeof(Vec3i) + sizeof(codec::VertexName) + sizeof(std::uint32_t) + 2 * sizeof(Vec3f) +
+      std::max(sizeof(codec::Split), sizeof(codec::VertexName));  // a root or made by a split
   // Corners, category, derived, label; values, each of its own; a group of its own; indices,
   // normals, material.
   const std::size_t of_triangle =
@@ -143,6 +144,19 @@ void fill_values(std::span<const ResidentBlock::Data* const> blocks, codec::Coar
 
 }  // namespace
 
+codec::CoarseEnd coarse_end_of(std::span<const ResidentBlockPtr> needed, const BlockFacts& facts) {
+  std::vector<const ResidentBlock::Data*> blocks;
+  std::vector<const codec::FineEnd*> ends;
+  for (const ResidentBlockPtr& block : needed) {
+    if (block->data().entry.facts.band != facts.band + 1) continue;
+    blocks.push_back(&block->data());
+    ends.push_back(&block->data().end);
+  }
+  codec::CoarseEnd start = codec::coarse_end_of(ends, facts.patch);
+  fill_values(blocks, start);
+  return start;
+}
+
 codec::PatchMesh whole_end(const ResidentBlock::Data& block) {
   codec::PatchMesh mesh = block.end.mesh;
   for (const codec::CompactValues& layer : block.values) {
@@ -162,16 +176,9 @@ Result<ResidentBlockPtr> BlockDecodeJob::run(std::span<const std::byte> payload)
                            data_->schema->facts.layers.size()) > facts.decoded_bytes) {
     return codec::bad_block(data_->entry.id, "it takes more memory than it says");
   }
-  std::vector<const ResidentBlock::Data*> blocks;
-  std::vector<const codec::FineEnd*> ends;
-  for (const ResidentBlockPtr& block : data_->needed) {
-    if (block->data().entry.facts.band != facts.band + 1) continue;
-    blocks.push_back(&block->data());
-    ends.push_back(&block->data().end);
-  }
-  codec::CoarseEnd start = codec::coarse_end_of(ends, facts.patch);
-  fill_values(blocks, start);
-  const std::size_t known = start.names.size();
+  codec::CoarseEnd start = coarse_end_of(data_->needed, facts);
+  std::vector<codec::VertexName> names = start.names;
+  const std::size_t known = names.size(), coarse_triangles = start.sources.size();
   Result<codec::DecodedBlock> decoded =
       codec::decode_block_of(*data_->schema, data_->entry, payload, std::move(start));
   if (!decoded.ok()) return decoded.failure();
@@ -182,13 +189,22 @@ Result<ResidentBlockPtr> BlockDecodeJob::run(std::span<const std::byte> payload)
   block->entry = data_->entry;
   block->schema = data_->schema;
   block->end = std::move(decoded->end);
+  block->splits = std::move(decoded->splits);
+  block->coarse_triangles = static_cast<std::uint32_t>(coarse_triangles);
+  const std::size_t roots = block->end.names.size() - block->splits.size();
+  names.insert(names.end(), block->end.names.begin() + std::ptrdiff_t(known),
+               block->end.names.begin() + std::ptrdiff_t(roots));
+  block->root_names = std::move(names);
   lay_out_for_drawing(*block);
   for (const auto& values : block->end.mesh.values) {
     block->values.push_back(codec::compacted(values));
   }
   block->end.mesh.values = {};
   shrink(block->end);
+  block->splits.shrink_to_fit();
+  block->root_names.shrink_to_fit();
   block->bytes = kBytesOfBlock + bytes_of_end(block->end) + bytes_of_values(block->values) +
+                 bytes_of_vector(block->splits) + bytes_of_vector(block->root_names) +
                  bytes_of_vector(block->groups) + bytes_of_vector(block->position_of_vertex) +
                  bytes_of_vector(block->positions) + bytes_of_vector(block->vertex_normals) +
                  block->sn.bytes() + block->fn.bytes() + block->nsn.bytes();

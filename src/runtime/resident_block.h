@@ -7,6 +7,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace crease {
@@ -27,6 +28,12 @@ struct ResidentBlock::Data {
   std::shared_ptr<const codec::ModelSchema> schema;
   codec::FineEnd end;                        // without its values
   std::vector<codec::CompactValues> values;  // per layer
+  // What it takes to go back to its coarse end (runtime/block_hierarchy.h). The roots are the first
+  // vertices: those of the coarse end, then those that no triangle has there. Their names are those
+  // before any split.
+  std::vector<codec::Split> splits;
+  std::vector<codec::VertexName> root_names;
+  std::uint32_t coarse_triangles = 0;  // of the coarse end; the first ones of `end`
   std::vector<BlockGroup> groups;
   std::vector<std::uint32_t> position_of_vertex;  // of the draw list, per vertex of `end`
   std::vector<Vec3f> positions, vertex_normals;   // as in DrawList: SN vertices first
@@ -45,6 +52,10 @@ std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema&
 
 // All of the fine end, with its values.
 codec::PatchMesh whole_end(const ResidentBlock::Data& block);
+
+// What a block starts from, with its values: the triangles of `needed`, those that it needs, that
+// are of its patch. Those of other bands are passed over.
+codec::CoarseEnd coarse_end_of(std::span<const ResidentBlockPtr> needed, const BlockFacts& facts);
 
 // Fills what is for drawing from `end`, which has its values.
 void lay_out_for_drawing(ResidentBlock::Data& block);

@@ -37,6 +37,7 @@ App::App(const ViewerOptions& options, ViewerWindow& window, GlCanvas canvas)
   settings_.wireframe = options.wireframe;
   settings_.creases = options.creases;
   settings_.ambient_occlusion = options.ambient_occlusion;
+  settings_.vertices_in_blocks = options.vertices_in_blocks;
   settings_.pixels = options.pixels;
   settings_.degrees = options.degrees;
   settings_.max_triangles = options.max_triangles;
@@ -286,7 +287,7 @@ void App::act(Action action) {
       window_.capture_mouse(input_.is_flying());
       break;
     case Action::NextMode:
-      edited().mode = next_of(edited().mode, 3);
+      edited().set_cut(next_of(edited().cut(), kCutCount));
       break;
     case Action::NextColoring:
       edited().coloring = next_of(edited().coloring, 5);

@@ -25,6 +25,7 @@ SplitSettings split_of(const ViewerOptions& options) {
   split.divider = std::clamp(options.divider, kLeastShare, 1 - kLeastShare);
   const HalfSettings& right = options.right;
   split.right.mode = right.mode;
+  split.right.vertices_in_blocks = right.vertices_in_blocks;
   split.right.coloring = right.coloring;
   split.right.wireframe = right.wireframe;
   split.right.creases = right.creases;
@@ -130,10 +131,10 @@ std::vector<HalfLabel> App::half_labels() const {
   for (std::size_t side = 0; side < side_count(); ++side) {
     const ViewSettings settings = settings_of(side);
     const std::size_t triangles = (side == 0 ? frame_ : right_frame_).triangles;
-    const std::string what = settings.is_original
-                                 ? std::string("original")
-                                 : kModeNames[std::size_t(settings.mode)] +
-                                       (", " + in_digits(settings.pixels)) + " pixels";
+    const std::string what =
+        settings.is_original
+            ? std::string("original")
+            : kCutNames[settings.cut()] + (", " + in_digits(settings.pixels)) + " pixels";
     const bool is_edited = split_.kind != ViewSplit::Settings || split_.edits_right == (side == 1);
     labels.push_back({what + ", " + grouped(triangles) + " triangles",
                       float(columns_of(1).left) / float(std::max(1, window_.size_px().first)),

@@ -11,7 +11,7 @@ constexpr KeyRow kRows[] = {
     {Action::Help, GLFW_KEY_F1, 0, "F1", "this help"},
     {Action::Fit, GLFW_KEY_HOME, 0, "Home", "all of the model"},
     {Action::Fly, GLFW_KEY_F, 0, "F", "fly: W A S D, Q down, E up, Shift faster, mouse looks"},
-    {Action::NextMode, GLFW_KEY_M, 0, "M", "by block, by vertex, linear"},
+    {Action::NextMode, GLFW_KEY_M, 0, "M", "by block, by vertex in blocks, by vertex, linear"},
     {Action::NextColoring, GLFW_KEY_C, 0, "C", "colours: shaded, kind, level, block, error"},
     {Action::Wireframe, GLFW_KEY_X, 0, "X", "wireframe"},
     {Action::Creases, GLFW_KEY_L, 0, "L", "lines at hard edges and borders"},

@@ -151,7 +151,9 @@ void settings_panel(const PanelContent& content, ViewSettings& settings, SplitSe
     ImGui::Separator();
   }
   split_controls(split);
-  choice("cut", "##mode", settings.mode, kModeNames);
+  int cut = settings.cut();
+  choice("cut", "##cut", cut, kCutNames);
+  settings.set_cut(cut);
   choice("colours", "##coloring", settings.coloring, kColoringNames);
   ImGui::Checkbox("wireframe", &settings.wireframe);
   ImGui::SameLine();

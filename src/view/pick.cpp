@@ -1,5 +1,6 @@
 #include "view/pick.h"
 
+#include "runtime/block_mesh_impl.h"
 #include "runtime/resident_block.h"
 
 #include <algorithm>
@@ -125,25 +126,59 @@ std::optional<Hit> pick(std::span<const ShownRange> shown, const Grid& grid, con
   return nearest;
 }
 
+std::optional<Hit> pick(std::span<const ShownCut> shown, const Grid& grid, const Ray& ray) {
+  std::optional<Hit> nearest;
+  for (const ShownCut& cut : shown) {
+    const BlockFacts& facts = cut.block->facts();
+    if (passes_sphere(ray, grid.position(facts.center), (facts.radius + 1.0) * grid.step)) continue;
+    std::optional<Hit> hit = pick(cut.list, ray);
+    if (!hit || (nearest && hit->along >= nearest->along)) continue;
+    nearest = std::move(hit);
+    nearest->block = cut.block;
+    nearest->is_by_vertex = true;
+  }
+  return nearest;
+}
+
+namespace {
+
 // Draw lists have no parts: the triangle is looked for by its corners.
-std::string part_of(const Hit& hit, std::span<const std::string> names) {
-  if (hit.block == nullptr) return {};
+std::optional<std::uint32_t> triangle_of_block(const Hit& hit) {
   const ResidentBlock::Data& data = hit.block->data();
   const BlockPart& part = hit.kind == TriangleKind::SN   ? data.sn
                           : hit.kind == TriangleKind::FN ? data.fn
                                                          : data.nsn;
-  const codec::PatchMesh& mesh = data.end.mesh;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  const std::vector<codec::Corners>& triangles = data.end.mesh.triangles;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     bool same = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      same &= data.position_of_vertex[mesh.triangles[t][c]] ==
+      same &= data.position_of_vertex[triangles[t][c]] ==
               part.indices[3 * std::size_t(hit.triangle) + c];
     }
-    if (!same) continue;
-    const std::uint32_t number = mesh.category[t] / data.schema->coding.material_count;
-    return number < names.size() ? names[number] : std::string();
+    if (same) return t;
   }
-  return {};
+  return std::nullopt;
+}
+
+std::optional<std::uint32_t> triangle_of_cut(const Hit& hit, const BlockMesh& mesh) {
+  const BlockCut* const cut =
+      mesh.impl().cuts.cut(static_cast<std::uint32_t>(index_of(hit.block->id())));
+  if (cut == nullptr) return std::nullopt;
+  return cut->triangle_of(static_cast<Part>(hit.kind), hit.triangle);
+}
+
+}  // namespace
+
+std::string part_of(const Hit& hit, const BlockMesh& mesh) {
+  if (hit.block == nullptr) return {};
+  const std::optional<std::uint32_t> triangle =
+      hit.is_by_vertex ? triangle_of_cut(hit, mesh) : triangle_of_block(hit);
+  if (!triangle) return {};
+  const ResidentBlock::Data& data = hit.block->data();
+  const std::uint32_t number =
+      data.end.mesh.category[*triangle] / data.schema->coding.material_count;
+  const std::span<const std::string> names = mesh.part_names();
+  return number < names.size() ? names[number] : std::string();
 }
 
 // By places: corners come from floats, and may be off by their last bits.

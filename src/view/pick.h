@@ -25,6 +25,7 @@ struct Hit {
   Vec3f normal;                // that is shown there: of the triangle, or between its corners'
   std::string material;        // its name, or empty
   const ResidentBlock* block = nullptr;
+  bool is_by_vertex = false;  // the triangle is of a cut through the block, not one of its own
 };
 
 // What the way in which a model is shown knows of it beside.
@@ -40,9 +41,10 @@ std::optional<Hit> pick(const DrawList& list, const DrawRanges& ranges, const Ra
 
 // Of blocks, those that the ray passes by are not looked into.
 std::optional<Hit> pick(std::span<const ShownRange> shown, const Grid& grid, const Ray& ray);
+std::optional<Hit> pick(std::span<const ShownCut> shown, const Grid& grid, const Ray& ray);
 
-// The name of the part that a triangle of a block belongs to, or empty. `names`: of the mesh.
-std::string part_of(const Hit& hit, std::span<const std::string> names);
+// The name of the part that a triangle of a block belongs to, or empty. `mesh` shows it.
+std::string part_of(const Hit& hit, const BlockMesh& mesh);
 // The same of a mesh that has the triangle among others. Time O(triangles).
 std::string part_of(const Hit& hit, const Mesh& mesh);
 

@@ -10,7 +10,9 @@
 namespace crease {
 
 inline constexpr const char* kColoringNames[] = {"shaded", "kind", "level", "block", "error"};
-inline constexpr const char* kModeNames[] = {"by block", "by vertex", "linear"};
+inline constexpr const char* kCutNames[] = {"by block", "by vertex in blocks", "by vertex",
+                                            "linear"};
+inline constexpr int kCutCount = 4;
 inline constexpr const char* kSplitNames[] = {"one picture", "beside the original", "two settings"};
 
 struct ViewSettings {
@@ -23,8 +25,16 @@ struct ViewSettings {
   double degrees = 0;  // of shading; 0: any
   std::size_t max_triangles = std::numeric_limits<std::size_t>::max();
   std::size_t max_bytes = std::size_t(512) << 20;  // of resident blocks
+  bool vertices_in_blocks = false;                 // by block: refined by vertex inside them
   // As fine as there is, within max_bytes; `pixels` is for colours alone.
   bool is_original = false;
+
+  // Mode and vertices_in_blocks as one, as kCutNames has them.
+  int cut() const { return mode == ViewMode::Blocks ? int(vertices_in_blocks) : 1 + int(mode); }
+  void set_cut(int cut) {
+    vertices_in_blocks = cut == 1;
+    mode = cut < 2 ? ViewMode::Blocks : ViewMode(cut - 1);
+  }
 
   double wanted_pixels() const { return is_original ? 1e-9 : pixels; }
   double geomorph_seconds = 0.25;  // by vertex and linear; 0: none

@@ -35,24 +35,29 @@ FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camer
   parameters.view.degrees = settings.degrees;
   parameters.view.max_triangles = settings.max_triangles;
   parameters.max_bytes = settings.max_bytes;
+  parameters.by_vertex = settings.vertices_in_blocks && !settings.is_original;
   const StreamReport report = streamer_->update(parameters, view_);
   FrameFacts facts;
   blocks_.drop(report.cut.dropped);
   facts.uploaded_bytes =
       blocks_.upload(mesh().shown(), beside_ == nullptr ? nullptr : &beside_->blocks_);
+  facts.uploaded_bytes += cuts_.upload(mesh().shown_cuts());
   creases_.drop(report.cut.dropped);
-  if (settings.creases) facts.uploaded_bytes += creases_.update(mesh().shown());
+  if (settings.creases) {
+    facts.uploaded_bytes += creases_.update(mesh().shown(), mesh().shown_cuts());
+  }
   facts.triangles = mesh().triangle_count();
   facts.error_pixels =
       std::min(std::max(1.0, double(mesh().view_error())) * settings.wanted_pixels(),
                double(camera.height_px));
-  facts.gpu_bytes = blocks_.bytes() + creases_.bytes() + materials_->bytes();
+  facts.gpu_bytes = blocks_.bytes() + cuts_.bytes() + creases_.bytes() + materials_->bytes();
   facts.resident_bytes = mesh().resident_bytes();
   facts.pending_bytes = streamer_->statistics().pending_bytes;
   facts.blocks = mesh().resident_count();
   facts.has_changed =
       report.cut.refined + report.cut.coarsened + report.inserted + facts.uploaded_bytes > 0;
-  facts.is_complete = report.is_complete && facts.uploaded_bytes == 0 && !mesh().shown().empty();
+  facts.is_complete = report.is_complete && facts.uploaded_bytes == 0 &&
+                      !(mesh().shown().empty() && mesh().shown_cuts().empty());
   return facts;
 }
 
@@ -85,16 +90,32 @@ Result<DrawCount> ShownBlocks::draw(ProgramCache& programs, const DrawPass& pass
       };
       break;
   }
-  const Result<DrawCount> count =
-      blocks_.draw(programs, pass, style, mesh().shown(), color_of_block);
-  if (!count.ok() || !settings.creases) return count;
+  Result<DrawCount> count = blocks_.draw(programs, pass, style, mesh().shown(), color_of_block);
+  if (!count.ok()) return count;
+  const Result<DrawCount> by_vertex =
+      cuts_.draw(programs, pass, style, mesh().shown_cuts(), color_of_block);
+  if (!by_vertex.ok()) return by_vertex;
+  count->calls += by_vertex->calls;
+  count->triangles += by_vertex->triangles;
+  if (!settings.creases) return count;
   const Status drawn = creases_.draw(programs, pass, style);
   if (!drawn.ok()) return drawn.failure();
   return count;
 }
 
+Box ShownBlocks::box() const {
+  Box box = blocks_.box_of(mesh().shown());
+  const Box by_vertex = cuts_.box_of(mesh().shown_cuts());
+  if (by_vertex.empty) return box;
+  box.add(by_vertex.low);
+  box.add(by_vertex.high);
+  return box;
+}
+
 std::optional<Hit> ShownBlocks::pick(const Ray& ray) const {
-  return crease::pick(mesh().shown(), mesh().facts().grid, ray);
+  std::optional<Hit> hit = crease::pick(mesh().shown(), mesh().facts().grid, ray);
+  std::optional<Hit> by_vertex = crease::pick(mesh().shown_cuts(), mesh().facts().grid, ray);
+  return by_vertex && (!hit || by_vertex->along < hit->along) ? by_vertex : hit;
 }
 
 HitFacts ShownBlocks::facts_of(const Hit& hit) const {
@@ -103,19 +124,27 @@ HitFacts ShownBlocks::facts_of(const Hit& hit) const {
   const std::string level =
       block.band == bands ? "the base of " + std::to_string(bands) + " bands"
                           : "band " + std::to_string(block.band) + " of " + std::to_string(bands);
-  return {level, block.fine, part_of(hit, mesh().part_names())};
+  // By vertex, what is shown there is somewhere between.
+  return {level, hit.is_by_vertex ? block.coarse : block.fine, part_of(hit, mesh())};
 }
 
 // Of few blocks all corners, of many those of their boxes: a camera is fitted again with each block
 // that arrives, between two frames.
 std::vector<Vec3f> ShownBlocks::outline() const {
   const std::span<const ShownRange> shown = mesh().shown();
-  std::vector<Vec3f> points;
-  if (shown.size() > kFewBlocks) return blocks_.box_corners_of(shown, origin());
-  for (const ShownRange& range : shown) {
-    const DrawList list = range.block->draw_list();
-    points.insert(points.end(), list.positions.begin(), list.positions.end());
+  const std::span<const ShownCut> cuts = mesh().shown_cuts();
+  if (shown.size() + cuts.size() > kFewBlocks) {
+    std::vector<Vec3f> points = blocks_.box_corners_of(shown, origin());
+    const std::vector<Vec3f> more = cuts_.box_corners_of(cuts, origin());
+    points.insert(points.end(), more.begin(), more.end());
+    return points;
   }
+  std::vector<Vec3f> points;
+  const auto add = [&points](const DrawList& list) {
+    points.insert(points.end(), list.positions.begin(), list.positions.end());
+  };
+  for (const ShownRange& range : shown) add(range.block->draw_list());
+  for (const ShownCut& cut : cuts) add(cut.list);
   return points;
 }
 

@@ -1,9 +1,10 @@
-// By block: what has streamed so far. Several show views of one stream, and share on the GPU what
-// another one has there.
+// By block: what has streamed so far, whole or by vertex inside blocks. Several show views of one
+// stream, and share on the GPU what another one has there.
 #pragma once
 
 #include "crease/block_streamer.h"
 #include "render/gl_creases.h"
+#include "render/gl_cuts.h"
 #include "view/shown_mesh.h"
 
 #include <cstddef>
@@ -21,7 +22,8 @@ class ShownBlocks final : public ShownMesh {
         view_(view),
         beside_(beside),
         materials_(std::move(materials)),
-        blocks_(materials_) {}
+        blocks_(materials_),
+        cuts_(materials_) {}
 
   FrameFacts update(const ViewSettings& settings, const Camera& camera) override;
   Result<DrawCount> draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
@@ -30,7 +32,7 @@ class ShownBlocks final : public ShownMesh {
   HitFacts facts_of(const Hit& hit) const override;
   std::vector<Vec3f> outline() const override;
   Vec3d origin() const override { return mesh().facts().grid.origin; }
-  Box box() const override { return blocks_.box_of(mesh().shown()); }
+  Box box() const override;
 
   const BlockMesh& mesh() const { return streamer_->mesh(view_); }
 
@@ -40,6 +42,7 @@ class ShownBlocks final : public ShownMesh {
   const ShownBlocks* const beside_;
   const GlMaterialsPtr materials_;
   GlBlocks blocks_;
+  GlCuts cuts_;
   GlBlockCreases creases_;
 };
 

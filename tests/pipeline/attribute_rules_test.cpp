@@ -19,7 +19,7 @@ struct Rules {
   std::vector<std::vector<float>> apply(std::vector<Candidate> candidates,
                                         std::vector<std::pair<std::uint32_t, std::uint32_t>> links,
                                         std::vector<AttributeChange> changes = {}) {
-    LayerValues values(layer, sequence, 0);
+    RuledValues values(layer, sequence, 0);
     AttributeRules rules;
     const auto ids = rules.apply(candidates, links, changes, 0, values);
     results.assign(ids.begin(), ids.end());

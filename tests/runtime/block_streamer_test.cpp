@@ -2,6 +2,7 @@
 // and in the end all that the view wants.
 #include "crease/block_streamer.h"
 #include "runtime/block_mesh_oracle.h"
+#include "runtime/block_vertices_oracle.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
 
@@ -109,6 +110,34 @@ TEST_CASE("a view is complete in the end, whatever the source does on the way") 
         CHECK((refined_blocks(file, streamer.mesh()) == wanted_blocks(file, parameters.view)));
       }
       CHECK((threads > 0 || !streamer.trouble()));
+    }
+  }
+}
+
+TEST_CASE("by vertex, hierarchies are made beside the frames, and shared by views") {
+  const EncodedCase c = simplified_case(smooth_sphere(40, 60), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  std::mt19937_64 random(8);
+  for (const int threads : {0, 1, 3}) {
+    const auto source = std::make_shared<UnsteadySource>(c.bytes, 5, threads);
+    BlockStreamer streamer = opened_streamer(file, source, hasty(threads));
+    streamer.set_view_count(2);
+    for (int round = 0; round < (kSanitized ? 2 : 6); ++round) {
+      BlockViewParameters of[] = {random_view(c.mesh, random), random_view(c.mesh, random)};
+      of[0].by_vertex = of[1].by_vertex = round % 3 != 2;
+      of[1].max_bytes = round % 2 ? 400'000 : of[1].max_bytes;
+      const auto update_both = [&](int& frames) {
+        bool is_complete = true;
+        for (std::size_t v = 0; v < 2; ++v) is_complete &= streamer.update(of[v], v).is_complete;
+        streamer.wait(std::chrono::milliseconds(50));
+        return is_complete || ++frames == 3000;  // a budget may keep blocks coming and going
+      };
+      for (int frames = 0; !update_both(frames);) {
+        if (frames > 4) continue;
+        for (std::size_t v = 0; v < 2; ++v) check_by_vertex(streamer.mesh(v));
+      }
+      for (std::size_t v = 0; v < 2; ++v) check_by_vertex(streamer.mesh(v));
+      CHECK(streamer.mesh(0).shown_cuts().empty() == (round % 3 == 2));
     }
   }
 }

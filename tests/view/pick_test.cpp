@@ -86,17 +86,22 @@ TEST_CASE("a triangle of a block knows its part") {
     streamer.update(parameters);
     streamer.wait(std::chrono::milliseconds(20));
   }
-  int hits = 0;
-  for (double x = model.low.x + 0.05; x < model.high.x; x += 0.13) {
-    const Ray down{{x, (model.low.y + model.high.y) / 4 + model.low.y / 2, 100}, {0, 0, -1}};
-    const std::optional<Hit> hit =
-        pick(streamer.mesh().shown(), streamer.mesh().facts().grid, down);
-    if (!hit) continue;
-    ++hits;
-    CHECK(part_of(*hit, streamer.mesh().part_names()) ==
-          (hit->corners[0].x < 1.5 ? "left" : "right"));
-  }
-  CHECK(hits > 2);
+  const auto check_parts = [&](const auto& shown) {
+    int hits = 0;
+    for (double x = model.low.x + 0.05; x < model.high.x; x += 0.13) {
+      const Ray down{{x, (model.low.y + model.high.y) / 4 + model.low.y / 2, 100}, {0, 0, -1}};
+      const std::optional<Hit> hit = pick(shown, streamer.mesh().facts().grid, down);
+      if (!hit) continue;
+      ++hits;
+      CHECK(part_of(*hit, streamer.mesh()) == (hit->corners[0].x < 1.5 ? "left" : "right"));
+    }
+    CHECK(hits > 2);
+  };
+  check_parts(streamer.mesh().shown());
+  parameters.by_vertex = true;
+  finish(streamer, parameters);
+  CHECK(streamer.mesh().shown().empty());
+  check_parts(streamer.mesh().shown_cuts());
 }
 
 }  // namespace crease

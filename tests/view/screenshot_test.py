@@ -186,6 +186,7 @@ class Screenshot(tool.Case):
         self.assertEqual(self.halves_differ("--split", "pixels=1"), 0)
         self.assertEqual(self.halves_differ("--split", "mode=block", "--creases", "--degrees", "5",
                                             "--ambient-occlusion", "--bandwidth", "10000"), 0)
+        self.assertLess(self.halves_differ("--split", "mode=hybrid", "--pixels", "1"), 0.02)
         self.assertGreater(self.halves_differ("--split", "original", "--triangles", "1000"), 0.01)
         self.assertGreater(self.halves_differ("--split", "creases"), 0.01)
         self.assertGreater(self.halves_differ("--split", "color=kind,mode=linear"), 0.1)

@@ -5,6 +5,7 @@
 #include "crease/progressive_mesh.h"
 #include "render/gl_blocks.h"
 #include "render/gl_context.h"
+#include "render/gl_cuts.h"
 #include "render/gl_scene.h"
 #include "render/gl_target.h"
 #include "render/textures.h"
@@ -139,6 +140,39 @@ TEST_CASE("blocks are painted, those that came before the textures too") {
     }
   }
   CHECK(streamer.mesh().triangle_count() == painted.mesh.triangle_count());
+}
+
+TEST_CASE("what is shown by vertex in blocks is painted") {
+  const Result<GlContext> gl = open_gl();
+  REQUIRE(gl.ok());
+  const Painted painted;
+  painted.paint();
+  const StreamedModel model = streamed_model(painted.mesh, 200);
+  BlockStreamer streamer = model.stream();
+  GlBlocks blocks(painted.materials);
+  GlCuts cuts(painted.materials);
+  BlockViewParameters parameters;
+  parameters.by_vertex = true;
+  parameters.view.camera = camera_above();
+  Result<GlTarget> target = GlTarget::make(gl->limits(), kPicturePx, kPicturePx);
+  REQUIRE(target.ok());
+  ProgramCache programs;
+  for (const double pixels : {2.0, 0.01}) {
+    parameters.view.camera.pixels = pixels;
+    finish(streamer, parameters);
+    blocks.upload(streamer.mesh().shown());
+    cuts.upload(streamer.mesh().shown_cuts());
+    REQUIRE(!streamer.mesh().shown_cuts().empty());
+    DrawPass pass{.view = make_view(camera_above(), 1), .up = {0, 1, 0}};
+    pass.depth = depth_range(pass.view, painted.file.box.low, painted.file.box.high);
+    const DrawStyle style{.reversed_depth = gl->limits().can_reverse_depth};
+    std::vector<std::uint8_t> rgba(4 * kPicturePx * kPicturePx);
+    target->begin(kPicturePx, kPicturePx);
+    REQUIRE(blocks.draw(programs, pass, style, streamer.mesh().shown()).ok());
+    REQUIRE(cuts.draw(programs, pass, style, streamer.mesh().shown_cuts()).ok());
+    target->read(kPicturePx, kPicturePx, rgba);
+    check_painted(rgba);
+  }
 }
 
 }  // namespace crease

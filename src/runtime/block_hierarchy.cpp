@@ -1,0 +1,120 @@
+#include "runtime/block_hierarchy.h"
+
+#include "codec/model_of_blocks.h"
+#include "codec/unfold_blocks.h"
+#include "crease/build_hierarchy.h"
+#include "crease/decode_model.h"
+#include "hierarchy/hierarchy_walk.h"
+#include "runtime/resident_block.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace crease {
+
+namespace {
+
+void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body) {
+  for (std::size_t i = 0; i < count; ++i) body(i);
+}
+
+// The finest mesh of the block alone, and the contractions that lead to its coarse end. Their
+// errors go from those that the file tells of the one end to those of the other, by the order in
+// which vertices are contracted, as for a whole model.
+DecodedModel model_of(const ResidentBlock::Data& block, std::span<const ResidentBlockPtr> needed) {
+  codec::BlockUnfolder unfolder;
+  unfolder.add_alone(block.entry.facts, whole_end(block), block.splits,
+                     coarse_end_of(needed, block.entry.facts));
+  DecodedModel model;
+  codec::ModelOfBlocks(*block.schema, unfolder).fill(model, 1, one_by_one);
+  return model;
+}
+
+// The first child of a split keeps its parent's number, so a root is the first vertex of its tree.
+std::vector<std::uint32_t> roots_of_vertices(const ResidentBlock::Data& block) {
+  std::vector<std::uint32_t> root(block.end.names.size());
+  const std::size_t roots = root.size() - block.splits.size();
+  for (std::uint32_t v = 0; v < root.size(); ++v) {
+    root[v] = v < roots ? v : root[block.splits[v - roots].vertex];
+  }
+  return root;
+}
+
+void find_nodes(const ResidentBlock::Data& block, const HierarchyMaps& maps,
+                BlockHierarchy::Data& data) {
+  const VertexHierarchy& h = data.hierarchy.vertices;
+  const std::vector<WedgeRange> wedges = wedge_ranges(h);
+  const std::vector<std::uint32_t> root_of_vertex = roots_of_vertices(block);
+  data.leaf_of_vertex = maps.leaf_of_vertex;
+  data.node_of_root.reserve(block.root_names.size());
+  data.wedge_of_vertex.reserve(data.leaf_of_vertex.size());
+  for (std::uint32_t v = 0; v < data.leaf_of_vertex.size(); ++v) {
+    const WedgeRange range = wedges[index_of(data.leaf_of_vertex[v])];
+    data.wedge_of_vertex.push_back(range.begin < range.end ? range.begin : kNone);
+    if (v >= block.root_names.size()) continue;
+    NodeId root = data.leaf_of_vertex[v];
+    while (!h.is_root(root)) root = h.parent(root);
+    data.node_of_root.push_back(root);
+  }
+  data.triangle_of.resize(maps.new_of_triangle.size());
+  data.roots_of_triangle.reserve(maps.new_of_triangle.size());
+  for (std::uint32_t t = 0; t < maps.new_of_triangle.size(); ++t) {
+    data.triangle_of[index_of(maps.new_of_triangle[t])] = t;
+    codec::Corners roots = block.end.mesh.triangles[t];
+    for (std::uint32_t& v : roots) v = root_of_vertex[v];
+    data.roots_of_triangle.push_back(roots);
+  }
+}
+
+// What a file may say and no hierarchy may have.
+bool is_sound(const DecodedModel& model) {
+  if (!check_mesh(model.mesh).ok()) return false;
+  return std::all_of(model.sequence.new_values.begin(), model.sequence.new_values.end(),
+                     [](const std::vector<float>& values) {
+                       return std::all_of(values.begin(), values.end(),
+                                          [](float value) { return std::isfinite(value); });
+                     });
+}
+
+std::size_t bytes_of(const BlockHierarchy::Data& data) {
+  return sizeof(data) + hierarchy_bytes(data.hierarchy).total() +
+         4 * (data.leaf_of_vertex.size() + data.wedge_of_vertex.size() + data.node_of_root.size() +
+              data.triangle_of.size()) +
+         sizeof(codec::Corners) * data.roots_of_triangle.size();
+}
+
+}  // namespace
+
+BlockHierarchy::BlockHierarchy(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
+BlockHierarchy::~BlockHierarchy() = default;
+
+BlockId BlockHierarchy::id() const {
+  return data_->id;
+}
+
+std::size_t BlockHierarchy::bytes() const {
+  return data_->bytes;
+}
+
+BlockHierarchyJob::BlockHierarchyJob(ResidentBlockPtr block, std::vector<ResidentBlockPtr> needed)
+    : block_(std::move(block)), needed_(std::move(needed)) {}
+
+BlockHierarchyPtr BlockHierarchyJob::run() const {
+  const ResidentBlock::Data& block = block_->data();
+  auto data = std::make_unique<BlockHierarchy::Data>();
+  data->id = block_->id();
+  const DecodedModel model = model_of(block, needed_);
+  HierarchyMaps maps;
+  data->is_empty = true;
+  if (is_sound(model)) {
+    Result<MeshHierarchy> hierarchy = build_hierarchy(model.mesh, model.sequence, {}, &maps);
+    data->is_empty = !hierarchy.ok();
+    if (hierarchy.ok()) data->hierarchy = *std::move(hierarchy);
+  }
+  if (!data->is_empty) find_nodes(block, maps, *data);
+  data->bytes = bytes_of(*data);
+  return std::make_shared<const BlockHierarchy>(std::move(data));
+}
+
+}  // namespace crease

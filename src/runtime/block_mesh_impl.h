@@ -1,0 +1,79 @@
+// The state of a BlockMesh.
+#pragma once
+
+#include "codec/model_schema.h"
+#include "crease/block_mesh.h"
+#include "runtime/block_choice.h"
+#include "runtime/block_graph.h"
+#include "runtime/resident_block.h"
+#include "runtime/vertex_cuts.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crease {
+
+struct BlockMesh::Impl {
+  Impl(codec::ModelSchema s, std::uint32_t blocks, std::uint32_t pages)
+      : schema(std::make_shared<const codec::ModelSchema>(std::move(s))),
+        page_count(pages),
+        graph(schema->facts, blocks),
+        chooser(graph, schema->facts.grid),
+        cuts(graph) {}
+  // Of the same file, with no block.
+  explicit Impl(const Impl* other)
+      : schema(other->schema),
+        part_names(other->part_names),
+        page_count(other->page_count),
+        graph(other->graph),
+        chooser(graph, schema->facts.grid),
+        cuts(graph) {
+    make_room();
+  }
+
+  void make_room();  // for what the graph has
+  BlockUpdate update(const BlockViewParameters& parameters);
+  void move_cut(std::span<const std::uint32_t> chosen, BlockUpdate& report);
+  void drop_beyond(std::size_t max_bytes, BlockUpdate& report);
+  void move_vertices(const BlockViewParameters& parameters, BlockUpdate& report);
+  void list_cuts();
+  void list_missing_hierarchies();
+  void count_bytes(std::uint32_t block);
+  void list_shown();
+  void list_shown_of(std::uint32_t block);
+  bool is_shown(std::uint32_t block, std::uint32_t patch) const;
+  LevelError error_of_cut() const;
+  BlockChooser::Limits limits(const BlockViewParameters& parameters) const;
+
+  std::shared_ptr<const codec::ModelSchema> schema;
+  std::vector<std::string> part_names;
+  std::uint32_t page_count;
+  BlockGraph graph;
+  BlockChooser chooser;
+  // Per block.
+  std::vector<ResidentBlockPtr> resident;
+  std::vector<std::size_t> bytes_of_block;  // what it takes, or at most would
+  std::vector<std::size_t> vertex_bytes;    // what being by vertex takes
+  std::vector<char> is_refined;             // it is in the cut: resident, and so is what it needs
+  std::vector<std::uint64_t> wanted_at;     // the last update that wanted it
+  std::vector<std::uint32_t> cut;           // those that are refined, ascending
+  std::vector<BlockEntry> missing;
+  VertexCuts cuts;
+  std::vector<BlockId> missing_hierarchies;
+  std::vector<ShownRange> shown;
+  std::vector<ShownCut> shown_cuts;
+  LevelError shown_error;
+  float view_error = 0;
+  std::size_t shown_triangles = 0, cut_triangles = 0, resident_count = 0, resident_bytes = 0;
+  std::uint64_t updates = 0;
+  BlockViewParameters last;
+  bool was_by_vertex = false;  // at the last update
+  bool has_changed = true;     // since the last update
+};
+
+}  // namespace crease

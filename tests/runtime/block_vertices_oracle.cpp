@@ -1,0 +1,242 @@
+#include "runtime/block_vertices_oracle.h"
+
+#include "codec/layer_values.h"
+#include "hierarchy/geometric_normal.h"
+#include "runtime/block_mesh_impl.h"
+#include "runtime/draw_values.h"
+#include "runtime/view_error.h"
+#include "support/described_mesh.h"
+#include "support/drawn_triangles.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+namespace crease {
+
+namespace {
+
+// A vertex of the union of all cuts: a node of a block's hierarchy, or a vertex of a whole block.
+struct Active {
+  std::uint32_t block = 0, node = 0;
+  Vec3i position;
+  bool operator==(const Active& other) const { return block == other.block && node == other.node; }
+};
+
+// A triangle as one block has it.
+struct Place {
+  std::uint32_t block = 0, triangle = 0;
+};
+
+class BlocksOracle {
+ public:
+  explicit BlocksOracle(const BlockMesh::Impl& mesh) : mesh_(mesh) {
+    for (const std::uint32_t block : mesh_.cut) find_sources(block);
+  }
+
+  Mesh run() {
+    result_.materials = mesh_.schema->materials;
+    result_.parts = mesh_.part_names;
+    for (const LayerSchema& layer : mesh_.schema->facts.layers) {
+      result_.layers.push_back({.name = layer.name,
+                                .role = layer.role,
+                                .interpolation = layer.interpolation,
+                                .dimension = layer.dimension,
+                                .values = {},
+                                .of_corner = {}});
+    }
+    for (const std::uint32_t block : mesh_.cut) {
+      const codec::FineEnd& end = data(block).end;
+      for (std::uint32_t t = 0; t < end.labels.size(); ++t) {
+        const std::uint32_t finer = mesh_.graph.next_finer(band(block), end.labels[t]);
+        if (!is_refined(finer)) add({block, t});
+      }
+    }
+    return std::move(result_);
+  }
+
+ private:
+  const ResidentBlock::Data& data(std::uint32_t block) const {
+    return mesh_.resident[block]->data();
+  }
+  std::uint16_t band(std::uint32_t block) const { return data(block).entry.facts.band; }
+  bool is_refined(std::uint32_t block) const {
+    return block < mesh_.is_refined.size() && mesh_.is_refined[block] != 0;
+  }
+
+  // Per triangle of its coarse end, where it comes from.
+  void find_sources(std::uint32_t block) {
+    for (const std::uint32_t needed : mesh_.graph.dependencies(block)) {
+      if (band(needed) != band(block) + 1) continue;
+      const std::vector<std::uint32_t>& labels = data(needed).end.labels;
+      for (std::uint32_t t = 0; t < labels.size(); ++t) {
+        if (labels[t] == data(block).entry.facts.patch) sources_[block].push_back({needed, t});
+      }
+    }
+    REQUIRE(sources_[block].size() == data(block).coarse_triangles);
+  }
+
+  // The lowest node that is above the leaf and not below a split that is not done.
+  static NodeId active_above(const BlockCut& cut, NodeId leaf) {
+    const VertexHierarchy& h = cut.data().hierarchy.vertices;
+    NodeId active = leaf;
+    for (NodeId n = leaf; !h.is_root(n);) {
+      const SplitId s = h.split_above(n);
+      n = h.node_of_split[index_of(s)];
+      if (!cut.cut().is_done(s)) active = n;
+    }
+    return active;
+  }
+
+  Active active(const codec::VertexName& name) const {
+    const BlockCut* const cut = mesh_.cuts.cut(name.block);
+    if (cut == nullptr) {
+      return {name.block, name.vertex, data(name.block).end.mesh.positions[name.vertex]};
+    }
+    const BlockHierarchy::Data& d = cut->data();
+    const NodeId leaf = d.leaf_of_vertex[name.vertex];
+    const NodeId node = d.wedge_of_vertex[name.vertex] == kNone ? leaf : active_above(*cut, leaf);
+    if (d.hierarchy.vertices.is_root(node)) {
+      const auto root = std::find(d.node_of_root.begin(), d.node_of_root.end(), node);
+      const codec::VertexName& made =
+          data(name.block).root_names[std::size_t(root - d.node_of_root.begin())];
+      if (made.block != name.block) return active(made);
+    }
+    return {name.block, static_cast<std::uint32_t>(node), d.hierarchy.vertices.position_of(node)};
+  }
+
+  bool has_split_root(const Place& at) const {
+    const BlockCut* const cut = mesh_.cuts.cut(at.block);
+    if (cut == nullptr) return true;
+    for (const std::uint32_t root : cut->data().roots_of_triangle[at.triangle]) {
+      if (!cut->cut().is_cut_leaf(cut->data().node_of_root[root])) return true;
+    }
+    return false;
+  }
+
+  void add(const Place& finest) {
+    const codec::FineEnd& end = data(finest.block).end;
+    std::array<Active, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = active(end.names[end.mesh.triangles[finest.triangle][k]]);
+    }
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
+    Place at = finest;
+    while (!has_split_root(at) && at.triangle < sources_[at.block].size()) {
+      at = sources_[at.block][at.triangle];
+    }
+    Triangle& triangle = result_.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] = VertexId{static_cast<std::uint32_t>(result_.positions.size())};
+      result_.positions.push_back(mesh_.schema->facts.grid.position(corners[k].position));
+    }
+    const std::uint32_t category = end.mesh.category[finest.triangle];
+    const std::uint32_t materials = mesh_.schema->coding.material_count;
+    if (!result_.materials.empty()) {
+      result_.material_of_triangle.push_back(MaterialId{category % materials});
+    }
+    if (!result_.parts.empty()) result_.part_of_triangle.push_back(PartId{category / materials});
+    for (std::size_t l = 0; l < result_.layers.size(); ++l) {
+      for (std::size_t k = 0; k < 3; ++k) add_value(at, corners, l, k);
+    }
+  }
+
+  void add_value(const Place& at, const std::array<Active, 3>& corners, std::size_t l,
+                 std::size_t k) {
+    AttributeLayer& layer = result_.layers[l];
+    std::vector<float> value(layer.dimension, 0);
+    const BlockCut* const cut = mesh_.cuts.cut(at.block);
+    bool is_derived = false;
+    if (cut == nullptr) {
+      const ResidentBlock::Data& block = data(at.block);
+      is_derived = block.end.mesh.derived[at.triangle] != 0;
+      const LayerValues values(mesh_.schema->codings[l], layer.dimension);
+      values.read(block.values[l].at(3 * std::size_t(at.triangle) + k), value);
+    } else {
+      is_derived = read_value(*cut, at, corners[k], l, k, value);
+    }
+    if (is_derived && layer.role == AttributeRole::Normal) {
+      const Vec3f n =
+          geometric_normal(corners[0].position, corners[1].position, corners[2].position);
+      if (n != Vec3f{}) value = {n.x, n.y, n.z};
+    }
+    layer.of_corner.push_back(AttributeId{static_cast<std::uint32_t>(layer.value_count())});
+    layer.values.insert(layer.values.end(), value.begin(), value.end());
+  }
+
+  // True if the triangle shows its geometric normal.
+  bool read_value(const BlockCut& cut, const Place& at, const Active& corner, std::size_t l,
+                  std::size_t k, std::vector<float>& value) {
+    const MeshHierarchy& h = cut.data().hierarchy;
+    std::vector<std::uint32_t>& new_of = new_of_triangle_[at.block];
+    if (new_of.empty()) {
+      new_of.resize(cut.data().triangle_of.size());
+      for (std::uint32_t i = 0; i < new_of.size(); ++i) new_of[cut.data().triangle_of[i]] = i;
+    }
+    const std::uint32_t t = new_of[at.triangle];
+    const WedgeId wedge = h.vertices.triangles[t][k];
+    const std::uint32_t v = cut.block().data().end.mesh.triangles[at.triangle][k];
+    NodeId node = cut.data().leaf_of_vertex[v];
+    const NodeId active = active_above(cut, node);
+    // The corner stands where the block says: what finer blocks split, coarser ones have active.
+    CHECK(h.vertices.position_of(active) == corner.position);
+    RelativeAttribute a = h.at_leaf(l, node, wedge);
+    for (; node != active; node = h.vertices.parent(node)) {
+      a = h.above(l, h.vertices.split_above(node), h.vertices.is_second(node), a, wedge);
+    }
+    const StoredValue found = h.value(l, active, a);
+    value.assign(found.begin(), found.end());
+    const SplitId deriving = h.vertices.deriving_split(TriangleId{t});
+    return deriving != kNoSplit && !cut.cut().is_done(deriving);
+  }
+
+  const BlockMesh::Impl& mesh_;
+  std::map<std::uint32_t, std::vector<Place>> sources_;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> new_of_triangle_;  // per block by vertex
+  Mesh result_;
+};
+
+}  // namespace
+
+void check_by_vertex(const BlockMesh& mesh) {
+  const Mesh expected = BlocksOracle(mesh.impl()).run();
+  const Mesh shown = mesh.extract();
+  REQUIRE(check_mesh(shown).ok());
+  CHECK((described(shown) == described(expected)));
+  CHECK(mesh.triangle_count() == shown.triangle_count());
+  TriangleBag drawn;
+  for (const ShownRange& range : mesh.shown()) {
+    add_drawn(range.block->draw_list(), {range.sn, range.fn, range.nsn}, drawn);
+  }
+  for (const ShownCut& cut : mesh.shown_cuts()) {
+    const auto all = [](const DrawPart& part) {
+      return Range{0, static_cast<std::uint32_t>(part.triangle_count())};
+    };
+    add_drawn(cut.list, {all(cut.list.sn), all(cut.list.fn), all(cut.list.nsn)}, drawn);
+  }
+  const Grid& grid = mesh.facts().grid;
+  const auto place = [&grid](const Vec3d& p) { return draw_position(grid, grid.nearest(p)); };
+  CHECK((drawn == drawn_of_mesh(shown, place)));
+}
+
+std::size_t check_nothing_is_wrong(const BlockMesh& mesh, const ViewParameters& view) {
+  const ViewError error(view, mesh.facts().grid);
+  std::size_t blocks = 0, wrong = 0;
+  for (const std::uint32_t block : mesh.impl().cut) {
+    const BlockCut* const cut = mesh.impl().cuts.cut(block);
+    if (cut == nullptr) continue;
+    ++blocks;
+    for (const ActiveVertex& v : cut->cut().vertices()) {
+      if (v.node == kNoNode || v.split == kNoSplit) continue;
+      const SplitBounds& bounds = cut->data().hierarchy.vertices.bounds[index_of(v.split)];
+      wrong += error.is_wrong(error.watch(bounds, error.position(v.position), 1));
+    }
+  }
+  CHECK(wrong == 0);
+  return blocks;
+}
+
+}  // namespace crease

@@ -1,0 +1,17 @@
+// What a BlockMesh should show by vertex, by the definition: every triangle of the refined blocks
+// with the active ancestors of its corners, kept where the three differ. Which splits are done is
+// read from the mesh; nothing else of it is used.
+#pragma once
+
+#include "crease/block_mesh.h"
+
+namespace crease {
+
+// What is shown is that, as a mesh and as triangles to draw.
+void check_by_vertex(const BlockMesh& mesh);
+
+// Nothing that could be split in a block that is by vertex is seen to be wrong. Returns how many
+// blocks are.
+std::size_t check_nothing_is_wrong(const BlockMesh& mesh, const ViewParameters& view);
+
+}  // namespace crease
