@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <mutex>
 #include <numeric>
 
@@ -28,6 +30,10 @@ constexpr double kBandShare = 0.6;
 
 // Below this many triangles one last band goes all the way.
 constexpr std::size_t kLastBand = 64;
+
+// After so many bands in which hardly anything happened the reason is not their limit: one patch
+// does all that is left, and several become fewer, since all their vertices may lie on borders.
+constexpr int kMostStalls = 3;
 
 // More than any contraction costs, and less than what is never done (infinity).
 constexpr double kNoLimit = 1e300;
@@ -234,7 +240,7 @@ class Simplifier {
       set_scales(work_, extent, options_.normal_weight, edge);
 
       patches_ = partition_triangles(work_.positions, work_.vertex_of_corner, work_.live,
-                                     options_.patch_triangles, band);
+                                     patch_triangles(), band);
       find_owners(work_, patches_);
       bool parts_join = false;
       if (work_.part_count > 1) {
@@ -250,7 +256,7 @@ class Simplifier {
         steering.leaves_ends = 1;
         steering.leaves_pair = kCoarseLeavesPair;
       }
-      const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= 3);
+      const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= kMostStalls);
       if (band == 0) limit = first_limit(steering, triangle_area);
       steering.cost_limit = last ? kNoLimit : limit;
       const double step = last ? kNoLimit : std::sqrt(limit / (triangle_area * 6));
@@ -277,6 +283,14 @@ class Simplifier {
   }
 
  private:
+  // Twice as many with each band that is stalled.
+  std::uint32_t patch_triangles() const {
+    const int doublings = std::clamp(stalled_ + 1 - kMostStalls, 0, 31);
+    const std::uint64_t triangles = std::uint64_t(options_.patch_triangles) << doublings;
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(triangles, std::numeric_limits<std::uint32_t>::max()));
+  }
+
   // The limit under which about a third of the pairs lie, from a sample of an eighth of the
   // patches.
   double first_limit(const Steering& steering, double triangle_area) {

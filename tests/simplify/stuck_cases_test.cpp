@@ -4,11 +4,13 @@
 #include "crease/simplify.h"
 #include "mesh/normals.h"
 #include "support/mesh_zoo.h"
+#include "support/random_contractions.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 using namespace crease;
 
@@ -201,5 +203,32 @@ TEST_CASE("every zoo mesh goes all the way down") {
     REQUIRE(sequence.ok());
     const Level base = apply_contractions(mesh, *sequence, sequence->contractions.size());
     CHECK(std::count(base.alive.begin(), base.alive.end(), true) <= 4);
+  }
+}
+
+// Each vertex has triangles all over: whatever the patches, borders go through nearly all of them.
+TEST_CASE("a tangle whose vertices all lie on borders of patches goes all the way down") {
+  struct Tangle {
+    std::size_t vertices, triangles;
+    std::uint32_t patch_triangles;
+  };
+  for (const Tangle& tangle : {Tangle{23, 46, 24}, Tangle{100, 600, 24}, Tangle{60, 600, 150},
+                               Tangle{1'000, 9'000, 8'000}}) {
+    CAPTURE(tangle.triangles);
+    Mesh mesh = random_complex(1, tangle.vertices, tangle.triangles);
+    const Grid grid = make_grid(mesh, {.length = 0, .bits = 12});
+    snap(mesh, grid);
+    SimplifyStatistics statistics;
+    const auto sequence = simplify(
+        mesh, grid, {.patch_triangles = tangle.patch_triangles, .progress = {}}, &statistics);
+    REQUIRE(sequence.ok());
+    CHECK(statistics.bands.size() < 60);
+    // What is left are triangles of the same three vertices.
+    std::set<VertexId> used;
+    const Level base = apply_contractions(mesh, *sequence, sequence->contractions.size());
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      if (base.alive[t]) used.insert(base.triangles[t].begin(), base.triangles[t].end());
+    }
+    CHECK(used.size() == 3);
   }
 }
