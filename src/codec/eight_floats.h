@@ -5,29 +5,19 @@
 //   (z / root(1.0f + z * z)).store(result);
 #pragma once
 
+#include "base/four_floats.h"
+
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 namespace crease::codec {
 
-using FourFloats [[gnu::vector_size(16)]] = float;
-using FourInts [[gnu::vector_size(16)]] = std::int32_t;
-
-inline FourFloats root_of_each(const FourFloats& x) {
-#if defined(__SSE2__)
-  return _mm_sqrt_ps(x);
-#else
-  return FourFloats{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
-#endif
-}
+using crease::greater;
+using crease::lesser;
+using crease::root;
 
 struct EightFloats {
   FourFloats low, high;
@@ -64,22 +54,7 @@ inline EightFloats operator/(const EightFloats& a, const EightFloats& b) {
   return {a.low / b.low, a.high / b.high};
 }
 inline EightFloats root(const EightFloats& x) {
-  return {root_of_each(x.low), root_of_each(x.high)};
-}
-// a where a is less, else b; so b where either is not a number.
-inline FourFloats lesser(const FourFloats& a, const FourFloats& b) {
-#if defined(__SSE2__)
-  return _mm_min_ps(a, b);
-#else
-  return a < b ? a : b;
-#endif
-}
-inline FourFloats greater(const FourFloats& a, const FourFloats& b) {
-#if defined(__SSE2__)
-  return _mm_max_ps(a, b);
-#else
-  return a > b ? a : b;
-#endif
+  return {root(x.low), root(x.high)};
 }
 inline EightFloats lesser(const EightFloats& a, const EightFloats& b) {
   return {lesser(a.low, b.low), lesser(a.high, b.high)};

@@ -108,13 +108,12 @@ void PairOdds::rate(std::span<const RingVertex> ring) {
       const FourFloats sx = four_at(&sum_x[j]), sy = four_at(&sum_y[j]), sz = four_at(&sum_z[j]);
       const FourFloats ax = sx - before.x, ay = sy - before.y, az = sz - before.z;
       const FourFloats bx = outside.x - sx + ex, by = outside.y - sy + ey, bz = outside.z - sz + ez;
-      const FourFloats ends = root_of_each(ex * ex + ey * ey + ez * ez) * inverse * 0.5f;
+      const FourFloats ends = root(ex * ex + ey * ey + ez * ez) * inverse * 0.5f;
       const FourFloats a = lesser(
-          root_of_each(ax * ax + ay * ay + az * az) * inverse * four_at(&kInverse[j - i + 1]),
+          root(ax * ax + ay * ay + az * az) * inverse * four_at(&kInverse[j - i + 1]), farthest);
+      const FourFloats b = lesser(
+          root(bx * bx + by * by + bz * bz) * inverse * four_at(&kInverseDown[16 - n + j - i]),
           farthest);
-      const FourFloats b = lesser(root_of_each(bx * bx + by * by + bz * bz) * inverse *
-                                      four_at(&kInverseDown[16 - n + j - i]),
-                                  farthest);
       const FourFloats cosine =
           (qx * p.x + qy * p.y + qz * p.z) * inverse_length[i] * four_at(&inverse_length[j]);
       const FourFloats features[] = {lesser(ends, farthest),       lesser(a, b), greater(a, b),

@@ -32,7 +32,7 @@ ViewError::ViewError(const ViewParameters& view, const Grid& grid)
   gaze_.wide_forward = static_cast<float>(wide / wide_length);
   gaze_.high_forward = static_cast<float>(half / high_length);
   gaze_.outside = view.coarse_outside ? 0 : kNever;
-  const auto spread = [](float x) { return Float4{x, x, x, x}; };
+  const auto spread = [](float x) { return FourFloats{x, x, x, x}; };
   for (std::size_t i = 0; i < 3; ++i) {
     gaze4_.eye[i] = spread(gaze_.eye[i]);
     gaze4_.forward[i] = spread(gaze_.forward[i]);

@@ -14,6 +14,7 @@
 // cones are nested. So what is split because of it is split from the root on.
 #pragma once
 
+#include "base/four_floats.h"
 #include "crease/adaptive_mesh.h"
 
 #include <algorithm>
@@ -23,16 +24,9 @@
 #include <cstdint>
 #include <limits>
 
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
 namespace crease {
 
-using Float4 [[gnu::vector_size(16)]] = float;
-using Int4 [[gnu::vector_size(16)]] = std::int32_t;
-
-inline bool any(const Int4& lanes) {
+inline bool any(const FourInts& lanes) {
   using Long2 [[gnu::vector_size(16)]] = std::int64_t;
   const auto halves = std::bit_cast<Long2>(lanes);
   return (halves[0] | halves[1]) != 0;
@@ -41,32 +35,18 @@ inline bool any(const Int4& lanes) {
 inline float magnitude(float x) {
   return std::fabs(x);
 }
-inline Float4 magnitude(const Float4& x) {
-  return std::bit_cast<Float4>(std::bit_cast<Int4>(x) & 0x7fffffff);
+inline FourFloats magnitude(const FourFloats& x) {
+  return std::bit_cast<FourFloats>(std::bit_cast<FourInts>(x) & 0x7fffffff);
 }
 
-inline float smaller(float a, float b) {
+inline float lesser(float a, float b) {
   return a < b ? a : b;
 }
-inline Float4 smaller(const Float4& a, const Float4& b) {
-#if defined(__SSE__)
-  return _mm_min_ps(a, b);
-#else
-  return a < b ? a : b;
-#endif
-}
-inline float smallest(const Float4& x) {
-  const Float4 pairs = smaller(x, Float4{x[2], x[3], x[0], x[1]});
-  return smaller(pairs[0], pairs[1]);
+inline float least(const FourFloats& x) {
+  const FourFloats pairs = lesser(x, FourFloats{x[2], x[3], x[0], x[1]});
+  return lesser(pairs[0], pairs[1]);
 }
 
-inline Float4 root(const Float4& x) {
-#if defined(__SSE__)
-  return _mm_sqrt_ps(x);
-#else
-  return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
-#endif
-}
 inline float root(float x) {
   return std::sqrt(x);
 }
@@ -119,7 +99,7 @@ class ViewError {
     const Real ahead = along(g.forward);
     const Real across = g.wide_forward * ahead - magnitude(along(g.right));
     const Real upright = g.high_forward * ahead - magnitude(along(g.up));
-    return g.outside + smaller(ahead, smaller(across, upright));
+    return g.outside + lesser(ahead, lesser(across, upright));
   }
   template <typename Real>
   Real facing_reach(const Real& x, const Real& y, const Real& z, const Real& reach,
@@ -161,10 +141,10 @@ class ViewError {
     Real outside{};  // 0, or infinity if what is outside counts as well
   };
   const Gaze<float>& gaze_for(float) const { return gaze_; }
-  const Gaze<Float4>& gaze_for(const Float4&) const { return gaze4_; }
+  const Gaze<FourFloats>& gaze_for(const FourFloats&) const { return gaze4_; }
 
   Gaze<float> gaze_;
-  Gaze<Float4> gaze4_;
+  Gaze<FourFloats> gaze4_;
   std::array<Vec3d, 4> frame_{};  // eye, forward, right, up
   double step_ = 1;
   float pixels_at_one_ = 1;  // a length of 1 at distance 1, in pixels that are allowed

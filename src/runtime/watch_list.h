@@ -94,7 +94,7 @@ class WatchList {
     for (std::size_t b = 0; b < block_count; ++b) {
       if ((due[b].travel > travel) & (due[b].turn > turn)) continue;
       looked_at += kLanes;
-      const Int4 hit = look<kWrong>(error, from, b);
+      const FourInts hit = look<kWrong>(error, from, b);
       if (!any(hit)) continue;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const std::size_t i = kLanes * b + lane;
@@ -112,10 +112,10 @@ class WatchList {
  private:
   static constexpr std::size_t kLanes = 4;
   struct Spheres {
-    Float4 x, y, z, reach, radius;
+    FourFloats x, y, z, reach, radius;
   };
   struct Facings {
-    Float4 x, y, z, sine, cosine, reach_aside;
+    FourFloats x, y, z, sine, cosine, reach_aside;
   };
   struct Dates {
     float travel, turn;
@@ -126,20 +126,20 @@ class WatchList {
 
   // The lanes to be found. Dates what has none.
   template <bool kWrong>
-  Int4 look(const ViewError& error, const Dates& from, std::size_t b) {
+  FourInts look(const ViewError& error, const Dates& from, std::size_t b) {
     const Spheres& s = spheres_[b];
-    const Float4 distance = error.distance(s.x, s.y, s.z);
-    const Int4 is_near = distance < reach_of(error, b);
-    const Float4 gap = magnitude(s.reach - distance);
+    const FourFloats distance = error.distance(s.x, s.y, s.z);
+    const FourInts is_near = distance < reach_of(error, b);
+    const FourFloats gap = magnitude(s.reach - distance);
     // Hardly any of what is not split is near, unless it is out of view.
     if (kWrong && !any(is_near)) {
-      date(from, b, distance, gap, Float4{} + kNever);
+      date(from, b, distance, gap, FourFloats{} + kNever);
       return is_near;
     }
-    const Float4 never = Float4{} + kNever;
-    const Float4 inside = error.inside(s.x, s.y, s.z) + s.radius;
-    const Int4 is_wrong = is_near & (inside >= 0);
-    const Int4 hit = kWrong ? is_wrong : ~is_wrong;
+    const FourFloats never = FourFloats{} + kNever;
+    const FourFloats inside = error.inside(s.x, s.y, s.z) + s.radius;
+    const FourInts is_wrong = is_near & (inside >= 0);
+    const FourInts hit = kWrong ? is_wrong : ~is_wrong;
     if (any(hit)) {
       due_[b] = kNow;
     } else if (kWrong) {  // either far or out of view
@@ -153,19 +153,19 @@ class WatchList {
   // None of four may change sides before the eye has come so much nearer or farther, or the planes
   // so much. A plane moves by what the eye travels, and by what it turns times the distance; each
   // of them may use up half.
-  void date(const Dates& from, std::size_t b, const Float4& distance, const Float4& gap,
-            const Float4& inside) {
+  void date(const Dates& from, std::size_t b, const FourFloats& distance, const FourFloats& gap,
+            const FourFloats& inside) {
     if (!facings_.empty()) return;  // what faces where changes sooner
     constexpr float kSafe = 0.999f, kFar = 1e30f;
-    const Float4 half = smaller(0.5f * inside, Float4{} + kFar);
-    const Float4 turn = half / (distance + half);  // 1 and more is never: all around
-    const Float4 travel = smaller(gap, half) - kRounding * distance;
-    const float least_turn = smallest(turn);
-    due_[b].travel = from.travel + kSafe * smallest(travel);
+    const FourFloats half = lesser(0.5f * inside, FourFloats{} + kFar);
+    const FourFloats turn = half / (distance + half);  // 1 and more is never: all around
+    const FourFloats travel = lesser(gap, half) - kRounding * distance;
+    const float least_turn = least(turn);
+    due_[b].travel = from.travel + kSafe * least(travel);
     due_[b].turn = least_turn < 1 ? from.turn + kSafe * least_turn : kNever;
   }
 
-  Float4 reach_of(const ViewError& error, std::size_t b) const {
+  FourFloats reach_of(const ViewError& error, std::size_t b) const {
     const Spheres& s = spheres_[b];
     if (facings_.empty()) return s.reach;
     const Facings& f = facings_[b];
