@@ -3,7 +3,7 @@
 #include "base/assert.h"
 #include "codec/decode_container.h"
 #include "runtime/decode_workers.h"
-#include "runtime/waiting_source.h"
+#include "stream/waiting_source.h"
 
 #include <algorithm>
 #include <map>

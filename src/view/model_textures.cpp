@@ -2,9 +2,8 @@
 
 #include "crease/http_source.h"
 #include "crease/import.h"
+#include "stream/waiting_source.h"
 
-#include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -12,37 +11,6 @@
 namespace crease {
 
 namespace {
-
-// Waits for an asynchronous source, as a limit lies over none but those.
-class PatientSource final : public ByteSource {
- public:
-  PatientSource(AsyncSourcePtr source, std::uint64_t size, Note& note)
-      : source_(std::move(source)), size_(size), note_(note) {}
-
-  std::string name() const override { return source_->name(); }
-  std::uint64_t size() const override { return size_; }
-  std::uint64_t bytes_read() const override { return source_->statistics().bytes_transferred; }
-
- private:
-  Status read_at(std::uint64_t offset, std::span<std::byte> into) const override {
-    const Ticket ticket = source_->request({offset, into.size()});
-    while (!note_.is_stopped()) {
-      source_->wait(std::chrono::milliseconds(50));
-      for (AsyncAnswer& answer : source_->poll()) {
-        if (answer.ticket != ticket) continue;
-        if (!answer.bytes.ok()) return answer.bytes.failure();
-        std::copy(answer.bytes->begin(), answer.bytes->end(), into.begin());
-        return Done{};
-      }
-    }
-    source_->cancel(ticket);
-    return fail(Error::Interrupted, "interrupted");
-  }
-
-  const AsyncSourcePtr source_;
-  const std::uint64_t size_;
-  Note& note_;
-};
 
 std::vector<std::string> find_beside(const ModelSource& model, const std::vector<Material>& names,
                                      std::vector<ImageFile>& images) {
@@ -57,7 +25,9 @@ Result<ModelTextures> load_textures(const ModelSource& model, const StreamLimit&
   note.say("loading textures");
   Result<AsyncSourcePtr> bytes = source_of(model, limit);
   if (!bytes.ok()) return bytes.failure();
-  const auto source = std::make_shared<const PatientSource>(*std::move(bytes), model.bytes, note);
+  const auto source = std::make_shared<const WaitingSource>(*std::move(bytes),
+                                                            [&note] { return note.is_stopped(); });
+  if (const Status begun = source->begin(); !begun.ok()) return begun.failure();
   const Result<BlockFile> file = BlockFile::open(source);
   if (!file.ok()) return file.failure();
   Result<std::vector<Material>> materials = file->read_materials();

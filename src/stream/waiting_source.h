@@ -1,4 +1,5 @@
-// An asynchronous source as one that waits.
+// An asynchronous source, of which nothing else is asked, as one that waits: for what lies over
+// asynchronous sources alone, as limits and tests do.
 #pragma once
 
 #include "crease/async_source.h"
@@ -15,7 +16,6 @@
 
 namespace crease {
 
-// An asynchronous source of which nothing else is asked, as one that waits.
 class WaitingSource : public ByteSource {
  public:
   // `stopped` is asked ten times a second; true ends a read with Interrupted.
@@ -24,6 +24,7 @@ class WaitingSource : public ByteSource {
 
   std::string name() const override { return source_->name(); }
   std::uint64_t size() const override { return source_->size().value_or(0); }
+  std::uint64_t bytes_read() const override { return source_->statistics().bytes_transferred; }
   // Until the size is known.
   Status begin() const { return read_at(0, {}); }
 
