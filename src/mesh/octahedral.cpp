@@ -60,12 +60,6 @@ OctahedralCoding::Point OctahedralCoding::folded(Point p) const {
   return {with_sign_of(m_ - std::abs(p.y), p.x), with_sign_of(m_ - std::abs(p.x), p.y)};
 }
 
-Vec3i OctahedralCoding::vector_of(Point p) const {
-  const std::int32_t z = m_ - std::abs(p.x) - std::abs(p.y);
-  if (z < 0) p = folded(p);
-  return {p.x, p.y, z};
-}
-
 // One step beyond the square's side is inside its other half.
 OctahedralCoding::Point OctahedralCoding::inside(Point p) const {
   if (std::abs(p.x) > m_) p = {with_sign_of(2 * m_ - std::abs(p.x), p.x), -p.y};
@@ -102,7 +96,7 @@ OctahedralCode OctahedralCoding::encode(const Vec3d& direction) const {
   for (std::int32_t dy = -1; dy <= 1; ++dy) {
     for (std::int32_t dx = -1; dx <= 1; ++dx) {
       const Point p = settled(inside({near.x + dx, near.y + dy}));
-      const Vec3i n = vector_of(p);
+      const Vec3i n = octahedral_vector(m_, p.x, p.y);
       const std::int64_t along = d.x * n.x + d.y * n.y + d.z * n.z;  // 47 bits: exact as a double
       const std::int64_t squared =
           std::int64_t(n.x) * n.x + std::int64_t(n.y) * n.y + std::int64_t(n.z) * n.z;

@@ -102,7 +102,6 @@ class OctahedralCoding {
  private:
   Point point_of(OctahedralCode code) const;
   OctahedralCode code_of(Point p) const;
-  Vec3i vector_of(Point p) const;
   Point folded(Point p) const;
   Point inside(Point p) const;
   Point settled(Point p) const;  // canonical
@@ -112,22 +111,25 @@ class OctahedralCoding {
   std::int32_t m_;
 };
 
+// The integer vector of a point of the square.
+inline Vec3i octahedral_vector(std::int32_t m, std::int32_t x, std::int32_t y) {
+  const std::int32_t size_x = std::abs(x), size_y = std::abs(y), z = m - size_x - size_y;
+  if (z >= 0) return {x, y, z};
+  return {x < 0 ? size_y - m : m - size_y, y < 0 ? size_x - m : m - size_x, z};
+}
+
 // decode() for those who keep no coding: max_component = 2 m.
 inline Vec3f octahedral_direction(std::uint32_t max_component, OctahedralCode code) {
   if (code == OctahedralCoding::kZero) return {};
   const auto m = static_cast<std::int32_t>(max_component / 2);
-  std::int32_t x = static_cast<std::int32_t>(code.u) - m, y = static_cast<std::int32_t>(code.v) - m;
-  const std::int32_t size_x = std::abs(x), size_y = std::abs(y), z = m - size_x - size_y;
-  if (z < 0) {  // folded
-    x = x < 0 ? size_y - m : m - size_y;
-    y = y < 0 ? size_x - m : m - size_x;
-  }
+  const Vec3i n = octahedral_vector(m, static_cast<std::int32_t>(code.u) - m,
+                                    static_cast<std::int32_t>(code.v) - m);
   using Pair = double __attribute__((vector_size(16)));
-  const double zd = z;
-  Pair xy{double(x), double(y)};
-  const double size = std::sqrt(xy[0] * xy[0] + xy[1] * xy[1] + zd * zd);  // of a whole number
+  const double z = n.z;
+  Pair xy{double(n.x), double(n.y)};
+  const double size = std::sqrt(xy[0] * xy[0] + xy[1] * xy[1] + z * z);  // of a whole number
   xy /= Pair{size, size};
-  return {static_cast<float>(xy[0]), static_cast<float>(xy[1]), static_cast<float>(zd / size)};
+  return {static_cast<float>(xy[0]), static_cast<float>(xy[1]), static_cast<float>(z / size)};
 }
 
 // The bits, 8 to 16, of the coarsest lattice that has each of these vectors of three exactly; none
