@@ -32,5 +32,21 @@ TEST_CASE("the golden model is read, and written to the byte") {
                    [](std::byte a, char b) { return static_cast<char>(a) == b; }));
 }
 
+// Else the fuzzer never gets behind what older blocks are refused by.
+TEST_CASE("the seeds of the file's fuzzer are files of now") {
+  const std::filesystem::path tests = std::filesystem::path(__FILE__).parent_path().parent_path();
+  std::size_t count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(tests.parent_path() / "fuzz" / "seeds" / "fuzz_file")) {
+    if (entry.path().extension() != ".crease") continue;  // what once broke something
+    CAPTURE(entry.path().filename().string());
+    ++count;
+    const Result<BlockFile> file = open_crease(entry.path());
+    REQUIRE_MESSAGE(file.ok(), (file.ok() ? "" : file.failure().message));
+    CHECK(validate_crease(*file).empty());
+  }
+  CHECK(count == 4);
+}
+
 }  // namespace
 }  // namespace crease
