@@ -70,6 +70,8 @@ struct Program {
   GLint key_light = -1, head_light = -1, up = -1, line_px = -1;
 };
 
+// Keep one as long as its context: NVIDIA's driver (580, seen) may draw the first picture of a
+// program that took a deleted one's place with zeros for some attributes.
 class ProgramCache {
  public:
   // Compiled on first use. Fails when the driver refuses.

@@ -17,6 +17,7 @@ namespace crease {
 TEST_CASE("a scene follows an adaptive mesh by its changes alone") {
   const Result<GlContext> gl = open_gl();
   REQUIRE(gl.ok());
+  ScenePainter painter(gl->limits());
   for (const Mesh& mesh : {smooth_sphere(24, 48), hard_cylinder(48, 12), hard_box(12)}) {
     const Decoded all = decoded(mesh);
     Result<MeshHierarchy> hierarchy = build_hierarchy(all.model.mesh, all.model.sequence, {});
@@ -31,8 +32,8 @@ TEST_CASE("a scene follows an adaptive mesh by its changes alone") {
       adaptive.update(view);
       uploaded += scene.update(adaptive.draw_list(), adaptive.changes());
       const GlScene anew(adaptive.draw_list(), {});
-      CHECK((picture(gl->limits(), scene, view.camera, all.box, i % 2 == 0) ==
-             picture(gl->limits(), anew, view.camera, all.box, i % 2 == 0)));
+      CHECK((painter.paint(scene, view.camera, all.box, i % 2 == 0) ==
+             painter.paint(anew, view.camera, all.box, i % 2 == 0)));
     }
     CHECK(uploaded > 0);
   }
@@ -41,6 +42,7 @@ TEST_CASE("a scene follows an adaptive mesh by its changes alone") {
 TEST_CASE("a scene follows a progressive mesh by its changes alone") {
   const Result<GlContext> gl = open_gl();
   REQUIRE(gl.ok());
+  ScenePainter painter(gl->limits());
   const Decoded all = decoded(hard_cylinder(48, 12));
   ProgressiveMesh levels(build_progressive_arrays(all.model.mesh, all.model.sequence));
   GlScene scene(levels.draw_list(), {});
@@ -50,8 +52,8 @@ TEST_CASE("a scene follows a progressive mesh by its changes alone") {
     const std::size_t uploaded = scene.update(levels.draw_list(), levels.changes());
     const GlScene anew(levels.draw_list(), {});
     const Camera camera = camera_at(share, 5);
-    CHECK((picture(gl->limits(), scene, camera, all.box, false) ==
-           picture(gl->limits(), anew, camera, all.box, false)));
+    CHECK((painter.paint(scene, camera, all.box, false) ==
+           painter.paint(anew, camera, all.box, false)));
     if (share == 0.98) CHECK(uploaded < whole / 5);
   }
 }

@@ -22,7 +22,7 @@ constexpr double kMost = 0.75;  // measured: 0.11 to 0.58
 // How much of the picture a frame changes at the most: components of 255, mean of all pixels. Each
 // is compared with what the mesh of the frame before shows to the same camera, so that the camera's
 // own motion does not count.
-double largest_jump(const GlLimits& limits, const std::shared_ptr<const MeshHierarchy>& hierarchy,
+double largest_jump(ScenePainter& painter, const std::shared_ptr<const MeshHierarchy>& hierarchy,
                     const Box& box, const std::function<ViewParameters(double)>& path,
                     double geomorph_seconds) {
   AdaptiveMesh mesh(hierarchy);
@@ -33,7 +33,7 @@ double largest_jump(const GlLimits& limits, const std::shared_ptr<const MeshHier
   for (int f = 0; f <= kFrames; ++f) {
     const ViewParameters view = path(double(f) / kFrames);
     const auto shown = [&] {
-      return picture(limits, scene, view.camera, box, false, Coloring::Shaded);
+      return painter.paint(scene, view.camera, box, false, Coloring::Shaded);
     };
     const std::vector<std::uint8_t> before = shown();
     mesh.update(view, kFrameSeconds);
@@ -67,14 +67,15 @@ ViewParameters slow_zoom(double share) {
 TEST_CASE("geomorphs keep pictures from jumping") {
   const Result<GlContext> gl = open_gl();
   REQUIRE(gl.ok());
+  ScenePainter painter(gl->limits());
   for (const Mesh& mesh : {smooth_sphere(24, 48), hard_cylinder(48, 12)}) {
     const Decoded all = decoded(mesh);
     Result<MeshHierarchy> built = build_hierarchy(all.model.mesh, all.model.sequence, {});
     REQUIRE(built.ok());
     const auto hierarchy = std::make_shared<const MeshHierarchy>(*std::move(built));
     for (const auto& path : {slow_threshold, slow_zoom}) {
-      const double with = largest_jump(gl->limits(), hierarchy, all.box, path, 0.25);
-      const double without = largest_jump(gl->limits(), hierarchy, all.box, path, 0);
+      const double with = largest_jump(painter, hierarchy, all.box, path, 0.25);
+      const double without = largest_jump(painter, hierarchy, all.box, path, 0);
       CAPTURE(with);
       CAPTURE(without);
       CHECK(without > 0.5);

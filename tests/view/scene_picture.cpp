@@ -9,18 +9,16 @@
 
 namespace crease {
 
-std::vector<std::uint8_t> picture(const GlLimits& limits, const GlScene& scene,
-                                  const Camera& camera, const Box& box, bool wireframe,
-                                  Coloring coloring) {
-  Result<GlTarget> target = GlTarget::make(limits, kPicturePx, kPicturePx);
+std::vector<std::uint8_t> ScenePainter::paint(const GlScene& scene, const Camera& camera,
+                                              const Box& box, bool wireframe, Coloring coloring) {
+  Result<GlTarget> target = GlTarget::make(limits_, kPicturePx, kPicturePx);
   REQUIRE(target.ok());
-  ProgramCache programs;
   DrawPass pass{.view = make_view(camera, 1), .up = camera.up};
   pass.depth = depth_range(pass.view, box.low, box.high);
   target->begin(kPicturePx, kPicturePx);
   const DrawStyle style{
-      .coloring = coloring, .wireframe = wireframe, .reversed_depth = limits.can_reverse_depth};
-  REQUIRE(scene.draw(programs, pass, style).ok());
+      .coloring = coloring, .wireframe = wireframe, .reversed_depth = limits_.can_reverse_depth};
+  REQUIRE(scene.draw(programs_, pass, style).ok());
   std::vector<std::uint8_t> rgba(4 * kPicturePx * kPicturePx);
   target->read(kPicturePx, kPicturePx, rgba);
   return rgba;

@@ -13,10 +13,18 @@ namespace crease {
 
 inline constexpr int kPicturePx = 120;  // wide and high
 
-// RGBA, bottom row first.
-std::vector<std::uint8_t> picture(const GlLimits& limits, const GlScene& scene,
-                                  const Camera& camera, const Box& box, bool wireframe,
-                                  Coloring coloring = Coloring::Kind);
+// One a context: it keeps its programs, see ProgramCache.
+class ScenePainter {
+ public:
+  explicit ScenePainter(const GlLimits& limits) : limits_(limits) {}
+  // RGBA, bottom row first.
+  std::vector<std::uint8_t> paint(const GlScene& scene, const Camera& camera, const Box& box,
+                                  bool wireframe, Coloring coloring = Coloring::Kind);
+
+ private:
+  GlLimits limits_;
+  ProgramCache programs_;
+};
 
 // That looks at the middle of the unit box.
 Camera camera_at(double angle, double distance);

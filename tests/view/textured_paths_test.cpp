@@ -56,8 +56,8 @@ struct Painted {
   Decoded file = decoded(mesh);  // without images, as a stream is at first
   GlMaterialsPtr materials = std::make_shared<GlMaterials>();
 
-  std::vector<std::uint8_t> picture_of(const GlLimits& limits, const GlScene& scene) const {
-    return picture(limits, scene, camera_above(), file.box, false, Coloring::Shaded);
+  std::vector<std::uint8_t> picture_of(ScenePainter& painter, const GlScene& scene) const {
+    return painter.paint(scene, camera_above(), file.box, false, Coloring::Shaded);
   }
   void paint() const {
     materials->fill(mesh.materials, decode_textures(mesh.materials, mesh.images, {}));
@@ -65,11 +65,11 @@ struct Painted {
 };
 
 // Painted, and as if it had been uploaded anew.
-void check_kept_up(const GlLimits& limits, const Painted& painted, const GlScene& scene,
+void check_kept_up(ScenePainter& painter, const Painted& painted, const GlScene& scene,
                    const DrawList& list) {
-  const std::vector<std::uint8_t> picture = painted.picture_of(limits, scene);
+  const std::vector<std::uint8_t> picture = painted.picture_of(painter, scene);
   check_painted(picture);
-  CHECK((picture == painted.picture_of(limits, GlScene(list, {}, painted.materials))));
+  CHECK((picture == painted.picture_of(painter, GlScene(list, {}, painted.materials))));
 }
 
 bool is_colorless(const std::vector<std::uint8_t>& rgba) {
@@ -130,24 +130,26 @@ class StreamPainter {
 TEST_CASE("a level is painted, whichever it is, from when its textures are there") {
   const Result<GlContext> gl = open_gl();
   REQUIRE(gl.ok());
+  ScenePainter painter(gl->limits());
   const Painted painted;
   ProgressiveMesh levels(
       build_progressive_arrays(painted.file.model.mesh, painted.file.model.sequence));
   GlScene scene(levels.draw_list(), {}, painted.materials);
-  CHECK(is_colorless(painted.picture_of(gl->limits(), scene)));
+  CHECK(is_colorless(painted.picture_of(painter, scene)));
   painted.paint();
-  check_painted(painted.picture_of(gl->limits(), scene));
+  check_painted(painted.picture_of(painter, scene));
   for (const double share : {0.3, 0.1, 0.5, 1.0}) {
     CAPTURE(share);
     levels.set_triangle_count(std::size_t(share * double(levels.full_triangle_count())));
     scene.update(levels.draw_list(), levels.changes());
-    check_kept_up(gl->limits(), painted, scene, levels.draw_list());
+    check_kept_up(painter, painted, scene, levels.draw_list());
   }
 }
 
 TEST_CASE("a cut by vertex is painted, and follows by its changes") {
   const Result<GlContext> gl = open_gl();
   REQUIRE(gl.ok());
+  ScenePainter painter(gl->limits());
   const Painted painted;
   Result<MeshHierarchy> hierarchy =
       build_hierarchy(painted.file.model.mesh, painted.file.model.sequence, {});
@@ -160,7 +162,7 @@ TEST_CASE("a cut by vertex is painted, and follows by its changes") {
     CAPTURE(error);
     mesh.set_error(error);
     scene.update(mesh.draw_list(), mesh.changes());
-    check_kept_up(gl->limits(), painted, scene, mesh.draw_list());
+    check_kept_up(painter, painted, scene, mesh.draw_list());
   }
 }
 
