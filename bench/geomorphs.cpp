@@ -10,12 +10,12 @@
 #include "crease/simplify.h"
 #include "flight.h"
 #include "models.h"
+#include "samples.h"
 
 #include <CLI/CLI.hpp>
 
 #include <ctime>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -49,14 +49,6 @@ std::size_t upload_bytes(const DrawList& list, const DrawChanges& c) {
   return bytes + 48 * (elements(c.sn_colors) + elements(c.fn_colors) + elements(c.nsn_colors));
 }
 
-struct Samples {
-  std::vector<double> values;
-  double of(double share) {
-    std::sort(values.begin(), values.end());
-    return values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
-  }
-};
-
 void fly(const std::string& name, const std::shared_ptr<const MeshHierarchy>& hierarchy,
          const Box& box, bool is_city, const Options& options, double seconds) {
   AdaptiveMesh mesh(hierarchy);
@@ -71,10 +63,10 @@ void fly(const std::string& name, const std::shared_ptr<const MeshHierarchy>& hi
     view.camera.pixels = options.pixels;
     const double began = processor_ms();
     const UpdateReport report = mesh.update(view, 1 / options.frames_per_second);
-    ms.values.push_back(processor_ms() - began);
-    kilobytes.values.push_back(double(upload_bytes(mesh.draw_list(), mesh.changes())) / 1e3);
-    triangles.values.push_back(double(mesh.triangle_count()));
-    moving.values.push_back(double(report.moving));
+    ms.add(processor_ms() - began);
+    kilobytes.add(double(upload_bytes(mesh.draw_list(), mesh.changes())) / 1e3);
+    triangles.add(double(mesh.triangle_count()));
+    moving.add(double(report.moving));
   }
   std::printf("| %s | %g | %.1f | %.1f | %.1f | %.0f | %.0f | %.2f | %.2f |\n", name.c_str(),
               seconds, kilobytes.of(0.5), kilobytes.of(0.95), kilobytes.of(1), triangles.of(0.5),

@@ -20,6 +20,11 @@ GlArray upload(std::span<const std::byte> bytes, std::size_t texel_bytes, GLenum
 
 namespace {
 
+// Ranges that are nearer than this are sent in one call. On a GPU (docs/rendering.md) that halves
+// to quarters the time of geomorphs' many small ranges; gaps of 1 KiB send 4 times the bytes for
+// little.
+constexpr std::size_t kGapBytes = 128;
+
 // Half as much again, so that a mesh that grows frame by frame is not uploaded whole every time.
 void make_room(GlArray& array, std::size_t bytes, std::size_t texel_bytes, GLenum format) {
   array.bytes = bytes + bytes / 2 / texel_bytes * texel_bytes;
@@ -43,15 +48,23 @@ std::size_t refresh(GlArray& array, std::span<const std::byte> bytes, std::size_
     return bytes.size();
   }
   glBindBuffer(GL_TEXTURE_BUFFER, array.buffer.id());
-  std::size_t uploaded = 0;
+  std::size_t uploaded = 0, begin = 0, end = 0;
+  const auto send = [&] {
+    if (begin == end) return;
+    glBufferSubData(GL_TEXTURE_BUFFER, GLintptr(begin), GLsizeiptr(end - begin),
+                    bytes.data() + begin);
+    uploaded += end - begin;
+  };
   for (const Range& range : changes) {
     const std::size_t first = range.first * per_element * texel_bytes;
     if (first >= bytes.size()) break;
-    const std::size_t size =
-        std::min(range.count * per_element * texel_bytes, bytes.size() - first);
-    glBufferSubData(GL_TEXTURE_BUFFER, GLintptr(first), GLsizeiptr(size), bytes.data() + first);
-    uploaded += size;
+    if (first > end + kGapBytes) {
+      send();
+      begin = first;
+    }
+    end = std::max(end, std::min(first + range.count * per_element * texel_bytes, bytes.size()));
   }
+  send();
   return uploaded;
 }
 

@@ -80,7 +80,8 @@ GlArray upload(std::span<const T> values, GLenum format) {
 }
 
 // Makes a copy that was right but for `changes` right again: ranges of elements of `per_element`
-// texels each. What does not fit is uploaded whole, with room to grow. Returns the bytes uploaded.
+// texels each, in ascending order; and some between them. What does not fit is uploaded whole, with
+// room to grow. Returns the bytes uploaded.
 std::size_t refresh(GlArray& array, std::span<const std::byte> bytes, std::size_t texel_bytes,
                     GLenum format, std::span<const Range> changes, std::size_t per_element);
 

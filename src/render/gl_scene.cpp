@@ -163,11 +163,9 @@ ProgramKey GlScene::key_for(const Part& part, TriangleKind kind, const DrawStyle
   } else if (style.coloring == Coloring::Error && !style.surface && errors_) {
     key.albedo = AlbedoSource::Errors;
   }
-  // 2 M FN triangles on llvmpipe, seconds of both cores at 100 x 100 and at 1080 x 1080 pixels:
-  //   pulled, the normal fetched by the vertex shader and passed on flat      1.12   3.07
-  //   indexed, the normal fetched for each fragment by gl_PrimitiveID         1.17   3.35
-  //   pulled, the normal fetched for each fragment                            1.20   3.64
-  key.pulled = kind != TriangleKind::SN || key.wireframe || key.textures ||
+  // FN triangles are indexed, and each fragment fetches its triangle's normal: vertices are worked
+  // out once and not once a triangle (bench_flat_normals; Berlin on a GPU 6.3 to 2.1 ms a frame).
+  key.pulled = kind == TriangleKind::NSN || key.wireframe || key.textures ||
                key.albedo == AlbedoSource::Corners;
   return key;
 }

@@ -22,8 +22,10 @@ layout(location = 0) in vec3 a_position;
 #endif
 
 #if NORMALS == TRIANGLE
+#if PULLED
 flat out vec3 v_normal;
 uniform samplerBuffer normals;
+#endif
 #else
 centroid out vec3 v_normal;
 #if PULLED
@@ -74,7 +76,7 @@ void main() {
   v_normal = texelFetch(normals, vertex).xyz;
 #elif NORMALS == VERTEX
   v_normal = a_normal;
-#elif NORMALS == TRIANGLE
+#elif NORMALS == TRIANGLE && PULLED
   v_normal = texelFetch(normals, gl_VertexID / 3).xyz;
 #elif NORMALS == CORNER
   v_normal = texelFetch(normals, gl_VertexID).xyz;
@@ -116,10 +118,17 @@ out vec4 color;
 
 uniform vec3 key_light, head_light, up;  // unit vectors towards
 
-#if NORMALS == TRIANGLE
+// Without pulling the triangle's own values are fetched here, by the number that it has in its part.
+#define FETCHES_NORMAL (NORMALS == TRIANGLE && !PULLED)
+#if FETCHES_NORMAL
+uniform samplerBuffer normals;
+#elif NORMALS == TRIANGLE
 flat in vec3 v_normal;
 #else
 centroid in vec3 v_normal;
+#endif
+#if !PULLED
+uniform int first_triangle;
 #endif
 
 #if ALBEDO == UNIFORM
@@ -135,7 +144,6 @@ flat in vec3 v_material;
 #elif MATERIALS
 uniform usamplerBuffer materials;
 uniform samplerBuffer material_colors;
-uniform int first_triangle;
 #endif
 
 #if TEXTURES
@@ -194,7 +202,11 @@ vec3 surface_color() {
 }
 
 void main() {
+#if FETCHES_NORMAL
+  vec3 n = normalize(texelFetch(normals, first_triangle + gl_PrimitiveID).xyz);
+#else
   vec3 n = normalize(v_normal);
+#endif
   // The normal of the side that is seen. Told by the triangle's plane and not by the normal itself,
   // which may lean away near a silhouette and must then not be turned; and not by gl_FrontFacing,
   // as files have triangles that run against their own normals.
