@@ -67,7 +67,7 @@ Status fly(const std::string& name, const std::shared_ptr<const MeshHierarchy>& 
   look(0);
   mesh.update(view);
   mesh.set_geomorph_seconds(geomorph_seconds);
-  GlScene scene(mesh.draw_list(), {});
+  GlScene scene(mesh.draw_list(), {}, nullptr, GL_DYNAMIC_DRAW);
   Samples triangles, update, kilobytes, upload, draw, whole;
   for (int frame = 1; frame < options.frames; ++frame) {
     look(frame);

@@ -1,5 +1,7 @@
 #include "render/gl_context.h"
 
+#include "render/gl_debug.h"
+
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -81,6 +83,8 @@ EGLContext try_open(EGLDisplay display, std::string& why) {
                             3,
                             EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR,
                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR,
+                            EGL_CONTEXT_FLAGS_KHR,
+                            wants_gl_debug() ? EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR : 0,
                             EGL_NONE};
   const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, version);
   if (context == EGL_NO_CONTEXT) {
@@ -165,6 +169,7 @@ Result<GlContext> open_gl() {
                     "); Mesa's software renderer is in the packages libegl-mesa0 and "
                     "libgl1-mesa-dri");
   }
+  report_gl_messages();
   Result<GlLimits> limits = read_gl_limits();
   if (!limits.ok()) return limits.failure();
   gl.limits_ = *std::move(limits);

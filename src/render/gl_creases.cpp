@@ -125,7 +125,7 @@ class LinePainter {
 
 GlArray upload_lines(std::span<const Line3f> lines) {
   static_assert(sizeof(Line3f) == 2 * sizeof(Vec3f));
-  return upload(std::as_bytes(lines), sizeof(Vec3f), GL_RGB32F);
+  return upload_bytes(std::as_bytes(lines), sizeof(Vec3f), GL_RGB32F);
 }
 
 Range all_lines(const GlArray& ends) {

@@ -4,14 +4,15 @@
 
 namespace crease {
 
-GlArray upload(std::span<const std::byte> bytes, std::size_t texel_bytes, GLenum format) {
+GlArray upload_bytes(std::span<const std::byte> bytes, std::size_t texel_bytes, GLenum format,
+                     GLenum usage) {
   GlArray array;
   if (bytes.empty()) return array;
   array.count = bytes.size() / texel_bytes;
   array.bytes = bytes.size();
   array.buffer = GlBuffer::make();
   glBindBuffer(GL_TEXTURE_BUFFER, array.buffer.id());
-  glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(bytes.size()), bytes.data(), GL_STATIC_DRAW);
+  glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(bytes.size()), bytes.data(), usage);
   array.texels = GlTexture::make();
   glBindTexture(GL_TEXTURE_BUFFER, array.texels.id());
   glTexBuffer(GL_TEXTURE_BUFFER, format, array.buffer.id());

@@ -71,12 +71,14 @@ struct GlArray {
   explicit operator bool() const { return count != 0; }
 };
 
-// `format` is the texel: GL_R32UI, GL_RGB32F, ...; `bytes` a whole number of texels.
-GlArray upload(std::span<const std::byte> bytes, std::size_t texel_bytes, GLenum format);
+// `format` is the texel: GL_R32UI, GL_RGB32F, ...; `bytes` a whole number of texels. `usage`:
+// GL_DYNAMIC_DRAW for what is to be refreshed.
+GlArray upload_bytes(std::span<const std::byte> bytes, std::size_t texel_bytes, GLenum format,
+                     GLenum usage = GL_STATIC_DRAW);
 
 template <typename T>
-GlArray upload(std::span<const T> values, GLenum format) {
-  return upload(std::as_bytes(values), sizeof(T), format);
+GlArray upload(std::span<const T> values, GLenum format, GLenum usage = GL_STATIC_DRAW) {
+  return upload_bytes(std::as_bytes(values), sizeof(T), format, usage);
 }
 
 // Makes a copy that was right but for `changes` right again: ranges of elements of `per_element`

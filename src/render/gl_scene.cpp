@@ -47,29 +47,30 @@ void add_attribute(GLuint location, const GlArray& array, int components) {
 
 }  // namespace
 
-GlScene::GlScene(const DrawList& list, std::span<const float> errors, GlMaterialsPtr materials)
+GlScene::GlScene(const DrawList& list, std::span<const float> errors, GlMaterialsPtr materials,
+                 GLenum usage)
     : origin_(list.origin),
       box_(box_of_corners(list)),
-      positions_(upload(list.positions, GL_RGB32F)),
-      vertex_normals_(upload(list.vertex_normals, GL_RGB32F)),
-      errors_(upload(errors, GL_R32F)),
+      positions_(upload(list.positions, GL_RGB32F, usage)),
+      vertex_normals_(upload(list.vertex_normals, GL_RGB32F, usage)),
+      errors_(upload(errors, GL_R32F, usage)),
       materials_(materials ? std::move(materials) : std::make_shared<GlMaterials>()),
       no_attributes_(GlVertexArray::make()),
-      sn_(upload_part(list.sn)),
-      fn_(upload_part(list.fn)),
-      nsn_(upload_part(list.nsn)) {
+      sn_(upload_part(list.sn, usage)),
+      fn_(upload_part(list.fn, usage)),
+      nsn_(upload_part(list.nsn, usage)) {
   if (!materials_->is_filled()) materials_->fill(list.materials);
   connect_all();
 }
 
-GlScene::Part GlScene::upload_part(const DrawPart& list) {
+GlScene::Part GlScene::upload_part(const DrawPart& list, GLenum usage) {
   Part part;
   part.triangle_count = list.triangle_count();
-  part.indices = upload(list.indices, GL_R32UI);
-  part.normals = upload(list.normals, GL_RGB32F);
-  part.materials = upload(list.materials, GL_R32UI);
-  part.colors = upload(list.colors, GL_RGBA32F);
-  part.texcoords = upload(list.texcoords, GL_RG32F);
+  part.indices = upload(list.indices, GL_R32UI, usage);
+  part.normals = upload(list.normals, GL_RGB32F, usage);
+  part.materials = upload(list.materials, GL_R32UI, usage);
+  part.colors = upload(list.colors, GL_RGBA32F, usage);
+  part.texcoords = upload(list.texcoords, GL_RG32F, usage);
   return part;
 }
 

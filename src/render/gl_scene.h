@@ -21,8 +21,9 @@ namespace crease {
 class GlScene {
  public:
   // `errors` has one value per position, or none. `materials`: those of the list, which are filled
-  // with its base colours if nobody has done so.
-  GlScene(const DrawList& list, std::span<const float> errors, GlMaterialsPtr materials = nullptr);
+  // with its base colours if nobody has done so. `usage`: GL_DYNAMIC_DRAW for who calls update().
+  GlScene(const DrawList& list, std::span<const float> errors, GlMaterialsPtr materials = nullptr,
+          GLenum usage = GL_STATIC_DRAW);
 
   // `list` is the one of the constructor after `changes`. Returns the bytes uploaded.
   std::size_t update(const DrawList& list, const DrawChanges& changes);
@@ -43,7 +44,7 @@ class GlScene {
     GlVertexArray indexed;  // positions, SN normals and errors as attributes
     std::size_t triangle_count = 0;
   };
-  static Part upload_part(const DrawPart& part);
+  static Part upload_part(const DrawPart& part, GLenum usage);
   void connect(Part& part, TriangleKind kind) const;
   void connect_all();
   ProgramKey key_for(const Part& part, TriangleKind kind, const DrawStyle& style) const;

@@ -78,7 +78,10 @@ std::string in_words(std::size_t shown, std::size_t full) {
 class ShownWhole : public ShownMesh {
  public:
   ShownWhole(const DrawList& list, const Box& box, const GlMaterialsPtr& materials)
-      : scene_(list, {}, materials), box_(box), materials_(materials), origin_(list.origin) {}
+      : scene_(list, {}, materials, GL_DYNAMIC_DRAW),
+        box_(box),
+        materials_(materials),
+        origin_(list.origin) {}
 
   Vec3d origin() const override { return origin_; }
   Box box() const override { return box_; }

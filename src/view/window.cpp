@@ -1,5 +1,7 @@
 #include "view/window.h"
 
+#include "render/gl_debug.h"
+
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -25,6 +27,7 @@ Result<std::unique_ptr<ViewerWindow>> ViewerWindow::open(const std::string& titl
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, wants_gl_debug() ? GLFW_TRUE : GLFW_FALSE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);  // the picture is drawn elsewhere
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   GLFWwindow* made = glfwCreateWindow(width_px, height_px, title.c_str(), nullptr, nullptr);
@@ -33,6 +36,7 @@ Result<std::unique_ptr<ViewerWindow>> ViewerWindow::open(const std::string& titl
   }
   std::unique_ptr<ViewerWindow> window(new ViewerWindow(made));
   glfwMakeContextCurrent(made);
+  report_gl_messages();
   glfwSwapInterval(1);
   window->listen();
   return window;

@@ -74,6 +74,7 @@ class Case(unittest.TestCase):
         done = run([BINARY, *map(str, arguments)])
         self.assertEqual(done.returncode, exit_status,
                          f"crease {' '.join(map(str, arguments))}\n{done.stdout}{done.stderr}")
+        self.assertNotIn("OpenGL: ", done.stderr)  # with CREASE_GL_DEBUG
         return done
 
     def json(self, *arguments, exit_status=0):

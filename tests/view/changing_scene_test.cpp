@@ -23,7 +23,7 @@ TEST_CASE("a scene follows an adaptive mesh by its changes alone") {
     Result<MeshHierarchy> hierarchy = build_hierarchy(all.model.mesh, all.model.sequence, {});
     REQUIRE(hierarchy.ok());
     AdaptiveMesh adaptive(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
-    GlScene scene(adaptive.draw_list(), {});
+    GlScene scene(adaptive.draw_list(), {}, nullptr, GL_DYNAMIC_DRAW);
     std::size_t uploaded = 0;
     for (int i = 0; i < 12; ++i) {
       ViewParameters view;
@@ -45,7 +45,7 @@ TEST_CASE("a scene follows a progressive mesh by its changes alone") {
   ScenePainter painter(gl->limits());
   const Decoded all = decoded(hard_cylinder(48, 12));
   ProgressiveMesh levels(build_progressive_arrays(all.model.mesh, all.model.sequence));
-  GlScene scene(levels.draw_list(), {});
+  GlScene scene(levels.draw_list(), {}, nullptr, GL_DYNAMIC_DRAW);
   const std::size_t whole = scene.bytes();
   for (const double share : {0.9, 0.1, 0.5, 0.02, 1.0, 0.98}) {
     levels.set_triangle_count(std::size_t(share * double(levels.full_triangle_count())));

@@ -28,7 +28,7 @@ double largest_jump(ScenePainter& painter, const std::shared_ptr<const MeshHiera
   AdaptiveMesh mesh(hierarchy);
   mesh.update(path(0));
   mesh.set_geomorph_seconds(geomorph_seconds);
-  GlScene scene(mesh.draw_list(), {});
+  GlScene scene(mesh.draw_list(), {}, nullptr, GL_DYNAMIC_DRAW);
   double largest = 0;
   for (int f = 0; f <= kFrames; ++f) {
     const ViewParameters view = path(double(f) / kFrames);

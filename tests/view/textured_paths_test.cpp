@@ -134,7 +134,7 @@ TEST_CASE("a level is painted, whichever it is, from when its textures are there
   const Painted painted;
   ProgressiveMesh levels(
       build_progressive_arrays(painted.file.model.mesh, painted.file.model.sequence));
-  GlScene scene(levels.draw_list(), {}, painted.materials);
+  GlScene scene(levels.draw_list(), {}, painted.materials, GL_DYNAMIC_DRAW);
   CHECK(is_colorless(painted.picture_of(painter, scene)));
   painted.paint();
   check_painted(painted.picture_of(painter, scene));
@@ -157,7 +157,7 @@ TEST_CASE("a cut by vertex is painted, and follows by its changes") {
   AdaptiveMesh mesh(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
   painted.paint();
   mesh.set_error(-1);
-  GlScene scene(mesh.draw_list(), {}, painted.materials);
+  GlScene scene(mesh.draw_list(), {}, painted.materials, GL_DYNAMIC_DRAW);
   for (const float error : {-1.0f, 0.0002f, 0.001f, 0.0f, -1.0f}) {
     CAPTURE(error);
     mesh.set_error(error);

@@ -121,6 +121,7 @@ class Window(tool.Case):
         return json.loads(out)
 
     def check_status(self, exit_status, out, err):
+        self.assertNotIn("OpenGL: ", err)  # with CREASE_GL_DEBUG
         if tool.LEAK_CHECK_FAILED in err:
             self.assertNotIn("ERROR: ", err)  # of the other checkers
         else:
