@@ -34,7 +34,7 @@ float raised(float base, double own) {
 std::vector<double> PatchSimplifier::initial_costs() {
   std::vector<double> costs;
   costs.reserve(pairs_.size());
-  for (const auto& [a, b] : pairs_) costs.push_back(place(a, b).cost);
+  for (const auto& [a, b] : pairs_) costs.push_back(place(a, b, HUGE_VAL).cost);
   return costs;
 }
 
@@ -99,9 +99,10 @@ void PatchSimplifier::release(Index triangle) {
 void PatchSimplifier::order_pairs() {
   order_.clear();
   next_in_order_ = 0;
+  const double limit = steering_.cost_limit;
   for (Index i = 0; i < pairs_.size(); ++i) {
-    const double cost = place(pairs_[i].first, pairs_[i].second).cost;
-    if (!(cost <= steering_.cost_limit)) continue;
+    const double cost = place(pairs_[i].first, pairs_[i].second, limit).cost;
+    if (!(cost <= limit)) continue;
     order_.push_back({static_cast<float>(cost), i});
   }
   sort_by_cost(order_, order_scratch_);
@@ -150,7 +151,7 @@ PatchResult PatchSimplifier::run() {
     const float next = next_cost();
 
     Quadric cost_if_kept[2];
-    Placed placed = place(a, b, cost_if_kept);
+    Placed placed = place(a, b, steering_.cost_limit, cost_if_kept);
     const double cost = placed.cost;
     if (!(cost <= steering_.cost_limit)) continue;
     if (static_cast<float>(cost) > entry.cost && static_cast<float>(cost) > next) {

@@ -206,7 +206,7 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
   }
 }
 
-CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
+CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, double bound,
                                                            Quadric* cost_if_kept) {
   const Vec3d &pa = positions_[a], &pb = positions_[b];
   const Vec3d along = pb - pa;
@@ -257,7 +257,7 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b,
   x = rounded(x);
   const double cost_x = sum.at(x);
   const double most = steering_.leaves_ends * share * best.cost - noise;
-  if (cost_x < most) {  // or nothing is cheap enough
+  if (cost_x < most && cost_x <= bound) {  // or nothing is cheap enough
     const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
     if (between.cost < most) best = {between.cost, between.position};
     if (cost_x < steering_.leaves_pair * share * best.cost - noise) best = {cost_x, x};

@@ -129,7 +129,8 @@ class PatchSimplifier {
   // pair_cost.cpp
   // `cost_if_kept`: when given, the cost as a function of the place, for keeping a's or b's values,
   // without what flat triangles cost: make_legal() knows that better.
-  Placed place(Index a, Index b, Quadric* cost_if_kept = nullptr);
+  // `bound`: a cost above it need not be exact.
+  Placed place(Index a, Index b, double bound, Quadric* cost_if_kept = nullptr);
   bool meet(Index a, Index b) const;
   void join_wedges(std::size_t layer, Index a, Index b, std::vector<Joined>& joined);
   void add_attribute_costs(Index a, Index b, Quadric& sum);
