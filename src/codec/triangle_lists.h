@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,6 +20,24 @@ class TriangleLists {
   }
   void add_vertex() { lists_.push_back({}); }
   void resize(std::size_t vertices) { lists_.resize(vertices); }
+  // Every triangle at each of its corners, in order.
+  void fill(std::size_t vertices, std::span<const std::array<std::uint32_t, 3>> triangles) {
+    lists_.assign(vertices, {});
+    for (const auto& corners : triangles) {
+      for (const std::uint32_t v : corners) ++lists_[v].room;
+    }
+    std::size_t first = 0;
+    for (List& list : lists_) {
+      list.first = first;
+      first += list.room;
+    }
+    triangles_.resize(first);
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      for (const std::uint32_t v : triangles[t]) {
+        triangles_[lists_[v].first + lists_[v].count++] = t;
+      }
+    }
+  }
 
   void add(std::uint32_t vertex, std::uint32_t triangle) {
     List& list = lists_[vertex];
@@ -37,6 +57,12 @@ class TriangleLists {
   void reorder(std::uint32_t vertex, std::span<const std::uint32_t> order) {
     std::copy(order.begin(), order.end(),
               triangles_.begin() + static_cast<std::ptrdiff_t>(lists_[vertex].first));
+  }
+  void remove(std::uint32_t vertex, std::uint32_t triangle) {
+    List& list = lists_[vertex];
+    std::uint32_t* const first = triangles_.data() + list.first;
+    list.count =
+        static_cast<std::uint32_t>(std::remove(first, first + list.count, triangle) - first);
   }
   void clear(std::uint32_t vertex) { lists_[vertex].count = 0; }
 
