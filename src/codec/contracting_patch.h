@@ -15,7 +15,7 @@ namespace crease::codec {
 class ContractingPatch {
  public:
   explicit ContractingPatch(const PatchMesh& fine) : corners_(fine.triangles) {
-    around_.fill(fine.positions.size(), corners_);
+    around_.fill(fine.positions.size(), corners_, 0);
   }
 
   const Corners& corners(std::uint32_t t) const { return corners_[t]; }

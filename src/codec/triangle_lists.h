@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -20,9 +21,10 @@ class TriangleLists {
   }
   void add_vertex() { lists_.push_back({}); }
   void resize(std::size_t vertices) { lists_.resize(vertices); }
-  // Every triangle at each of its corners, in order.
-  void fill(std::size_t vertices, std::span<const std::array<std::uint32_t, 3>> triangles) {
-    lists_.assign(vertices, {});
+  // Every triangle at each of its corners, in order, with room for some more.
+  void fill(std::size_t vertices, std::span<const std::array<std::uint32_t, 3>> triangles,
+            std::uint32_t spare) {
+    lists_.assign(vertices, {0, 0, spare});
     for (const auto& corners : triangles) {
       for (const std::uint32_t v : corners) ++lists_[v].room;
     }
@@ -46,12 +48,7 @@ class TriangleLists {
   }
   // Before the one that is there now at `place`, or at the end.
   void insert(std::uint32_t vertex, std::size_t place, std::uint32_t triangle) {
-    add(vertex, triangle);
-    const List& list = lists_[vertex];
-    const auto first = triangles_.begin() + static_cast<std::ptrdiff_t>(list.first);
-    const auto end = first + static_cast<std::ptrdiff_t>(list.count);
-    std::copy_backward(first + static_cast<std::ptrdiff_t>(place), end - 1, end);
-    first[static_cast<std::ptrdiff_t>(place)] = triangle;
+    *replace(vertex, place, place, 1) = triangle;
   }
   // The same ones in another order.
   void reorder(std::uint32_t vertex, std::span<const std::uint32_t> order) {
@@ -63,6 +60,17 @@ class TriangleLists {
     std::uint32_t* const first = triangles_.data() + list.first;
     list.count =
         static_cast<std::uint32_t>(std::remove(first, first + list.count, triangle) - first);
+  }
+  // Those from `first` to `last` make room for `count` others, which the caller writes.
+  std::uint32_t* replace(std::uint32_t vertex, std::size_t first, std::size_t last,
+                         std::size_t count) {
+    List& list = lists_[vertex];
+    const std::size_t after = list.count - last, size = first + count + after;
+    while (list.room < size) move(list);
+    std::uint32_t* const begin = triangles_.data() + list.first;
+    std::memmove(begin + first + count, begin + last, after * sizeof(std::uint32_t));
+    list.count = static_cast<std::uint32_t>(size);
+    return begin + first;
   }
   void clear(std::uint32_t vertex) { lists_[vertex].count = 0; }
 
