@@ -41,7 +41,7 @@ class ContractingPatch {
     around_.clear(second);
     for (const std::uint32_t t : vanished_) {
       for (const std::uint32_t v : corners_[t]) {
-        if (v != second) around_.remove(v, t);
+        if (v != second) around_.remove_if(v, [t](std::uint32_t other) { return other == t; });
       }
     }
     return vanished_;

@@ -118,7 +118,7 @@ class PlanGuide {
   bool derived(std::uint32_t t) const { return plan_.fine.derived[plan_of_triangle_[t]]; }
   std::uint32_t label(std::uint32_t t) const { return plan_.labels[plan_of_triangle_[t]]; }
   const CodedValue& value(std::size_t layer, std::uint32_t t, std::uint32_t c) const {
-    return plan_.fine.values[layer][3 * plan_of_triangle_[t] + (c + turn_[t]) % 3];
+    return plan_.fine.values[layer][3 * plan_of_triangle_[t] + turned(t, c)];
   }
 
   std::vector<std::uint32_t> take_triangles() { return std::move(plan_of_triangle_); }
@@ -217,7 +217,11 @@ class PlanGuide {
     return swapped_ ? is_under_kept(s, slot) : is_under_removed(s, slot);
   }
   std::uint32_t fine_corner(std::uint32_t t, std::uint32_t c) const {
-    return plan_.fine.triangles[plan_of_triangle_[t]][(c + turn_[t]) % 3];
+    return plan_.fine.triangles[plan_of_triangle_[t]][turned(t, c)];
+  }
+  std::uint32_t turned(std::uint32_t t, std::uint32_t c) const {
+    const std::uint32_t corner = c + turn_[t];
+    return corner < 3 ? corner : corner - 3;
   }
 
   const BlockPlan& plan_;

@@ -55,11 +55,11 @@ class TriangleLists {
     std::copy(order.begin(), order.end(),
               triangles_.begin() + static_cast<std::ptrdiff_t>(lists_[vertex].first));
   }
-  void remove(std::uint32_t vertex, std::uint32_t triangle) {
+  template <typename Is>
+  void remove_if(std::uint32_t vertex, const Is& is) {
     List& list = lists_[vertex];
     std::uint32_t* const first = triangles_.data() + list.first;
-    list.count =
-        static_cast<std::uint32_t>(std::remove(first, first + list.count, triangle) - first);
+    list.count = static_cast<std::uint32_t>(std::remove_if(first, first + list.count, is) - first);
   }
   // Those from `first` to `last` make room for `count` others, which the caller writes.
   std::uint32_t* replace(std::uint32_t vertex, std::size_t first, std::size_t last,

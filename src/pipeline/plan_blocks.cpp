@@ -170,6 +170,8 @@ class Planner {
           around.add(slot, t);
         }
       }
+      around.clear(removed_slot);
+      around.remove_if(slot, [this](std::uint32_t t) { return !is_alive_[t]; });
       positions_[kept] = c.position;
       error_[kept] = c.error;
       for (TriangleId t : sequence_.derived_of(c)) derived_[index_of(t)] = 1;
