@@ -37,8 +37,8 @@ class CostEstimator {
         surface_(block.end.positions.size()),
         is_contracted_(contracted_vertices(block)),
         is_face_(faces_of(block.end, coding)),
-        lines_(block, coding, patch, geometry_, is_contracted_, is_face_),
-        wedges_(block, layers, values, geometry_, is_contracted_) {
+        wedges_(block, layers, values, geometry_, is_contracted_),
+        lines_(block, coding, patch, geometry_, is_contracted_, is_face_, wedges_) {
     if (std::find(is_face_.begin(), is_face_.end(), 1) != is_face_.end()) {
       faces_.emplace(block, coding, values, is_face_);
       if (!faces_->is_empty()) positions_ = block.end.positions;
@@ -164,8 +164,8 @@ class CostEstimator {
   std::vector<Quadric> surface_;     // per vertex, about the origin
   std::vector<char> is_contracted_;  // per vertex: a contraction touches it
   std::vector<char> is_face_;        // per triangle; see faces_of()
-  PatchLines lines_;
   WedgeQuadrics wedges_;
+  PatchLines lines_;
   std::optional<FaceNormals> faces_;
   std::vector<Vec3i> positions_;  // for faces_
   LevelError own_;

@@ -19,14 +19,25 @@ constexpr double kFlatLineCosine = 0.866;
 class LineFinder {
  public:
   LineFinder(const PatchMesh& mesh, const BlockCoding& coding, const ContractingPatch& patch,
-             const PatchGeometry& geometry, std::span<const char> is_face)
-      : mesh_(mesh), coding_(coding), patch_(patch), geometry_(geometry), is_face_(is_face) {
+             const PatchGeometry& geometry, std::span<const char> is_contracted,
+             std::span<const char> is_face, const WedgeQuadrics& wedges)
+      : mesh_(mesh),
+        coding_(coding),
+        patch_(patch),
+        geometry_(geometry),
+        is_contracted_(is_contracted),
+        is_face_(is_face),
+        has_several_(wedges.has_several()) {
+    for (std::size_t l = 0; l < coding.layers.size(); ++l) {
+      if (!wedges.has_wedges(l)) without_wedges_.push_back(&mesh.values[l]);
+    }
     for (const BlockLayer& layer : coding.layers) has_normals_ = has_normals_ || layer.is_normal;
     is_plain_.resize(mesh.positions.size());
     for (std::uint32_t v = 0; v < is_plain_.size(); ++v) is_plain_[v] = is_plain(v);
   }
 
-  // Calls add(v, w, triangle) for every triangle at an edge that is a line.
+  // Calls add(v, w, triangle) for every triangle at an edge that is a line, of those with an end
+  // that is contracted.
   template <typename Add>
   void find(const Add& add) {
     for (std::uint32_t v = 0; v < is_plain_.size(); ++v) {
@@ -51,10 +62,10 @@ class LineFinder {
     edges_.clear();
     for (const std::uint32_t t : patch_.around(v)) {
       for (const std::uint32_t w : mesh_.triangles[t]) {
+        if (w == v || !(is_contracted_[v] || is_contracted_[w])) continue;
         if (w > v || is_plain_[w]) edges_.push_back({w, t});
       }
     }
-    std::erase_if(edges_, [v](const Edge& edge) { return edge.to == v; });
     std::sort(edges_.begin(), edges_.end());
   }
 
@@ -62,7 +73,7 @@ class LineFinder {
   // that could bend: an edge between two such vertices is smooth. Some that are so are left out.
   bool is_plain(std::uint32_t v) const {
     const std::span<const std::uint32_t> around = patch_.around(v);
-    if (around.empty()) return false;
+    if (around.empty() || has_several_[v]) return false;
     // The next vertices are all different, and the last ones are the same, if sums tell: then each
     // is the next one of one triangle and the last one of another.
     std::array<std::uint64_t, 4> seen{};
@@ -82,9 +93,9 @@ class LineFinder {
       if (has_normals_) is_one = is_one && !is_face_[t];
     }
     if (again != 0 || sum != 0 || !is_one) return false;
-    for (const std::vector<CodedValue>& values : mesh_.values) {
-      const CodedValue& first = value(values, around[0], v);
-      for (const std::uint32_t t : around) is_one = is_one && value(values, t, v) == first;
+    for (const std::vector<CodedValue>* values : without_wedges_) {
+      const CodedValue& first = value(*values, around[0], v);
+      for (const std::uint32_t t : around) is_one = is_one && value(*values, t, v) == first;
     }
     return is_one;
   }
@@ -125,7 +136,8 @@ class LineFinder {
   const BlockCoding& coding_;
   const ContractingPatch& patch_;
   const PatchGeometry& geometry_;
-  std::span<const char> is_face_;
+  std::span<const char> is_contracted_, is_face_, has_several_;
+  std::vector<const std::vector<CodedValue>*> without_wedges_;
   bool has_normals_ = false;
   std::vector<char> is_plain_;
   std::vector<Edge> edges_;  // scratch
@@ -135,10 +147,10 @@ class LineFinder {
 
 PatchLines::PatchLines(const UnfoldedBlock& block, const BlockCoding& coding,
                        const ContractingPatch& patch, const PatchGeometry& geometry,
-                       std::span<const char> is_contracted, std::span<const char> is_face)
+                       std::span<const char> is_contracted, std::span<const char> is_face,
+                       const WedgeQuadrics& wedges)
     : line_of_vertex_(block.end.positions.size(), kNone) {
   const auto add = [&](std::uint32_t v, std::uint32_t w, std::uint32_t t) {
-    if (!is_contracted[v] && !is_contracted[w]) return;
     const Vec3d& a = geometry.place(v);
     const Vec3d along = geometry.place(w) - a, across = cross(along, geometry.normal(t).unit);
     const double size = length(across);
@@ -156,7 +168,7 @@ PatchLines::PatchLines(const UnfoldedBlock& block, const BlockCoding& coding,
       lines_[line_of_vertex_[end]].add(plane);
     }
   };
-  LineFinder(block.end, coding, patch, geometry, is_face).find(add);
+  LineFinder(block.end, coding, patch, geometry, is_contracted, is_face, wedges).find(add);
 }
 
 const Quadric* PatchLines::join(std::uint32_t first, std::uint32_t second) {

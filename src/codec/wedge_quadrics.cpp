@@ -26,7 +26,7 @@ bool is_float(double x) {
 WedgeQuadrics::WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSchema> layers,
                              std::span<const LayerValues> values, const PatchGeometry& geometry,
                              std::span<const char> is_contracted)
-    : layers_(layers.size()) {
+    : layers_(layers.size()), has_several_(block.end.positions.size(), 0) {
   for (std::uint32_t t = 0; t < block.end.triangles.size(); ++t) {
     area_ += 0.5 * geometry.normal(t).size;
   }
@@ -65,6 +65,7 @@ void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& v
       std::uint32_t w = first;
       while (w != kNone && codes[first_corner[w]] != code[c]) w = next[w];
       if (w == kNone) {
+        if (first != kNone) has_several_[v] = 1;
         w = static_cast<std::uint32_t>(next.size());
         next.push_back(std::exchange(first, w));
         first_corner.push_back(3 * t + c);

@@ -51,6 +51,10 @@ class WedgeQuadrics {
   float degrees() const { return degrees_; }
   float texture() const { return texture_; }
 
+  // Whether wedges are kept of a layer; and, per vertex, whether it has several of some layer.
+  bool has_wedges(std::size_t layer) const { return !layers_[layer].wedges.empty(); }
+  std::span<const char> has_several() const { return has_several_; }
+
   // Per layer.
   std::vector<WedgeValues> take() &&;
 
@@ -80,6 +84,7 @@ class WedgeQuadrics {
   bool keep_apart(const Layer& layer, std::uint32_t a, std::uint32_t b) const;
 
   std::vector<Layer> layers_;
+  std::vector<char> has_several_;  // per vertex
   double area_ = 0;          // of all triangles
   double worst_square_ = 0;  // of one contraction and layer
   float degrees_ = 0, texture_ = 0;
