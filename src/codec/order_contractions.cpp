@@ -115,7 +115,7 @@ class CostEstimator {
   }
 
   // Of vertices that no contraction touches nobody asks.
-  void add_surfaces(const PatchMesh& mesh) {
+  CREASE_WIDE void add_surfaces(const PatchMesh& mesh) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       const Corners& corners = mesh.triangles[t];
       const ScaledNormal& n = geometry_.normal(t);

@@ -83,8 +83,8 @@ void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& v
   all.is_known.assign(layer.wedges.size(), 1);
 }
 
-void WedgeQuadrics::load_quadrics(const PatchMesh& mesh, const PatchGeometry& geometry,
-                                  Layer& layer) {
+CREASE_WIDE void WedgeQuadrics::load_quadrics(const PatchMesh& mesh, const PatchGeometry& geometry,
+                                              Layer& layer) {
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint32_t* w = &layer.values.of_corner[3 * std::size_t(t)];
     const ScaledNormal& n = geometry.normal(t);
@@ -223,7 +223,8 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
   return cost;
 }
 
-double WedgeQuadrics::join(std::span<const std::uint32_t> members, const Vec3d& at, Layer& layer) {
+CREASE_WIDE double WedgeQuadrics::join(std::span<const std::uint32_t> members, const Vec3d& at,
+                                       Layer& layer) {
   WedgeValues& all = layer.values;
   const auto made = static_cast<std::uint32_t>(layer.wedges.size());
   Wedge wedge{.quadric = layer.wedges[members[0]].quadric};

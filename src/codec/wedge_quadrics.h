@@ -85,8 +85,8 @@ class WedgeQuadrics {
 
   std::vector<Layer> layers_;
   std::vector<char> has_several_;  // per vertex
-  double area_ = 0;          // of all triangles
-  double worst_square_ = 0;  // of one contraction and layer
+  double area_ = 0;                // of all triangles
+  double worst_square_ = 0;        // of one contraction and layer
   float degrees_ = 0, texture_ = 0;
   // Scratch of one contraction: the wedges at its vertices, and by which of them each is joined.
   std::vector<std::uint32_t> members_, root_, group_;
