@@ -1,5 +1,6 @@
 #include "codec/order_contractions.h"
 
+#include "base/wide.h"
 #include "codec/contracting_patch.h"
 #include "codec/face_normals.h"
 #include "codec/patch_geometry.h"

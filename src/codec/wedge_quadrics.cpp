@@ -1,5 +1,7 @@
 #include "codec/wedge_quadrics.h"
 
+#include "base/wide.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
