@@ -109,18 +109,24 @@ class CoarseEndMaker {
 
 }  // namespace
 
-std::vector<CoarseEnd> sort_by_label(std::span<const FineEnd> ends, std::uint32_t patch_count) {
+std::vector<CoarseEnd> sort_by_label(std::span<const FineEnd* const> ends,
+                                     std::uint32_t patch_count) {
   std::vector<CoarseEnd> starts(patch_count);
-  std::vector<const FineEnd*> pointers;
   for (std::uint32_t e = 0; e < ends.size(); ++e) {
-    pointers.push_back(&ends[e]);
-    for (std::uint32_t t = 0; t < ends[e].labels.size(); ++t) {
-      if (ends[e].labels[t] < patch_count) starts[ends[e].labels[t]].sources.push_back({e, t});
+    const std::vector<std::uint32_t>& labels = ends[e]->labels;
+    for (std::uint32_t t = 0; t < labels.size(); ++t) {
+      if (labels[t] < patch_count) starts[labels[t]].sources.push_back({e, t});
     }
   }
-  CoarseEndMaker maker(pointers);
+  CoarseEndMaker maker(ends);
   for (CoarseEnd& start : starts) maker.fill(start);
   return starts;
+}
+
+std::vector<CoarseEnd> sort_by_label(std::span<const FineEnd> ends, std::uint32_t patch_count) {
+  std::vector<const FineEnd*> pointers;
+  for (const FineEnd& end : ends) pointers.push_back(&end);
+  return sort_by_label(pointers, patch_count);
 }
 
 CoarseEnd coarse_end_of(std::span<const FineEnd* const> ends, std::uint32_t label) {
