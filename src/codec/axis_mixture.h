@@ -75,7 +75,7 @@ class LikelyComponents {
     return sum;
   }
   // The same at the ends of eight parts of one width that follow each other from `low`.
-  EightFloats at_ends(std::int64_t low, std::int64_t width) const {
+  [[gnu::always_inline]] EightFloats at_ends(std::int64_t low, std::int64_t width) const {
     constexpr std::array<float, 8> kEnds{1, 2, 3, 4, 5, 6, 7, 8};
     const EightFloats y = EightFloats(static_cast<float>(low)) +
                           static_cast<float>(width) * EightFloats(kEnds) - 0.5f;
@@ -173,8 +173,7 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, f
   const EightFloats high = (static_cast<float>(in.low + in.width()) - 0.5f - center) * inverse;
   (weight * (high / root(1.0f + high * high) - low / root(1.0f + low * low))).store(mixture.weight);
   const std::uint32_t rest =
-      in.bits == 0 ? 0
-                   : code_index(coder, 1u << in.bits, static_cast<std::uint32_t>(away - in.low));
+      in.bits == 0 ? 0 : code_bits(coder, in.bits, static_cast<std::uint32_t>(away - in.low));
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(start) +
                                    static_cast<std::uint32_t>(in.low + rest));
 }

@@ -125,10 +125,10 @@ typename BlockCoder<Coder, Guide>::LabelBox* BlockCoder<Coder, Guide>::nearest_b
     const std::array<double, 3>& place, double& distance) {
   LabelBox* nearest = nullptr;
   for (LabelBox& box : boxes_) {
-    double away = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      away += std::max({0.0, box.low[k] - place[k], place[k] - box.high[k]});
-    }
+    const auto off = [&](std::size_t k) {
+      return std::max(std::max(0.0, box.low[k] - place[k]), place[k] - box.high[k]);
+    };
+    const double away = off(0) + off(1) + off(2);
     if (nearest && away >= distance) continue;
     nearest = &box;
     distance = away;
@@ -145,10 +145,10 @@ void BlockCoder<Coder, Guide>::code_labels() {
   std::vector<std::uint32_t> last_at(mesh_.positions.size(), kNone);  // per vertex: what came there
   for (std::uint32_t t = 0; t < labels_.size(); ++t) {
     const Corners& corners = mesh_.triangles[t];
-    std::array<double, 3> place{};
-    for (const std::uint32_t v : corners) {
-      for (std::size_t k = 0; k < 3; ++k) place[k] += mesh_.positions[v][static_cast<int>(k)];
-    }
+    const Vec3i &p = mesh_.positions[corners[0]], &q = mesh_.positions[corners[1]],
+                &r = mesh_.positions[corners[2]];
+    const std::array<double, 3> place{double(p.x) + q.x + r.x, double(p.y) + q.y + r.y,
+                                      double(p.z) + q.z + r.z};
     double distance = 0;
     LabelBox* box = nearest_box(place, distance);
     std::uint32_t label = 0;

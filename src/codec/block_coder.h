@@ -67,10 +67,7 @@ class BlockCoder {
     coarse_triangles_ = static_cast<std::uint32_t>(mesh_.triangles.size());
     coarse_vertices_ = static_cast<std::uint32_t>(mesh_.positions.size());
     was_derived_ = mesh_.derived;
-    around_.resize(mesh_.positions.size());
-    for (std::uint32_t t = 0; t < coarse_triangles_; ++t) {
-      for (std::uint32_t v : mesh_.triangles[t]) around_.add(v, t);
-    }
+    around_.fill(mesh_.positions.size(), mesh_.triangles, 3);
   }
 
   // False: the bytes are not a block of these limits.
@@ -156,8 +153,12 @@ class BlockCoder {
   void add_beside(std::uint32_t v, std::uint32_t neighbour, std::size_t after,
                   std::uint32_t triangle);
   void code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s);
-  bool code_stays(std::size_t question, const Surroundings& around, std::size_t triangles_t,
-                  std::size_t triangles_u, bool stays);
+  struct StaysContext {
+    std::size_t share = 0, first = 0, second = 0, which_has_more = 0;
+  };
+  static StaysContext stays_context(const Surroundings& around, std::size_t triangles_t,
+                                    std::size_t triangles_u);
+  bool code_stays(std::size_t question, const StaysContext& context, bool stays);
   Miss expected_miss(std::uint32_t v, const Surroundings& around) const;
   ChildRing child_ring(bool second, const Vec3i& s, const Vec3i& sibling);
   Vec3i code_position(std::uint32_t v, bool second, const Vec3i& position,
@@ -221,8 +222,8 @@ class BlockCoder {
   bool corrupt_ = false;
   TriangleLists around_;                  // per vertex
   std::vector<std::uint8_t> generation_;  // splits above, per vertex
-  std::vector<Miss> miss_;                // per vertex
-  double mean_size_ = 0;                  // of an edge at the coarse end
+  std::vector<FourFloats> miss_;  // per vertex: tangent, normal, and 1 where it was looked for
+  double mean_size_ = 0;          // of an edge at the coarse end
   std::vector<Split> splits_;
   std::vector<std::uint32_t> labels_;
   std::vector<std::uint32_t> origin_;  // per vertex: the one at the coarse end it comes from

@@ -37,6 +37,8 @@ struct FineEnd {
 // What the patches of a band start from: the triangles with their label, by fine end and there in
 // order; vertices in the order in which the triangles name them. Labels that are not below
 // `patch_count` are left out. Time linear.
+std::vector<CoarseEnd> sort_by_label(std::span<const FineEnd* const> ends,
+                                     std::uint32_t patch_count);
 std::vector<CoarseEnd> sort_by_label(std::span<const FineEnd> ends, std::uint32_t patch_count);
 
 // What patch `label` alone starts from. `ends`: those of the band before that have triangles of it,

@@ -17,9 +17,9 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
     at_u = guide_.position(t, true);
   }
   const Surroundings around = surroundings(mesh_, around_[t], around_[u], t, u, s);
-  const bool t_stays = code_stays(0, around, around_[t].size(), around_[u].size(), at_t == s);
-  const bool u_stays =
-      code_stays(1 + t_stays, around, around_[t].size(), around_[u].size(), at_u == s);
+  const StaysContext context = stays_context(around, around_[t].size(), around_[u].size());
+  const bool t_stays = code_stays(0, context, at_t == s);
+  const bool u_stays = code_stays(1 + t_stays, context, at_u == s);
   const bool both = !t_stays && !u_stays;
   if (!both || !code_between(t, u, at_t, at_u, around)) {
     if (u_stays) {
@@ -41,21 +41,23 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
   has_moved_[t] = has_moved_[t] || !t_stays;
 }
 
-// Whether a child stays: mostly the one whose neighbours lie around the parent's place.
 template <class Coder, class Guide>
-bool BlockCoder<Coder, Guide>::code_stays(std::size_t question, const Surroundings& around,
-                                          std::size_t triangles_t, std::size_t triangles_u,
-                                          bool stays) {
+typename BlockCoder<Coder, Guide>::StaysContext BlockCoder<Coder, Guide>::stays_context(
+    const Surroundings& around, std::size_t triangles_t, std::size_t triangles_u) {
   const float a = length(around.middle[0]), b = length(around.middle[1]);
   const std::size_t share =
       a + b > 0 ? std::min<std::size_t>(static_cast<std::size_t>(16 * a / (a + b)), 15) : 7;
   const std::size_t first = std::min<std::size_t>(triangles_t, 9),
                     second = std::min<std::size_t>(triangles_u, 9);
+  return {share, first, second, first < second ? 0u : first == second ? 1u : 2u};
+}
+
+// Whether a child stays: mostly the one whose neighbours lie around the parent's place.
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::code_stays(std::size_t question, const StaysContext& c, bool stays) {
   StaysModels& models = stays_[question];
-  MixedBit<3> bit({&models.by_share[share], &models.by_triangles[first][second],
-                   &models.by_both[share / 2][first < second    ? 0
-                                              : first == second ? 1
-                                                                : 2]},
+  MixedBit<3> bit({&models.by_share[c.share], &models.by_triangles[c.first][c.second],
+                   &models.by_both[c.share / 2][c.which_has_more]},
                   models.weights);
   return coder_.bit(bit, stays);
 }
@@ -63,19 +65,13 @@ bool BlockCoder<Coder, Guide>::code_stays(std::size_t question, const Surroundin
 // As its neighbours' on average, or a quarter of their distance.
 template <class Coder, class Guide>
 Miss BlockCoder<Coder, Guide>::expected_miss(std::uint32_t v, const Surroundings& around) const {
-  Miss sum{0, 0};
-  float count = 0;
+  FourFloats sum{};
   const std::size_t triangles = std::min(around_[v].size(), kLargestRing);
   for (const std::uint32_t t : around_[v].first(triangles)) {
-    for (const std::uint32_t w : mesh_.triangles[t]) {
-      if (miss_[w].tangent < 0) continue;
-      sum.tangent += miss_[w].tangent;
-      sum.normal += miss_[w].normal;
-      count += 1;
-    }
+    for (const std::uint32_t w : mesh_.triangles[t]) sum += miss_[w];
   }
-  const float start = around.mean_edge * 0.25f;
-  return {(sum.tangent + start) / (count + 1), (sum.normal + 0.25f * start) / (count + 1)};
+  const float start = around.mean_edge * 0.25f, count = sum[2] + 1;
+  return {(sum[0] + start) / count, (sum[1] + 0.25f * start) / count};
 }
 
 // The neighbours of a child of the present split, if both have closed fans.
@@ -125,7 +121,7 @@ void BlockCoder<Coder, Guide>::note_miss(std::uint32_t v, const PlaceMixture& mi
               : rise(mixture.direction, static_cast<float>(place[0]), static_cast<float>(place[1]));
     return std::abs(along - plane - mixture.center[i][0]);
   };
-  miss_[v] = {std::max(off(0), off(1)), off(2)};
+  miss_[v] = FourFloats{std::max(off(0), off(1)), off(2), 1, 0};
 }
 
 // Two children that both leave, of a parent that lies between them as between.h says: how, then the

@@ -60,7 +60,7 @@ bool BlockCoder<Coder, Guide>::code_splits() {
   generation_.assign(mesh_.positions.size(), 0);
   has_moved_.assign(mesh_.positions.size(), 0);
   for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v) origin_.push_back(v);
-  miss_.assign(mesh_.positions.size(), {});
+  miss_.assign(mesh_.positions.size(), FourFloats{});
   double sum = 0;
   for (const Corners& t : mesh_.triangles) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -330,17 +330,18 @@ void BlockCoder<Coder, Guide>::apply_fan(std::uint32_t v, std::uint32_t u) {
   const std::uint32_t at_last = static_cast<std::uint32_t>(mesh_.triangles.size());
   const std::uint32_t at_first = at_last + 1;  // unless single
   const std::span<const std::uint32_t> triangles = shape_.triangles;
-  around_.clear(v);
-  for (std::size_t i = 0; i < fan_.first; ++i) around_.add(v, triangles[i]);
-  if (!fan_.single) around_.add(v, at_first);
-  around_.add(v, at_last);
-  for (std::size_t i = fan_.last; i < triangles.size(); ++i) around_.add(v, triangles[i]);
+  const std::size_t moved = fan_.last - fan_.first, added = fan_.single ? 1 : 2;
+  std::uint32_t* stay = around_.replace(v, fan_.first, fan_.last, added);
+  if (!fan_.single) *stay++ = at_first;
+  *stay = at_last;
+  std::uint32_t* go = around_.replace(u, 0, 0, moved + added);
   for (std::size_t i = fan_.first; i < fan_.last; ++i) {
     mesh_.triangles[triangles[i]][corner_of(mesh_.triangles[triangles[i]], v)] = u;
-    around_.add(u, triangles[i]);
+    *go++ = triangles[i];
   }
+  *go++ = at_last;
+  if (!fan_.single) *go = at_first;
   const std::uint32_t w_last = ring_.vertices[fan_.last], w_first = ring_.vertices[fan_.first];
-  around_.add(u, at_last);
   if (fan_.last > 0) {
     add_beside(w_last, triangles[fan_.last - 1], 0, at_last);
   } else {
@@ -348,7 +349,6 @@ void BlockCoder<Coder, Guide>::apply_fan(std::uint32_t v, std::uint32_t u) {
   }
   mesh_.triangles.push_back({v, u, w_last});
   if (fan_.single) return;
-  around_.add(u, at_first);
   add_beside(w_first, triangles[fan_.first], 1, at_first);
   mesh_.triangles.push_back({u, v, w_first});
 }

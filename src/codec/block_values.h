@@ -272,29 +272,44 @@ DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t
   const Vec3d& geometric = directions_.geometric[v];
   Vec3d even{}, angles{}, off{}, beside{};
   double known = 0, spread = 0, count = 0;
+  struct Neighbour {
+    std::uint32_t vertex = kNone;
+    Vec3d step;
+    double square = 0;
+  };
+  const Vec3i& q = mesh_.positions[v];
+  const auto seen = [&](std::uint32_t w) {
+    const Vec3i& p = mesh_.positions[w];
+    const Vec3d step{double(p.x) - q.x, double(p.y) - q.y, double(p.z) - q.z};
+    return Neighbour{w, step, dot(step, step)};
+  };
+  const auto hear = [&](std::uint32_t w) {
+    const Vec3d& stored = directions_.stored[w];
+    if (stored == Vec3d{}) return;
+    off += stored - directions_.geometric[w];
+    beside += stored;
+    known += 1;
+  };
   const std::size_t triangles = std::min(around_[v].size(), kLargestRing);
+  Neighbour a, b;
   for (const std::uint32_t t : around_[v].first(triangles)) {
     const Corners& corners = mesh_.triangles[t];
     const std::size_t c = std::size_t(corner_of(corners, v));
-    const std::uint32_t a = corners[(c + 1) % 3], b = corners[(c + 2) % 3];
-    const auto step = [&](std::uint32_t w) {
-      const Vec3i &p = mesh_.positions[w], &q = mesh_.positions[v];
-      return Vec3d{double(p.x) - q.x, double(p.y) - q.y, double(p.z) - q.z};
-    };
-    const Vec3d sa = step(a), sb = step(b), n = cross(sa, sb);
-    const double lengths = dot(sa, sa) * dot(sb, sb);
+    const std::uint32_t after = corners[c < 2 ? c + 1 : 0], before = corners[c > 0 ? c - 1 : 2];
+    a = b;  // mostly they follow each other
+    if (after != b.vertex) a = seen(after);
+    b = seen(before);
+    const double lengths = a.square * b.square;
     if (lengths > 0) {
+      const Vec3d n = cross(a.step, b.step);
+      const double size = length(n), angle = rough_angle(size, dot(a.step, b.step));
       even += n * (1 / std::sqrt(lengths));
-      angles += normalized(n) * rough_angle(length(n), dot(sa, sb));
+      angles += (size > 0 ? n * (1 / size) : n) * angle;
     }
     count += 1;
-    spread += dot(directions_.geometric[a], geometric);
-    for (const std::uint32_t w : {a, b}) {
-      if (directions_.stored[w] == Vec3d{}) continue;
-      off += directions_.stored[w] - directions_.geometric[w];
-      beside += directions_.stored[w];
-      known += 1;
-    }
+    spread += dot(directions_.geometric[after], geometric);
+    hear(after);
+    hear(before);
   }
   DirectionCandidates result;
   const Vec3d mean_off = known > 0 ? off * (1 / known) : Vec3d{};

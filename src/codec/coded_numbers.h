@@ -21,6 +21,14 @@ std::uint32_t code_index(Coder& coder, std::uint32_t count, std::uint32_t value)
   return high * kMost + low;
 }
 
+// The same of 2^count.
+template <class Coder>
+std::uint32_t code_bits(Coder& coder, int count, std::uint32_t value) {
+  if (count <= 16) return coder.bits(count, value);
+  const std::uint32_t high = coder.bits(count - 16, value >> 16);
+  return high << 16 | coder.bits(16, value & 0xffff);
+}
+
 // A number below 2^Bits with a model for every prefix.
 template <int Bits>
 struct TreeModel {

@@ -3,8 +3,9 @@
 #pragma once
 
 #include "codec/patch_mesh.h"
+#include "codec/triangle_lists.h"
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,18 +14,12 @@ namespace crease::codec {
 
 class ContractingPatch {
  public:
-  explicit ContractingPatch(const PatchMesh& fine)
-      : corners_(fine.triangles),
-        is_alive_(fine.triangles.size(), 1),
-        around_(fine.positions.size()) {
-    for (std::uint32_t t = 0; t < corners_.size(); ++t) {
-      for (const std::uint32_t v : corners_[t]) around_[v].push_back(t);
-    }
+  explicit ContractingPatch(const PatchMesh& fine) : corners_(fine.triangles) {
+    around_.fill(fine.positions.size(), corners_, 0);
   }
 
   const Corners& corners(std::uint32_t t) const { return corners_[t]; }
-  bool is_alive(std::uint32_t t) const { return is_alive_[t] != 0; }
-  // The triangles at v, all of them alive.
+  // The triangles at v, all of them alive; good until the next call of contract().
   std::span<const std::uint32_t> around(std::uint32_t v) const { return around_[v]; }
 
   // Replaces `second` by `first`. Those that have both vanish; they are what is returned, with
@@ -32,21 +27,22 @@ class ContractingPatch {
   std::span<const std::uint32_t> contract(std::uint32_t first, std::uint32_t second) {
     vanished_.clear();
     moved_count_ = 0;
-    std::vector<std::uint32_t>& at_first = around_[first];
-    for (const std::uint32_t t : around_[second]) {
+    for (std::size_t i = 0; i < around_[second].size(); ++i) {
+      const std::uint32_t t = around_[second][i];
       Corners& corners = corners_[t];
-      if (std::find(corners.begin(), corners.end(), first) != corners.end()) {
+      if (corners[0] == first || corners[1] == first || corners[2] == first) {
         vanished_.push_back(t);
-        is_alive_[t] = 0;
       } else {
-        std::replace(corners.begin(), corners.end(), second, first);
-        at_first.push_back(t);
+        corners[corner_of(corners, second)] = first;
+        around_.add(first, t);
         ++moved_count_;
       }
     }
-    around_[second].clear();
+    around_.clear(second);
     for (const std::uint32_t t : vanished_) {
-      for (const std::uint32_t v : corners_[t]) std::erase(around_[v], t);
+      for (const std::uint32_t v : corners_[t]) {
+        if (v != second) around_.remove_if(v, [t](std::uint32_t other) { return other == t; });
+      }
     }
     return vanished_;
   }
@@ -56,8 +52,7 @@ class ContractingPatch {
 
  private:
   std::vector<Corners> corners_;
-  std::vector<char> is_alive_;
-  std::vector<std::vector<std::uint32_t>> around_;
+  TriangleLists around_;
   std::vector<std::uint32_t> vanished_;
   std::size_t moved_count_ = 0;
 };

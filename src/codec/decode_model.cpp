@@ -176,36 +176,43 @@ class ModelDecoder {
 
   Status decode_band(std::size_t begin, std::size_t end) {
     const std::uint16_t band = chosen_[begin].entry.facts.band;
-    const bool is_base = band == facts_.bands.size();
-    const std::uint32_t patches = is_base ? 1 : facts_.bands[band].patches;
-    std::vector<CoarseEnd> starts = codec::sort_by_label(ends_, patches);
+    if (starts_.empty()) starts_.resize(patches_of(band));
     std::vector<Result<DecodedBlock>> decoded(end - begin, fail(Error::BadFormat, ""));
     std::vector<codec::StreamBits> bits(end - begin, codec::StreamBits{});
     std::vector<BlockUnfolder::Start> unfolded(end - begin);
     const auto decode = [&](std::size_t i) {
       const BlockEntry& entry = chosen_[begin + i].entry;
-      CoarseEnd& start = starts[is_base ? 0 : entry.facts.patch];
+      CoarseEnd& start = starts_[band == facts_.bands.size() ? 0 : entry.facts.patch];
       unfolded[i].names = start.names;
       unfolded[i].sources = std::move(start.sources);
       decoded[i] = decode_one(entry, std::move(start), options_.count_bits ? &bits[i] : nullptr);
     };
     for_each_(decoded.size(), decode);
 
+    std::vector<const FineEnd*> ends;
+    for (std::size_t i = 0; i < decoded.size(); ++i) {
+      if (!decoded[i].ok()) return decoded[i].failure();
+      ends.push_back(&decoded[i]->end);
+    }
+    starts_.clear();
+    if (end < chosen_.size()) {
+      starts_ = codec::sort_by_label(ends, patches_of(chosen_[end].entry.facts.band));
+    }
     const std::uint32_t first = static_cast<std::uint32_t>(unfolder_.blocks().size());
-    std::vector<FineEnd> ends;
     for (std::size_t i = 0; i < decoded.size(); ++i) {
       const BlockEntry& entry = chosen_[begin + i].entry;
-      if (!decoded[i].ok()) return decoded[i].failure();
       if (options_.count_bits) model_.bits[band] += named(bits[i]);
       model_.blocks.push_back(entry.id);
       model_.payload_bytes += entry.bytes;
-      ends.push_back(decoded[i]->end);
       for (codec::TriangleSource& source : unfolded[i].sources) source.end += first_end_;
       unfolder_.add(entry, *std::move(decoded[i]), unfolded[i]);
     }
-    ends_ = std::move(ends);
     first_end_ = first;
     return Done{};
+  }
+
+  std::uint32_t patches_of(std::uint16_t band) const {
+    return band == facts_.bands.size() ? 1 : facts_.bands[band].patches;
   }
 
   Result<DecodedBlock> decode_one(const BlockEntry& entry, CoarseEnd start,
@@ -226,7 +233,6 @@ class ModelDecoder {
   }
 
   Result<DecodedModel> finish() {
-    ends_.clear();
     codec::ModelOfBlocks(schema_, unfolder_).fill(model_, options_.contracted_bands, for_each_);
     if (Status status = check_mesh(model_.mesh); !status.ok()) {
       return fail(Error::BadFormat, "decoded mesh: " + status.failure().message);
@@ -247,8 +253,8 @@ class ModelDecoder {
   const codec::ForEach for_each_;
   codec::ModelSchema schema_;
   std::vector<Chosen> chosen_;
-  std::vector<FineEnd> ends_;    // of the band before
-  std::uint32_t first_end_ = 0;  // its first block, in the unfolder
+  std::vector<CoarseEnd> starts_;  // of the next band's patches, out of the band before
+  std::uint32_t first_end_ = 0;    // the first block of that one, in the unfolder
   BlockUnfolder unfolder_;
   DecodedModel model_;
 };

@@ -2,9 +2,11 @@
 
 #include "base/assert.h"
 #include "codec/range_encoder.h"
+#include "codec/triangle_lists.h"
 #include "crease/ids.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace crease::codec {
 
@@ -50,7 +52,7 @@ class PlanGuide {
   const std::vector<VertexName>& root_names() const { return root_names_; }
   const std::vector<Corners>& root_triangles() const { return root_triangles_; }
 
-  bool is_split(std::uint32_t v) const { return !steps_of_slot_[slot_of_vertex_[v]].empty(); }
+  bool is_split(std::uint32_t v) const { return step_of(v) != kNone; }
   bool goes_to_second(std::uint32_t v, std::uint32_t t) const {
     const Corners& corners = mesh_->triangles[t];
     const std::uint32_t c = corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
@@ -64,7 +66,8 @@ class PlanGuide {
     const std::uint32_t s = step_of(v);
     result.clear();
     pending_.clear();
-    for (const std::uint32_t p : introduced_[s]) {
+    for (std::uint32_t i = first_introduced_[s]; i < first_introduced_[s + 1]; ++i) {
+      const std::uint32_t p = introduced_[i];
       const Corners& corners = plan_.fine.triangles[p];
       std::uint32_t first = 3, second = 3;
       for (std::uint32_t c = 0; c < 3; ++c) {
@@ -83,16 +86,15 @@ class PlanGuide {
     const std::uint32_t s = step_of(v);
     const bool removed = second != swapped_;
     const std::uint32_t slot = removed ? plan_.steps[s].removed : plan_.steps[s].kept;
-    const std::vector<std::uint32_t>& steps = steps_of_slot_[slot];
-    const std::size_t above = removed ? 0 : 1;  // the present step is on the kept one's slot
-    return steps.size() > above ? plan_.steps[steps[steps.size() - 1 - above]].position
-                                : plan_.fine.positions[slot];
+    // The present step is on the kept one's slot.
+    const std::uint32_t next = removed ? last_step_[slot] : step_before_[s];
+    return next != kNone ? plan_.steps[next].position : plan_.fine.positions[slot];
   }
 
   void did_split(std::uint32_t v, std::uint32_t u, std::span<const Introduced> order) {
     const std::uint32_t s = step_of(v);
     const auto [removed, kept, position] = plan_.steps[s];
-    steps_of_slot_[kept].pop_back();
+    last_step_[kept] = step_before_[s];
     slot_of_vertex_[v] = swapped_ ? removed : kept;
     slot_of_vertex_.push_back(swapped_ ? kept : removed);
     std::fill_n(vertex_of_leaf_.begin() + order_[removed], removed_count_[s], swapped_ ? v : u);
@@ -116,7 +118,7 @@ class PlanGuide {
   bool derived(std::uint32_t t) const { return plan_.fine.derived[plan_of_triangle_[t]]; }
   std::uint32_t label(std::uint32_t t) const { return plan_.labels[plan_of_triangle_[t]]; }
   const CodedValue& value(std::size_t layer, std::uint32_t t, std::uint32_t c) const {
-    return plan_.fine.values[layer][3 * plan_of_triangle_[t] + (c + turn_[t]) % 3];
+    return plan_.fine.values[layer][3 * plan_of_triangle_[t] + turned(t, c)];
   }
 
   std::vector<std::uint32_t> take_triangles() { return std::move(plan_of_triangle_); }
@@ -132,31 +134,31 @@ class PlanGuide {
   void follow_steps() {
     const std::size_t slots = plan_.fine.positions.size();
     coarse_corners_ = plan_.fine.triangles;
-    introduced_.resize(plan_.steps.size());
-    steps_of_slot_.resize(slots);
+    last_step_.assign(slots, kNone);
     is_alive_.assign(plan_.fine.triangles.size(), 1);
-    std::vector<std::vector<std::uint32_t>> around(slots);
-    for (std::uint32_t t = 0; t < coarse_corners_.size(); ++t) {
-      for (const std::uint32_t v : coarse_corners_[t]) around[v].push_back(t);
-    }
+    TriangleLists around;
+    around.fill(slots, coarse_corners_, 0);
     is_removed_.assign(slots, 0);
     for (std::uint32_t s = 0; s < plan_.steps.size(); ++s) {
       const auto [removed, kept, position] = plan_.steps[s];
       is_removed_[removed] = 1;
-      steps_of_slot_[kept].push_back(s);
-      for (const std::uint32_t t : around[removed]) {
+      step_before_.push_back(std::exchange(last_step_[kept], s));
+      first_introduced_.push_back(static_cast<std::uint32_t>(introduced_.size()));
+      for (std::size_t i = 0; i < around[removed].size(); ++i) {
+        const std::uint32_t t = around[removed][i];
         Corners& corners = coarse_corners_[t];
         if (!is_alive_[t]) continue;
         if (corners[0] == kept || corners[1] == kept || corners[2] == kept) {
           is_alive_[t] = 0;
-          introduced_[s].push_back(t);
+          introduced_.push_back(t);
         } else {
-          std::replace(corners.begin(), corners.end(), removed, kept);
-          around[kept].push_back(t);
+          corners[corner_of(corners, removed)] = kept;
+          around.add(kept, t);
         }
       }
-      around[removed].clear();
+      around.clear(removed);
     }
+    first_introduced_.push_back(static_cast<std::uint32_t>(introduced_.size()));
   }
 
   // Numbers the slots so that those under any node follow each other, the first child's first.
@@ -188,9 +190,8 @@ class PlanGuide {
       if (is_given[v] || is_removed_[v]) continue;
       root_slots_.push_back(v);
       root_names_.push_back(names.empty() ? VertexName{kNone, 0} : names[v]);
-      const std::vector<std::uint32_t>& steps = steps_of_slot_[v];
-      root_positions_.push_back(steps.empty() ? plan_.fine.positions[v]
-                                              : plan_.steps[steps.back()].position);
+      root_positions_.push_back(last_step_[v] == kNone ? plan_.fine.positions[v]
+                                                       : plan_.steps[last_step_[v]].position);
     }
     std::vector<char> is_there(plan_.fine.triangles.size(), 0);
     for (const std::uint32_t p : triangles) is_there[p] = 1;
@@ -199,7 +200,7 @@ class PlanGuide {
     }
   }
 
-  std::uint32_t step_of(std::uint32_t v) const { return steps_of_slot_[slot_of_vertex_[v]].back(); }
+  std::uint32_t step_of(std::uint32_t v) const { return last_step_[slot_of_vertex_[v]]; }
   bool is_under(std::uint32_t node_slot, std::uint32_t count, std::uint32_t slot) const {
     return order_[slot] - order_[node_slot] < count;
   }
@@ -216,7 +217,11 @@ class PlanGuide {
     return swapped_ ? is_under_kept(s, slot) : is_under_removed(s, slot);
   }
   std::uint32_t fine_corner(std::uint32_t t, std::uint32_t c) const {
-    return plan_.fine.triangles[plan_of_triangle_[t]][(c + turn_[t]) % 3];
+    return plan_.fine.triangles[plan_of_triangle_[t]][turned(t, c)];
+  }
+  std::uint32_t turned(std::uint32_t t, std::uint32_t c) const {
+    const std::uint32_t corner = c + turn_[t];
+    return corner < 3 ? corner : corner - 3;
   }
 
   const BlockPlan& plan_;
@@ -224,11 +229,12 @@ class PlanGuide {
   std::vector<std::uint32_t> plan_of_triangle_, turn_;  // per triangle of the coder
   std::vector<std::uint32_t> slot_of_vertex_;           // per vertex of the coder
 
-  std::vector<Corners> coarse_corners_;                    // per plan triangle
-  std::vector<char> is_alive_;                             // per plan triangle, at the coarse end
-  std::vector<char> is_removed_;                           // per slot
-  std::vector<std::vector<std::uint32_t>> introduced_;     // per step
-  std::vector<std::vector<std::uint32_t>> steps_of_slot_;  // those that are not split yet
+  std::vector<Corners> coarse_corners_;  // per plan triangle
+  std::vector<char> is_alive_;           // per plan triangle, at the coarse end
+  std::vector<char> is_removed_;         // per slot
+  std::vector<std::uint32_t> introduced_, first_introduced_;  // step after step; where each starts
+  std::vector<std::uint32_t> last_step_;    // per slot: of those that are not split yet, or kNone
+  std::vector<std::uint32_t> step_before_;  // per step: the one before on the kept one's slot
   std::vector<std::uint32_t> order_, leaf_count_;          // per slot
   std::vector<std::uint32_t> kept_count_, removed_count_;  // per step: leaves under its children
   std::vector<std::uint32_t> vertex_of_leaf_;              // per number in order_

@@ -26,6 +26,8 @@ class FaceNormals {
   FaceNormals(const UnfoldedBlock& block, const BlockCoding& coding,
               std::span<const LayerValues> values, std::span<const char> is_face);
 
+  bool is_empty() const { return faces_.empty(); }  // there are no normals
+
   // After patch.contract(first, second), which returned `vanished`, with all vertices where they
   // stand now: the worst of those around `first`.
   float contract(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,

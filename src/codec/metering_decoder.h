@@ -31,6 +31,10 @@ class MeteringDecoder {
     add(std::log2(double(count)));
     return decoder_.uniform(count, 0);
   }
+  std::uint32_t bits(int count, std::uint32_t) {
+    add(count);
+    return decoder_.bits(count, 0);
+  }
   void enter(Stream stream) { stream_ = stream; }
   bool failed() const { return decoder_.failed(); }
 

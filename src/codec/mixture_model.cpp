@@ -1,5 +1,6 @@
 #include "codec/mixture_model.h"
 
+#include "base/wide.h"
 #include "codec/deterministic_math.h"
 #include "codec/eight_floats.h"
 
@@ -33,7 +34,7 @@ void ComponentWeights::learn(const PerComponent& right) {
   (now + rate * (EightFloats(right) - now)).store(of);
 }
 
-PerComponent ComponentScales::at(const Sizes& sizes) const {
+CREASE_WIDE PerComponent ComponentScales::at(const Sizes& sizes) const {
   std::array<float, 2> common{};
   for (std::size_t i = 0; i < 2; ++i) {
     for (std::size_t j = 0; j < sizes.size(); ++j) common[i] += slope[i][j] * sizes[j];
@@ -45,8 +46,8 @@ PerComponent ComponentScales::at(const Sizes& sizes) const {
   return result;
 }
 
-void ComponentScales::learn(const PerComponent& right, const PerComponent& excess,
-                            const Sizes& sizes, const Sizes& mean) {
+CREASE_WIDE void ComponentScales::learn(const PerComponent& right, const PerComponent& excess,
+                                        const Sizes& sizes, const Sizes& mean) {
   PerComponent step;
   const EightFloats steps = EightFloats(right) * EightFloats(excess);
   steps.store(step);

@@ -75,6 +75,9 @@ void ModelOfBlocks::fill_sequence(const Mesh& mesh, std::size_t contracted_bands
       of_corner[l].push_back(static_cast<std::uint32_t>(index_of(id)));
     }
   }
+  std::size_t count = 0;
+  for (const UnfoldedBlock& block : blocks_) count += block.splits.size();
+  if (!blocks_.empty() && contracted_bands > blocks_[0].band) sequence.contractions.reserve(count);
   AttributeRejoiner rejoiner(schema_.facts.layers, layers_.pools(), std::move(of_corner));
   for (std::size_t end = blocks_.size(), begin = end; end > 0; end = begin) {
     while (begin > 0 && blocks_[begin - 1].band == blocks_[end - 1].band) --begin;
@@ -83,10 +86,10 @@ void ModelOfBlocks::fill_sequence(const Mesh& mesh, std::size_t contracted_bands
   }
 }
 
+// A contraction of the present band: of which block, and which of its order.
 struct ModelOfBlocks::Pending {
-  std::uint32_t block = 0;
-  OrderedContraction contraction;
-  CornerChanges* changes = nullptr;
+  double cost = 0;
+  std::uint32_t block = 0, place = 0;
 };
 
 // The blocks of a band touch no vertex of each other's, so their contractions mix by cost.
@@ -102,26 +105,25 @@ void ModelOfBlocks::contract_band(std::span<const UnfoldedBlock> blocks,
     orders[b] =
         order_contractions(blocks[b], schema_.coding, schema_.facts.layers, layers_.values());
   });
-  std::vector<std::vector<CornerChanges>> changes(blocks.size());
+  std::vector<CornerChanges> changes(blocks.size());
   std::vector<Pending> all;
   for (std::uint32_t b = 0; b < blocks.size(); ++b) {
-    ContractionOrder& order = orders[b];
-    changes[b] = rejoiner.rejoin(blocks[b], order.contractions, std::move(order.wedges));
-    changes[b].resize(order.contractions.size());
-    for (std::size_t i = 0; i < order.contractions.size(); ++i) {
-      all.push_back({b, order.contractions[i], &changes[b][i]});
+    changes[b] = rejoiner.rejoin(blocks[b], orders[b].contractions, std::move(orders[b].wedges));
+    for (std::uint32_t i = 0; i < orders[b].contractions.size(); ++i) {
+      all.push_back({orders[b].contractions[i].cost, b, i});
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Pending& a, const Pending& b) {
-    return a.contraction.cost < b.contraction.cost;
-  });
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    append(blocks[all[i].block], all[i].contraction, *all[i].changes, sequence);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Pending& a, const Pending& b) { return a.cost < b.cost; });
+  for (const Pending& p : all) {
+    append(blocks[p.block], orders[p.block].contractions[p.place],
+           changes[p.block].changed(p.place), changes[p.block].now_derived(p.place), sequence);
   }
 }
 
 void ModelOfBlocks::append(const UnfoldedBlock& block, const OrderedContraction& contraction,
-                           CornerChanges& changes, ContractionSequence& sequence) {
+                           std::span<const AttributeChange> changes,
+                           std::span<const TriangleId> derived, ContractionSequence& sequence) {
   const Split& split = block.splits[contraction.split];
   Contraction c;
   c.kept = VertexId{block.vertices[split.vertex]};
@@ -139,11 +141,11 @@ void ModelOfBlocks::append(const UnfoldedBlock& block, const OrderedContraction&
   }
   kept = c.position;
   c.first_change = static_cast<std::uint32_t>(sequence.changes.size());
-  c.change_count = static_cast<std::uint32_t>(changes.changes.size());
-  sequence.changes.insert(sequence.changes.end(), changes.changes.begin(), changes.changes.end());
+  c.change_count = static_cast<std::uint32_t>(changes.size());
+  sequence.changes.insert(sequence.changes.end(), changes.begin(), changes.end());
   c.first_derived = static_cast<std::uint32_t>(sequence.derived.size());
-  c.derived_count = static_cast<std::uint32_t>(changes.derived.size());
-  sequence.derived.insert(sequence.derived.end(), changes.derived.begin(), changes.derived.end());
+  c.derived_count = static_cast<std::uint32_t>(derived.size());
+  sequence.derived.insert(sequence.derived.end(), derived.begin(), derived.end());
   sequence.contractions.push_back(c);
 }
 

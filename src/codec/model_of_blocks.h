@@ -32,7 +32,8 @@ class ModelOfBlocks {
   void contract_band(std::span<const UnfoldedBlock> blocks, AttributeRejoiner& rejoiner,
                      const ForEach& for_each, ContractionSequence& sequence);
   void append(const UnfoldedBlock& block, const OrderedContraction& contraction,
-              CornerChanges& changes, ContractionSequence& sequence);
+              std::span<const AttributeChange> changes, std::span<const TriangleId> derived,
+              ContractionSequence& sequence);
 
   const ModelSchema& schema_;
   std::span<const UnfoldedBlock> blocks_;

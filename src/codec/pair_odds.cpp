@@ -1,5 +1,6 @@
 #include "codec/pair_odds.h"
 
+#include "base/wide.h"
 #include "codec/eight_floats.h"
 
 #include <algorithm>
@@ -71,7 +72,7 @@ PairOdds::PerVertex PairOdds::rate_vertices(std::span<const RingVertex> ring, fl
   return rated;
 }
 
-void PairOdds::rate(std::span<const RingVertex> ring) {
+CREASE_WIDE void PairOdds::rate(std::span<const RingVertex> ring) {
   const std::size_t n = ring.size();
   count_ = static_cast<std::uint32_t>(n);
   PerVertex x{}, y{}, z{}, sum_x{}, sum_y{}, sum_z{}, inverse_length{}, of_arc{};
@@ -144,7 +145,7 @@ void PairOdds::rate(std::span<const RingVertex> ring) {
 }
 
 // A step down the slope of -log(odds / sum).
-void PairOdds::learn(const Pair& pair) {
+CREASE_WIDE void PairOdds::learn(const Pair& pair) {
   const std::size_t n = count_;
   if (!(sum_ > 0)) return;
   const std::size_t place = pair.last - pair.first - 1;

@@ -6,13 +6,22 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace crease::codec {
 
 // An attribute value as integers: a direction's code, a point of a lattice, the bits of floats, a
 // category. Corners share an attribute iff their values are equal.
-using CodedValue = std::array<std::int32_t, 4>;
+struct CodedValue : std::array<std::int32_t, 4> {
+  // Two comparisons, where those of an array are a call.
+  friend bool operator==(const CodedValue& a, const CodedValue& b) {
+    std::uint64_t x[2], y[2];
+    std::memcpy(x, a.data(), sizeof x);
+    std::memcpy(y, b.data(), sizeof y);
+    return ((x[0] ^ y[0]) | (x[1] ^ y[1])) == 0;
+  }
+};
 
 inline CodedValue coded(OctahedralCode code) {
   return {static_cast<std::int32_t>(code.u), static_cast<std::int32_t>(code.v), 0, 0};

@@ -1,5 +1,6 @@
 #include "codec/place_model.h"
 
+#include "base/wide.h"
 #include "codec/deterministic_math.h"
 
 #include <algorithm>
@@ -106,8 +107,9 @@ std::size_t PlaceModel::triangles_class(std::size_t triangles) {
   return std::clamp<std::size_t>(triangles, 3, kTriangles + 2) - 3;
 }
 
-PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second, std::size_t triangles,
-                                 const ChildRing& ring, const Sizes& sizes) const {
+CREASE_WIDE PlaceMixture PlaceModel::mixture(const Surroundings& around, bool second,
+                                             std::size_t triangles, const ChildRing& ring,
+                                             const Sizes& sizes) const {
   const Weights& w = kWeights[std::size_t(leaving_)];
   const Vec3f &own = around.middle[second], &other = around.middle[!second], &n = around.normal;
   const float along = w.normal_own * dot(own, n) + w.normal_other * dot(other, n) +

@@ -1,5 +1,7 @@
 #include "codec/predict_position.h"
 
+#include "crease/ids.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +13,15 @@ Vec3d to_double(const Vec3i& p) {
   return {double(p.x), double(p.y), double(p.z)};
 }
 
+constexpr std::size_t kAfter[] = {1, 2, 0}, kBefore[] = {2, 0, 1};
+
+// From the parent's place.
+struct Neighbour {
+  std::uint32_t vertex = kNone;
+  Vec3d place;
+  double size = 0;  // |x| + |y| + |z|
+};
+
 }  // namespace
 
 Surroundings surroundings(const PatchMesh& mesh, std::span<const std::uint32_t> around_t,
@@ -21,39 +32,48 @@ Surroundings surroundings(const PatchMesh& mesh, std::span<const std::uint32_t> 
   const Vec3d center = to_double(parent);
   Vec3d thirds{};
   std::array<Vec3d, 2> normals{};  // of each child's triangles, twice their area long
-  double third_count = 0, size = 0, size_count = 0;
+  double size = 0;
+  std::uint32_t third_count = 0, size_count = 0;
+  const auto seen = [&](std::uint32_t w) {
+    const Vec3d p = to_double(mesh.positions[w]) - center;
+    return Neighbour{w, p, std::abs(p.x) + std::abs(p.y) + std::abs(p.z)};
+  };
   for (const bool second : {false, true}) {
     const std::uint32_t own = second ? u : t, other = second ? t : u;
-    Vec3d sum{};
-    double count = 0;
+    Vec3d sum{}, normal{};
+    std::uint32_t count = 0;
+    Neighbour a, b;
     for (const std::uint32_t triangle : second ? around_u : around_t) {
       const Corners& corners = mesh.triangles[triangle];
-      const std::size_t c = corners[0] == own ? 0 : corners[1] == own ? 1 : 2;
-      const std::uint32_t a = corners[(c + 1) % 3], b = corners[(c + 2) % 3];
-      const bool shared = a == other || b == other;
-      const Vec3d pa = to_double(mesh.positions[a]) - center;
-      const Vec3d pb = to_double(mesh.positions[b]) - center;
-      if (shared) {
-        thirds += a == other ? pb : pa;
-        third_count += 1;
-      } else {
-        normals[second] += cross(pa, pb);
+      const std::size_t c = corner_of(corners, own);
+      const std::uint32_t after = corners[kAfter[c]], before = corners[kBefore[c]];
+      a = b;  // mostly they follow each other
+      if (after != b.vertex) a = seen(after);
+      b = seen(before);
+      if (after == other || before == other) {
+        const Neighbour& third = after == other ? b : a;
+        thirds += third.place;
+        ++third_count;
+        sum += third.place;
+        size += third.size;
+        ++count;
+        continue;
       }
-      for (const bool of_b : {false, true}) {
-        if ((of_b ? b : a) == other) continue;
-        const Vec3d& p = of_b ? pb : pa;
-        sum += p;
-        count += 1;
-        size += std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
-        size_count += 1;
-      }
+      normal += cross(a.place, b.place);
+      sum += a.place;
+      sum += b.place;
+      size += a.size;
+      size += b.size;
+      count += 2;
     }
-    if (count > 0) result.middle[second] = rounded_to_float(sum * (1 / count));
+    normals[second] = normal;
+    size_count += count;
+    if (count > 0) result.middle[second] = rounded_to_float(sum * (1 / double(count)));
   }
-  if (third_count > 0) result.thirds = rounded_to_float(thirds * (1 / third_count));
+  if (third_count > 0) result.thirds = rounded_to_float(thirds * (1 / double(third_count)));
   const Vec3d normal = normals[0] + normals[1];
   result.normal = rounded_to_float(normalized(normal));
-  const double mean_edge = size_count > 0 ? size / size_count : 0;
+  const double mean_edge = size_count > 0 ? size / double(size_count) : 0;
   result.mean_edge = static_cast<float>(mean_edge);
   const double cosine = dot(normalized(normals[0]), normalized(normals[1]));
   result.bend = static_cast<float>(mean_edge * std::sqrt(std::max(0.0, 1 - cosine)));

@@ -22,9 +22,9 @@ inline std::int32_t wrapped_difference(std::int32_t a, std::int32_t b) {
 using Step = std::array<std::int32_t, 3>;
 
 // How far from where its neighbours had it a vertex was found, in its tangent plane and along the
-// normal; below zero: it was not looked for.
+// normal.
 struct Miss {
-  float tangent = -1, normal = -1;
+  float tangent = 0, normal = 0;
 };
 
 // A split's surroundings, seen from the parent's place.

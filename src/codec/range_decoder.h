@@ -6,6 +6,7 @@
 #include "codec/stream.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,7 +20,8 @@ class RangeDecoder {
   static constexpr bool kEncodes = false;
 
   explicit RangeDecoder(std::span<const std::byte> bytes) : bytes_(bytes) {
-    for (int i = 0; i < 4; ++i) code_ = code_ << 8 | next();
+    code_ = next_four();
+    at_ = 4;
   }
 
   // The second argument is for the encoder.
@@ -50,8 +52,21 @@ class RangeDecoder {
     return i;
   }
 
-  std::uint32_t uniform(std::uint32_t count, std::uint32_t) {
-    const std::uint32_t step = range_ / count;
+  std::uint32_t uniform(std::uint32_t count, std::uint32_t) { return take(count, range_ / count); }
+  std::uint32_t bits(int count, std::uint32_t) { return take(1u << count, range_ >> count); }
+
+  // What the next bits are about; see MeteringDecoder.
+  void enter(Stream) {}
+
+  // The bytes ended so long ago that no encoder made them, or hold what none writes.
+  bool failed() const { return corrupt_ || at_ > bytes_.size() + kSlack; }
+
+ private:
+  // What finish() writes and the zeros that it leaves out of that.
+  static constexpr std::size_t kSlack = 8;
+
+  // One of `count`, `step` each.
+  std::uint32_t take(std::uint32_t count, std::uint32_t step) {
     std::uint32_t value = code_ / step;
     if (value >= count) {  // no encoder writes this
       value = count - 1;
@@ -63,30 +78,29 @@ class RangeDecoder {
     return value;
   }
 
-  // What the next bits are about; see MeteringDecoder.
-  void enter(Stream) {}
-
-  // The bytes ended so long ago that no encoder made them, or hold what none writes.
-  bool failed() const { return corrupt_ || beyond_ > kSlack; }
-
- private:
-  // What finish() writes and the zeros that it leaves out of that.
-  static constexpr std::size_t kSlack = 8;
-
-  void normalize() {
-    while (range_ < (1u << 24)) {
-      range_ <<= 8;
-      code_ = code_ << 8 | next();
-    }
+  // As many bytes as make the range 2^24 or more; no branch, since nobody can tell how many.
+  [[gnu::always_inline]] void normalize() {
+    const int bits = std::countl_zero(range_) & ~7;
+    range_ <<= bits;
+    code_ = code_ << bits | static_cast<std::uint32_t>(std::uint64_t(next_four()) << bits >> 32);
+    at_ += static_cast<std::size_t>(bits) / 8;
   }
-  std::uint32_t next() {
-    if (at_ < bytes_.size()) return std::to_integer<std::uint32_t>(bytes_[at_++]);
-    ++beyond_;
-    return 0;
+  std::uint32_t next_four() const {
+    if (at_ + 4 <= bytes_.size()) {
+      const std::byte* b = bytes_.data() + at_;
+      return std::to_integer<std::uint32_t>(b[0]) << 24 |
+             std::to_integer<std::uint32_t>(b[1]) << 16 |
+             std::to_integer<std::uint32_t>(b[2]) << 8 | std::to_integer<std::uint32_t>(b[3]);
+    }
+    std::uint32_t four = 0;
+    for (std::size_t i = at_; i < at_ + 4; ++i) {
+      four = four << 8 | (i < bytes_.size() ? std::to_integer<std::uint32_t>(bytes_[i]) : 0);
+    }
+    return four;
   }
 
   std::span<const std::byte> bytes_;
-  std::size_t at_ = 0, beyond_ = 0;
+  std::size_t at_ = 0;  // may lie beyond the end, where zeros are read
   std::uint32_t range_ = 0xffffffffu, code_ = 0;
   bool corrupt_ = false;
 };

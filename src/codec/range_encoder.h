@@ -44,12 +44,10 @@ class RangeEncoder {
 
   // One of `count` that are equally likely; count < 2^24.
   std::uint32_t uniform(std::uint32_t count, std::uint32_t value) {
-    const std::uint32_t step = range_ / count;
-    low_ += std::uint64_t(step) * value;
-    range_ = step;
-    normalize();
-    return value;
+    return take(range_ / count, value);
   }
+  // The same of 2^count; count <= 16.
+  std::uint32_t bits(int count, std::uint32_t value) { return take(range_ >> count, value); }
 
   bool failed() const { return false; }
   void enter(Stream) {}
@@ -64,6 +62,13 @@ class RangeEncoder {
   }
 
  private:
+  std::uint32_t take(std::uint32_t step, std::uint32_t value) {
+    low_ += std::uint64_t(step) * value;
+    range_ = step;
+    normalize();
+    return value;
+  }
+
   void normalize() {
     while (range_ < (1u << 24)) {
       range_ <<= 8;

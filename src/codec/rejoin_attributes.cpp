@@ -36,15 +36,20 @@ AttributeRejoiner::AttributeRejoiner(std::span<const LayerSchema> layers,
   });
 }
 
-std::vector<CornerChanges> AttributeRejoiner::rejoin(const UnfoldedBlock& block,
-                                                     std::span<const OrderedContraction> order,
-                                                     std::vector<WedgeValues> wedges) {
-  std::vector<CornerChanges> all(order.size());
+CornerChanges AttributeRejoiner::rejoin(const UnfoldedBlock& block,
+                                        std::span<const OrderedContraction> order,
+                                        std::vector<WedgeValues> wedges) {
+  CornerChanges all;
+  all.changes_of.resize(order.size());
+  all.derived_of.resize(order.size());
   if (layers_.empty()) return all;
   ContractingPatch patch(block.end);
   std::vector<std::uint32_t> splits_left(block.vertices.size(), 0);
   for (const Split& split : block.splits) ++splits_left[split.vertex];
   std::vector<Vec3i> positions = block.end.positions;
+  const auto since = [](std::size_t first, std::size_t size) -> CornerChanges::Range {
+    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(size - first)};
+  };
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::uint32_t first = block.splits[order[i].split].vertex;
     const std::uint32_t second = block.second_child(order[i].split);
@@ -53,26 +58,30 @@ std::vector<CornerChanges> AttributeRejoiner::rejoin(const UnfoldedBlock& block,
     const double second_share = share_on_the_way(parent, positions[first], positions[second]);
     positions[first] = parent;
     const auto vanished = patch.contract(first, second);
-    derive(block, patch, first, all[i].derived);
+    const std::size_t first_change = all.changes.size(), first_derived = all.derived.size();
+    derive(block, patch, first, all.derived);
+    all.derived_of[i] = since(first_derived, all.derived.size());
     for (std::size_t l = 0; l < layers_.size(); ++l) {
       find_values(block, patch, first, l, is_last, wedges[l]);
       join(block, patch, vanished, first, second, l);
       if (is_last) {
-        change_to_coarse(block, first, l, all[i].changes);
+        change_to_coarse(block, first, l, all.changes);
       } else if (are_known(wedges[l])) {
-        change_to_best(wedges[l], l, all[i].changes);
+        change_to_best(wedges[l], l, all.changes);
       } else {
-        blend(l, second_share, all[i].changes);
+        blend(l, second_share, all.changes);
       }
     }
-    apply(block, patch, first, all[i].changes);
+    all.changes_of[i] = since(first_change, all.changes.size());
+    apply(block, patch, first, all.changed(i));
   }
   // What no contraction touches, which a file of our own does not have.
   if (!has_normals_ || order.empty()) return all;
   for (std::uint32_t t = 0; t < block.coarse_triangle_count(); ++t) {
     if (!block.coarse_derived[t] || is_derived_[block.triangles[t]]) continue;
     is_derived_[block.triangles[t]] = 1;
-    all.back().derived.push_back(TriangleId{block.triangles[t]});
+    all.derived.push_back(TriangleId{block.triangles[t]});
+    ++all.derived_of.back().count;
   }
   return all;
 }

@@ -23,10 +23,21 @@
 
 namespace crease::codec {
 
-// Of one contraction.
+// Of the contractions of a block, one after the other.
 struct CornerChanges {
+  struct Range {  // of one contraction
+    std::uint32_t first = 0, count = 0;
+  };
   std::vector<AttributeChange> changes;
   std::vector<TriangleId> derived;
+  std::vector<Range> changes_of, derived_of;
+
+  std::span<const AttributeChange> changed(std::size_t contraction) const {
+    return std::span(changes).subspan(changes_of[contraction].first, changes_of[contraction].count);
+  }
+  std::span<const TriangleId> now_derived(std::size_t contraction) const {
+    return std::span(derived).subspan(derived_of[contraction].first, derived_of[contraction].count);
+  }
 };
 
 class AttributeRejoiner {
@@ -36,10 +47,9 @@ class AttributeRejoiner {
   AttributeRejoiner(std::span<const LayerSchema> layers, std::vector<ValuePool>& pools,
                     std::vector<std::vector<std::uint32_t>> of_corner);
 
-  // One for each contraction of `order`. `wedges`: per layer, from order_contractions().
-  std::vector<CornerChanges> rejoin(const UnfoldedBlock& block,
-                                    std::span<const OrderedContraction> order,
-                                    std::vector<WedgeValues> wedges);
+  // Of the contractions of `order`. `wedges`: per layer, from order_contractions().
+  CornerChanges rejoin(const UnfoldedBlock& block, std::span<const OrderedContraction> order,
+                       std::vector<WedgeValues> wedges);
 
  private:
   struct AtVertex {  // a value that corners at the present vertex have

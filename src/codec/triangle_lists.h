@@ -2,7 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -18,6 +21,25 @@ class TriangleLists {
   }
   void add_vertex() { lists_.push_back({}); }
   void resize(std::size_t vertices) { lists_.resize(vertices); }
+  // Every triangle at each of its corners, in order, with room for some more.
+  void fill(std::size_t vertices, std::span<const std::array<std::uint32_t, 3>> triangles,
+            std::uint32_t spare) {
+    lists_.assign(vertices, {0, 0, spare});
+    for (const auto& corners : triangles) {
+      for (const std::uint32_t v : corners) ++lists_[v].room;
+    }
+    std::size_t first = 0;
+    for (List& list : lists_) {
+      list.first = first;
+      first += list.room;
+    }
+    triangles_.resize(first);
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      for (const std::uint32_t v : triangles[t]) {
+        triangles_[lists_[v].first + lists_[v].count++] = t;
+      }
+    }
+  }
 
   void add(std::uint32_t vertex, std::uint32_t triangle) {
     List& list = lists_[vertex];
@@ -26,17 +48,29 @@ class TriangleLists {
   }
   // Before the one that is there now at `place`, or at the end.
   void insert(std::uint32_t vertex, std::size_t place, std::uint32_t triangle) {
-    add(vertex, triangle);
-    const List& list = lists_[vertex];
-    const auto first = triangles_.begin() + static_cast<std::ptrdiff_t>(list.first);
-    const auto end = first + static_cast<std::ptrdiff_t>(list.count);
-    std::copy_backward(first + static_cast<std::ptrdiff_t>(place), end - 1, end);
-    first[static_cast<std::ptrdiff_t>(place)] = triangle;
+    *replace(vertex, place, place, 1) = triangle;
   }
   // The same ones in another order.
   void reorder(std::uint32_t vertex, std::span<const std::uint32_t> order) {
     std::copy(order.begin(), order.end(),
               triangles_.begin() + static_cast<std::ptrdiff_t>(lists_[vertex].first));
+  }
+  template <typename Is>
+  void remove_if(std::uint32_t vertex, const Is& is) {
+    List& list = lists_[vertex];
+    std::uint32_t* const first = triangles_.data() + list.first;
+    list.count = static_cast<std::uint32_t>(std::remove_if(first, first + list.count, is) - first);
+  }
+  // Those from `first` to `last` make room for `count` others, which the caller writes.
+  std::uint32_t* replace(std::uint32_t vertex, std::size_t first, std::size_t last,
+                         std::size_t count) {
+    List& list = lists_[vertex];
+    const std::size_t after = list.count - last, size = first + count + after;
+    while (list.room < size) move(list);
+    std::uint32_t* const begin = triangles_.data() + list.first;
+    std::memmove(begin + first + count, begin + last, after * sizeof(std::uint32_t));
+    list.count = static_cast<std::uint32_t>(size);
+    return begin + first;
   }
   void clear(std::uint32_t vertex) { lists_[vertex].count = 0; }
 

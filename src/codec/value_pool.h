@@ -8,9 +8,11 @@
 #include "crease/vec.h"
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace crease::codec {
@@ -23,9 +25,12 @@ class ValuePool {
   // kFlat: of what is flat.
   static constexpr std::uint32_t kFlat = kNone;
   std::uint32_t intern(const CodedValue& code, std::uint32_t vertex) {
-    const auto [at, is_new] = id_of_key_.try_emplace(Key{code, vertex}, size());
-    if (is_new) add(code);
-    return at->second;
+    Place& place = place_of(code, vertex);
+    if (place.id != kNone) return place.id;
+    place = {vertex, size()};
+    add(code);
+    ++interned_count_;
+    return size() - 1;
   }
   // An id of its own for a code that others have too.
   std::uint32_t add(const CodedValue& code) {
@@ -38,12 +43,13 @@ class ValuePool {
   std::uint32_t intern_direction(const Vec3f& d) {
     const CodedValue bits{std::bit_cast<std::int32_t>(d.x), std::bit_cast<std::int32_t>(d.y),
                           std::bit_cast<std::int32_t>(d.z), kIsDirection};
-    const auto [at, is_new] = id_of_key_.try_emplace(Key{bits, kFlat}, size());
-    if (is_new) {
-      codes_.push_back(bits);
-      numbers_.insert(numbers_.end(), {d.x, d.y, d.z});
-    }
-    return at->second;
+    Place& place = place_of(bits, kFlat);
+    if (place.id != kNone) return place.id;
+    place = {kFlat, size()};
+    codes_.push_back(bits);
+    numbers_.insert(numbers_.end(), {d.x, d.y, d.z});
+    ++interned_count_;
+    return size() - 1;
   }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(codes_.size()); }
@@ -56,27 +62,44 @@ class ValuePool {
 
  private:
   static constexpr std::int32_t kIsDirection = 1;  // in a component that directions leave 0
-  struct Key {
-    CodedValue code;
-    std::uint32_t vertex;
-    bool operator==(const Key&) const = default;
+  struct Place {                                   // of an interned value; free: kNone
+    std::uint32_t vertex = 0, id = kNone;
   };
-  struct Hash {
-    std::size_t operator()(const Key& key) const {
-      std::uint64_t h = key.vertex;
-      for (const std::int32_t c : key.code) {
-        h = (h ^ static_cast<std::uint32_t>(c)) * 0x9e3779b97f4a7c15u;
-        h ^= h >> 32;
-      }
-      return static_cast<std::size_t>(h);
+
+  static std::size_t hash_of(const CodedValue& code, std::uint32_t vertex) {
+    std::uint64_t pairs[2];
+    std::memcpy(pairs, code.data(), sizeof pairs);
+    std::uint64_t h = (pairs[0] ^ vertex) * 0x9e3779b97f4a7c15u;
+    h = (h ^ h >> 32 ^ pairs[1]) * 0x9e3779b97f4a7c15u;
+    return static_cast<std::size_t>(h ^ h >> 32);
+  }
+  // Where it is, or would be.
+  Place& place_of(const CodedValue& code, std::uint32_t vertex) {
+    if (2 * interned_count_ >= places_.size()) grow();
+    std::size_t at = hash_of(code, vertex) & (places_.size() - 1);
+    while (places_[at].id != kNone &&
+           (places_[at].vertex != vertex || codes_[places_[at].id] != code)) {
+      at = (at + 1) & (places_.size() - 1);
     }
-  };
+    return places_[at];
+  }
+  void grow() {
+    std::vector<Place> before = std::exchange(places_, {});
+    places_.resize(before.empty() ? 64 : 4 * before.size());
+    for (const Place& place : before) {
+      if (place.id == kNone) continue;
+      std::size_t at = hash_of(codes_[place.id], place.vertex) & (places_.size() - 1);
+      while (places_[at].id != kNone) at = (at + 1) & (places_.size() - 1);
+      places_[at] = place;
+    }
+  }
 
   const LayerValues& values_;
   std::uint32_t dimension_;
   std::vector<CodedValue> codes_;
   std::vector<float> numbers_;
-  std::unordered_map<Key, std::uint32_t, Hash> id_of_key_;
+  std::vector<Place> places_;  // by hash, at most half of them taken
+  std::size_t interned_count_ = 0;
 };
 
 }  // namespace crease::codec

@@ -1,5 +1,7 @@
 #include "codec/wedge_quadrics.h"
 
+#include "base/wide.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,16 +26,11 @@ bool is_float(double x) {
 }  // namespace
 
 WedgeQuadrics::WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSchema> layers,
-                             std::span<const LayerValues> values, const Vec3d& origin)
-    : layers_(layers.size()) {
-  corners_.reserve(block.end.triangles.size());
-  for (const Corners& t : block.end.triangles) {
-    std::array<Vec3d, 3>& p = corners_.emplace_back();
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3i& at = block.end.positions[t[c]];
-      p[c] = Vec3d{double(at.x), double(at.y), double(at.z)} - origin;
-    }
-    area_ += 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
+                             std::span<const LayerValues> values, const PatchGeometry& geometry,
+                             std::span<const char> is_contracted)
+    : layers_(layers.size()), has_several_(block.end.positions.size(), 0) {
+  for (std::uint32_t t = 0; t < block.end.triangles.size(); ++t) {
+    area_ += 0.5 * geometry.normal(t).size;
   }
   for (std::size_t l = 0; l < layers.size(); ++l) {
     const LayerSchema& schema = layers[l];
@@ -44,14 +41,16 @@ WedgeQuadrics::WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSc
     layer.dimension = schema.dimension;
     layer.role = schema.role;
     layer.is_direction = schema.interpolation == Interpolation::Direction;
-    load_wedges(block, values[l], l, schema.role == AttributeRole::Normal, layer);
-    load_quadrics(block, layer);
+    load_wedges(block, values[l], l, is_contracted, layer);
+    load_quadrics(block.end, geometry, layer);
     set_scale(block, schema, layer);
   }
 }
 
 void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& values,
-                                std::size_t l, bool is_normal, Layer& layer) {
+                                std::size_t l, std::span<const char> is_contracted, Layer& layer) {
+  const bool is_normal = layer.role == AttributeRole::Normal;
+  std::uint32_t quadric_count = 0;
   const std::vector<CodedValue>& codes = block.end.values[l];
   std::vector<std::uint32_t> first_of_vertex(block.end.positions.size(), kNone);
   std::vector<std::uint32_t> next;          // per wedge: another one at the vertex
@@ -63,14 +62,16 @@ void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& v
     const CodedValue* code = &codes[3 * std::size_t(t)];
     const bool is_constant = code[0] == code[1] && code[1] == code[2];
     for (std::uint32_t c = 0; c < 3; ++c) {
-      std::uint32_t& first = first_of_vertex[block.end.triangles[t][c]];
+      const std::uint32_t v = block.end.triangles[t][c];
+      std::uint32_t& first = first_of_vertex[v];
       std::uint32_t w = first;
       while (w != kNone && codes[first_corner[w]] != code[c]) w = next[w];
       if (w == kNone) {
+        if (first != kNone) has_several_[v] = 1;
         w = static_cast<std::uint32_t>(next.size());
         next.push_back(std::exchange(first, w));
         first_corner.push_back(3 * t + c);
-        layer.wedges.push_back({.quadric = w});
+        layer.wedges.push_back({.quadric = is_contracted[v] ? quadric_count++ : kNone});
         values.read(code[c],
                     std::span(all.value.emplace_back()).first(std::size_t(layer.dimension)));
       }
@@ -79,28 +80,32 @@ void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& v
     }
   }
   layer.wedge_of_corner = all.of_corner;
-  layer.quadrics.resize(layer.wedges.size());
+  layer.quadrics.resize(quadric_count);
   all.into.assign(layer.wedges.size(), kNone);
   all.is_known.assign(layer.wedges.size(), 1);
 }
 
-void WedgeQuadrics::load_quadrics(const UnfoldedBlock& block, Layer& layer) {
-  for (std::size_t t = 0; t < block.end.triangles.size(); ++t) {
-    const std::uint32_t* w = &layer.values.of_corner[3 * t];
-    if (w[0] == kNone) continue;
-    const std::array<Vec3d, 3>& p = corners_[t];
-    const Vec3d e1 = p[1] - p[0], e2 = p[2] - p[0], twice = cross(e1, e2);
-    const double twice_area = length(twice);
-    if (!(twice_area > 0)) continue;
-    const double area = 0.5 * twice_area;
+CREASE_WIDE void WedgeQuadrics::load_quadrics(const PatchMesh& mesh, const PatchGeometry& geometry,
+                                              Layer& layer) {
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::uint32_t* w = &layer.values.of_corner[3 * std::size_t(t)];
+    const ScaledNormal& n = geometry.normal(t);
+    if (w[0] == kNone || !(n.size > 0)) continue;
+    const std::array<std::uint32_t, 3> quadrics{
+        layer.wedges[w[0]].quadric, layer.wedges[w[1]].quadric, layer.wedges[w[2]].quadric};
+    if (quadrics == std::array{kNone, kNone, kNone}) continue;
+    const Vec3d& p = geometry.place(mesh.triangles[t][0]);
+    const Vec3d e1 = geometry.place(mesh.triangles[t][1]) - p;
+    const Vec3d e2 = geometry.place(mesh.triangles[t][2]) - p;
+    const double area = 0.5 * n.size;
     // The second and the third corner's barycentric coordinates, as linear functions.
     const double longest = std::max({dot(e1, e1), dot(e2, e2), dot(e2 - e1, e2 - e1)});
     Row second{0, 0, 0, 1.0 / 3}, third = second;
-    if (twice_area >= kThin * longest) {
-      const double inverse = 1 / (twice_area * twice_area);
-      const Vec3d toward1 = cross(e2, twice) * inverse, toward2 = cross(twice, e1) * inverse;
-      second = Row{toward1.x, toward1.y, toward1.z, -dot(toward1, p[0])};
-      third = Row{toward2.x, toward2.y, toward2.z, -dot(toward2, p[0])};
+    if (n.size >= kThin * longest) {
+      const double inverse = 1 / n.size;
+      const Vec3d toward1 = cross(e2, n.unit) * inverse, toward2 = cross(n.unit, e1) * inverse;
+      second = Row{toward1.x, toward1.y, toward1.z, -dot(toward1, p)};
+      third = Row{toward2.x, toward2.y, toward2.z, -dot(toward2, p)};
     }
     AttributeQuadric of_triangle;
     of_triangle.own.weight = area;
@@ -111,8 +116,8 @@ void WedgeQuadrics::load_quadrics(const UnfoldedBlock& block, Layer& layer) {
       of_triangle.own.add_square(f, area);
       of_triangle.linear[j] = f * area;
     }
-    for (std::size_t c = 0; c < 3; ++c) {
-      layer.quadrics[layer.wedges[w[c]].quadric].add(of_triangle, layer.dimension);
+    for (const std::uint32_t q : quadrics) {
+      if (q != kNone) layer.quadrics[q].add(of_triangle, layer.dimension);
     }
   }
 }
@@ -130,7 +135,7 @@ void WedgeQuadrics::set_scale(const UnfoldedBlock& block, const LayerSchema& sch
                                      double(c[0] - a[0]) * double(b[1] - a[1]));
     }
   }
-  const double edge2 = 2.3 * area_ / double(std::max<std::size_t>(1, corners_.size()));
+  const double edge2 = 2.3 * area_ / double(std::max<std::size_t>(1, block.end.triangles.size()));
   if (schema.role == AttributeRole::Normal) {
     layer.scale = kNormalWeight * kNormalWeight * edge2;
   } else if (texture_area > 0) {
@@ -220,7 +225,8 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
   return cost;
 }
 
-double WedgeQuadrics::join(std::span<const std::uint32_t> members, const Vec3d& at, Layer& layer) {
+CREASE_WIDE double WedgeQuadrics::join(std::span<const std::uint32_t> members, const Vec3d& at,
+                                       Layer& layer) {
   WedgeValues& all = layer.values;
   const auto made = static_cast<std::uint32_t>(layer.wedges.size());
   Wedge wedge{.quadric = layer.wedges[members[0]].quadric};

@@ -3,14 +3,15 @@
 // the vertex stands; from the block's fine end the same quadrics follow, but for what the bands
 // before knew.
 //
-//   WedgeQuadrics quadrics(block, layers, values, origin);
+//   WedgeQuadrics quadrics(block, layers, values, geometry, is_contracted);
 //   patch.contract(first, second);                     // children before parents
-//   cost += quadrics.contract(patch, vanished, first, second, parent - origin);
+//   cost += quadrics.contract(patch, vanished, first, second, geometry.from_origin(parent));
 //   const std::vector<WedgeValues> all = std::move(quadrics).take();
 #pragma once
 
 #include "codec/contracting_patch.h"
 #include "codec/layer_values.h"
+#include "codec/patch_geometry.h"
 #include "codec/unfold_blocks.h"
 #include "crease/block_file.h"
 #include "hierarchy/quadric.h"
@@ -34,9 +35,11 @@ struct WedgeValues {
 
 class WedgeQuadrics {
  public:
-  // Points are about `origin`. `values`: one a layer.
+  // Points are about the geometry's origin. `values`: one a layer. `is_contracted`: per vertex,
+  // whether it may be one of those of contract().
   WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSchema> layers,
-                std::span<const LayerValues> values, const Vec3d& origin);
+                std::span<const LayerValues> values, const PatchGeometry& geometry,
+                std::span<const char> is_contracted);
 
   // After patch.contract(first, second), which returned `vanished`: what the attributes cost with
   // the vertex at `at`, grid units^4. May be infinite or no number, where the block is nonsense.
@@ -48,12 +51,16 @@ class WedgeQuadrics {
   float degrees() const { return degrees_; }
   float texture() const { return texture_; }
 
+  // Whether wedges are kept of a layer; and, per vertex, whether it has several of some layer.
+  bool has_wedges(std::size_t layer) const { return !layers_[layer].wedges.empty(); }
+  std::span<const char> has_several() const { return has_several_; }
+
   // Per layer.
   std::vector<WedgeValues> take() &&;
 
  private:
   struct Wedge {
-    std::uint32_t quadric = 0;  // in Layer::quadrics
+    std::uint32_t quadric = 0;  // in Layer::quadrics; kNone: of no vertex that is contracted
     bool is_pinned = false;     // a triangle has it at all three corners: it does not change
   };
   struct Layer {
@@ -68,8 +75,8 @@ class WedgeQuadrics {
   };
 
   void load_wedges(const UnfoldedBlock& block, const LayerValues& values, std::size_t l,
-                   bool is_normal, Layer& layer);
-  void load_quadrics(const UnfoldedBlock& block, Layer& layer);
+                   std::span<const char> is_contracted, Layer& layer);
+  static void load_quadrics(const PatchMesh& mesh, const PatchGeometry& geometry, Layer& layer);
   void set_scale(const UnfoldedBlock& block, const LayerSchema& schema, Layer& layer) const;
   double contract(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
                   std::uint32_t first, std::uint32_t second, const Vec3d& at, Layer& layer);
@@ -77,9 +84,9 @@ class WedgeQuadrics {
   bool keep_apart(const Layer& layer, std::uint32_t a, std::uint32_t b) const;
 
   std::vector<Layer> layers_;
-  std::vector<std::array<Vec3d, 3>> corners_;  // per triangle, about the origin
-  double area_ = 0;                            // of all triangles
-  double worst_square_ = 0;                    // of one contraction and layer
+  std::vector<char> has_several_;  // per vertex
+  double area_ = 0;                // of all triangles
+  double worst_square_ = 0;        // of one contraction and layer
   float degrees_ = 0, texture_ = 0;
   // Scratch of one contraction: the wedges at its vertices, and by which of them each is joined.
   std::vector<std::uint32_t> members_, root_, group_;

@@ -8,18 +8,10 @@
 // fused, so the result is the same to the bit on every processor.
 #pragma once
 
+#include "base/wide.h"
 #include "crease/vec.h"
 
 #include <algorithm>
-
-// Compiled twice, the wider one taken where the processor has it. Sanitizers cannot start with the
-// indirect functions that this needs.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define CREASE_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define CREASE_WIDE
-#endif
 
 namespace crease::simplification {
 

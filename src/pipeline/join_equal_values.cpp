@@ -1,5 +1,6 @@
 #include "pipeline/join_equal_values.h"
 
+#include "codec/triangle_lists.h"
 #include "hierarchy/attribute_values.h"
 
 #include <algorithm>
@@ -19,13 +20,13 @@ class ValueJoiner {
       : sequence_(sequence),
         mesh_(mesh),
         corners_(mesh.triangles),
-        around_(mesh.vertex_count()),
         is_alive_(mesh.triangle_count(), 1),
         is_derived_(mesh.triangle_count(), 0) {
     for (const AttributeLayer& layer : mesh.layers) of_corner_.push_back(layer.of_corner);
     planned_ = of_corner_;
+    around_.resize(mesh.vertex_count());
     for (std::uint32_t t = 0; t < corners_.size(); ++t) {
-      for (const VertexId v : corners_[t]) around_[index_of(v)].push_back(t);
+      for (const VertexId v : corners_[t]) around_.add(static_cast<std::uint32_t>(v), t);
     }
   }
 
@@ -55,19 +56,21 @@ class ValueJoiner {
   };
 
   void contract(const Contraction& c) {
-    std::vector<std::uint32_t>& at_kept = around_[index_of(c.kept)];
-    for (const std::uint32_t t : around_[index_of(c.removed)]) {
+    const auto removed = static_cast<std::uint32_t>(c.removed);
+    const auto kept = static_cast<std::uint32_t>(c.kept);
+    for (std::size_t i = 0; i < around_[removed].size(); ++i) {
+      const std::uint32_t t = around_[removed][i];
       if (!is_alive_[t]) continue;
       Triangle& corners = corners_[t];
       if (std::find(corners.begin(), corners.end(), c.kept) != corners.end()) {
         is_alive_[t] = 0;
       } else {
         std::replace(corners.begin(), corners.end(), c.removed, c.kept);
-        at_kept.push_back(t);
+        around_.add(kept, t);
       }
     }
-    around_[index_of(c.removed)] = {};
-    std::erase_if(at_kept, [this](std::uint32_t t) { return !is_alive_[t]; });
+    around_.clear(removed);
+    around_.remove_if(kept, [this](std::uint32_t t) { return !is_alive_[t]; });
   }
 
   bool is_shown(std::uint32_t layer, std::uint32_t t) const {
@@ -81,7 +84,7 @@ class ValueJoiner {
   // What stands at v_s, and what the sequence makes of it.
   void find_values(const Contraction& c, std::uint32_t layer) {
     at_vertex_.clear();
-    for (const std::uint32_t t : around_[index_of(c.kept)]) {
+    for (const std::uint32_t t : around_[static_cast<std::uint32_t>(c.kept)]) {
       if (!is_shown(layer, t)) continue;
       const std::size_t at = corner(t, c.kept);
       AttributeId& planned = planned_[layer][at];
@@ -138,7 +141,7 @@ class ValueJoiner {
   }
 
   void apply(VertexId v, std::uint32_t layer) {
-    for (const std::uint32_t t : around_[index_of(v)]) {
+    for (const std::uint32_t t : around_[static_cast<std::uint32_t>(v)]) {
       if (!is_shown(layer, t)) continue;
       AttributeId& now = of_corner_[layer][corner(t, v)];
       now = std::find_if(at_vertex_.begin(), at_vertex_.end(), [now](const AtVertex& a) {
@@ -150,7 +153,7 @@ class ValueJoiner {
   ContractionSequence& sequence_;
   const Mesh& mesh_;
   std::vector<Triangle> corners_;
-  std::vector<std::vector<std::uint32_t>> around_;   // per vertex
+  codec::TriangleLists around_;                      // per vertex
   std::vector<char> is_alive_, is_derived_;          // per triangle
   std::vector<std::vector<AttributeId>> of_corner_;  // per layer, joined
   std::vector<std::vector<AttributeId>> planned_;    // per layer, as the sequence had it
@@ -160,6 +163,11 @@ class ValueJoiner {
 }  // namespace
 
 void join_equal_values(ContractionSequence& sequence, const Mesh& snapped) {
+  if (snapped.layers.empty()) {
+    sequence.changes.clear();
+    for (Contraction& c : sequence.contractions) c.first_change = c.change_count = 0;
+    return;
+  }
   ValueJoiner(sequence, snapped).run();
 }
 

@@ -1,9 +1,11 @@
 #include "pipeline/plan_blocks.h"
 
 #include "base/assert.h"
-#include "hierarchy/attribute_values.h"
+#include "codec/triangle_lists.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 
 namespace crease {
 
@@ -16,7 +18,7 @@ class Planner {
           std::span<const LayerCoding> codings)
       : mesh_(snapped), sequence_(sequence) {
     for (std::size_t l = 0; l < mesh_.layers.size(); ++l) {
-      values_.emplace_back(codings[l], mesh_.layers[l].dimension);
+      add_codes(LayerValues(codings[l], mesh_.layers[l].dimension), l);
     }
     for (const Vec3d& p : mesh_.positions) positions_.push_back(sequence_.grid.nearest(p));
     for (const Triangle& t : mesh_.triangles) {
@@ -72,6 +74,20 @@ class Planner {
   }
 
  private:
+  // Of all values at once: corners of every band have them.
+  void add_codes(const LayerValues& values, std::size_t l) {
+    const AttributeLayer& layer = mesh_.layers[l];
+    const std::size_t dimension = static_cast<std::size_t>(layer.dimension);
+    std::vector<codec::CodedValue>& codes = codes_.emplace_back();
+    const auto add = [&](std::span<const float> all) {
+      for (std::size_t i = 0; dimension > 0 && i < all.size(); i += dimension) {
+        codes.push_back(values.code(all.subspan(i, dimension)));
+      }
+    };
+    add(layer.values);
+    if (l < sequence_.new_values.size()) add(sequence_.new_values[l]);
+  }
+
   codec::BlockPlan plan_patch(const std::vector<std::uint32_t>& triangles,
                               std::vector<std::uint32_t>& vertices) {
     codec::BlockPlan plan;
@@ -93,7 +109,7 @@ class Planner {
       plan.labels.push_back(label_[t]);
       for (std::size_t l = 0; l < mesh_.layers.size(); ++l) {
         for (std::size_t c = 0; c < 3; ++c) {
-          plan.fine.values[l].push_back(coded_value(l, of_corner_[l][3 * t + c]));
+          plan.fine.values[l].push_back(codes_[l][index_of(of_corner_[l][3 * t + c])]);
         }
       }
     }
@@ -133,37 +149,41 @@ class Planner {
     for (std::uint32_t slot = 0; slot < vertices.size(); ++slot) {
       slot_of_vertex_[vertices[slot]] = slot;
     }
-    std::vector<std::vector<std::uint32_t>> around(vertices.size());
+    codec::TriangleLists around;
+    around.resize(vertices.size());
     for (const std::uint32_t t : triangles) {
-      for (const std::uint32_t v : corners_[t]) around[slot_of_vertex_[v]].push_back(t);
+      for (const std::uint32_t v : corners_[t]) around.add(slot_of_vertex_[v], t);
     }
     for (const std::size_t i : contractions) {
       const Contraction& c = sequence_.contractions[i];
       const std::uint32_t removed = static_cast<std::uint32_t>(c.removed);
       const std::uint32_t kept = static_cast<std::uint32_t>(c.kept);
-      std::vector<std::uint32_t>& at_kept = around[slot_of_vertex_[kept]];
-      for (const std::uint32_t t : around[slot_of_vertex_[removed]]) {
+      const std::uint32_t removed_slot = slot_of_vertex_[removed], slot = slot_of_vertex_[kept];
+      for (std::size_t k = 0; k < around[removed_slot].size(); ++k) {
+        const std::uint32_t t = around[removed_slot][k];
         if (!is_alive_[t]) continue;
         codec::Corners& corners = corners_[t];
         if (corners[0] == kept || corners[1] == kept || corners[2] == kept) {
           is_alive_[t] = 0;
         } else {
           std::replace(corners.begin(), corners.end(), removed, kept);
-          at_kept.push_back(t);
+          around.add(slot, t);
         }
       }
+      around.clear(removed_slot);
+      around.remove_if(slot, [this](std::uint32_t t) { return !is_alive_[t]; });
       positions_[kept] = c.position;
       error_[kept] = c.error;
       for (TriangleId t : sequence_.derived_of(c)) derived_[index_of(t)] = 1;
       for (const AttributeChange& change : sequence_.changes_of(c)) {
-        change_attribute(at_kept, kept, change);
+        change_attribute(around[slot], kept, change);
       }
-      plan.steps.push_back({slot_of_vertex_[removed], slot_of_vertex_[kept], c.position});
+      plan.steps.push_back({removed_slot, slot, c.position});
     }
     for (const std::uint32_t v : vertices) slot_of_vertex_[v] = kNone;
   }
 
-  void change_attribute(const std::vector<std::uint32_t>& at_kept, std::uint32_t kept,
+  void change_attribute(std::span<const std::uint32_t> at_kept, std::uint32_t kept,
                         const AttributeChange& change) {
     const bool is_normal = mesh_.layers[change.layer].role == AttributeRole::Normal;
     for (const std::uint32_t t : at_kept) {
@@ -173,10 +193,6 @@ class Planner {
         if (corners_[t][c] == kept && attribute == change.from) attribute = change.to;
       }
     }
-  }
-
-  codec::CodedValue coded_value(std::size_t layer, AttributeId id) const {
-    return values_[layer].code(attribute_value(mesh_.layers[layer], sequence_, layer, id));
   }
 
   std::uint32_t category_of(std::uint32_t t) const {
@@ -194,15 +210,15 @@ class Planner {
 
   const Mesh& mesh_;
   const ContractionSequence& sequence_;
-  std::vector<LayerValues> values_;                  // per layer
-  std::size_t next_ = 0;                             // in the sequence
-  std::vector<Vec3i> positions_;                     // per vertex
-  std::vector<LevelError> error_;                    // per vertex
-  std::vector<codec::Corners> corners_;              // per triangle
-  std::vector<std::vector<AttributeId>> of_corner_;  // per layer, 3 a triangle
-  std::vector<char> is_alive_, derived_;             // per triangle
-  std::vector<std::uint32_t> label_;                 // per triangle: its patch in the band before
-  std::vector<std::uint32_t> slot_of_vertex_;        // all kNone between patches
+  std::vector<std::vector<codec::CodedValue>> codes_;  // per layer and value
+  std::size_t next_ = 0;                               // in the sequence
+  std::vector<Vec3i> positions_;                       // per vertex
+  std::vector<LevelError> error_;                      // per vertex
+  std::vector<codec::Corners> corners_;                // per triangle
+  std::vector<std::vector<AttributeId>> of_corner_;    // per layer, 3 a triangle
+  std::vector<char> is_alive_, derived_;               // per triangle
+  std::vector<std::uint32_t> label_;                   // per triangle: its patch in the band before
+  std::vector<std::uint32_t> slot_of_vertex_;          // all kNone between patches
 };
 
 AttributeCoding coding_of(LayerCoding::Kind kind) {

@@ -38,6 +38,10 @@ std::uint32_t code(Coder& coder, Models& models, const Item& item) {
       return std::uint32_t(code_signed(coder, models.number, std::int32_t(item.value)));
     case 5:
       return code_index(coder, item.value | 1, item.value / 2);
+    case 6:
+      return code_bits(coder, 5, item.value % 32);
+    case 7:
+      return code_bits(coder, 28, item.value >> 4);
     default:
       return coder.uniform(3, item.value % 3);
   }
@@ -48,7 +52,7 @@ std::vector<Item> random_items(std::uint64_t seed, std::size_t count) {
   std::vector<Item> items;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t bits = std::uint32_t(random() % 32);
-    items.push_back({int(random() % 7), std::uint32_t(random()) >> bits});
+    items.push_back({int(random() % 9), std::uint32_t(random()) >> bits});
     if (items.back().value > 0xfffffffeu - 1) items.back().value = 0;
   }
   return items;

@@ -132,7 +132,7 @@ void check_values(const BlockFile& file, const CodecModel& codec_model, const pl
     const std::size_t step = 1 + end.codes[l].size() / 500;
     for (std::size_t c = 0; c < end.codes[l].size(); c += step) {
       std::vector<float> expected(dimension);
-      values.read(end.codes[l][c], expected);
+      values.read(codec::CodedValue{end.codes[l][c]}, expected);
       const std::vector<float> got =
           plain::value_of(end.codes[l][c], model.schema.layers[l], model.lattices[l]);
       REQUIRE(got.size() == expected.size());
