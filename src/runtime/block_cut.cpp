@@ -36,11 +36,14 @@ std::size_t BlockCut::ShownPart::bytes() const {
          bytes_of_room(normals) + bytes_of_room(colors) + bytes_of_room(texcoords);
 }
 
-BlockCut::BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy)
+BlockCut::BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy,
+                   std::span<const SplitBounds> bounds)
     : block_(std::move(block)),
       hierarchy_(std::move(hierarchy)),
+      bounds_(bounds),
       cut_(data().hierarchy),
       at_rest_(data().hierarchy) {
+  refiner_.use_bounds(bounds_);
   held_.assign(data().leaf_of_vertex.size(), 0);
   taken_.assign(data().roots_of_triangle.size(), 0);
   is_root_split_.assign(data().node_of_root.size(), 0);
@@ -152,7 +155,7 @@ LevelError BlockCut::error() const {
   LevelError worst;
   for (const ActiveVertex& v : cut_.vertices()) {
     if (v.node == kNoNode || v.split == kNoSplit) continue;
-    worst = larger(worst, data().hierarchy.vertices.bounds[index_of(v.split)].error());
+    worst = larger(worst, bounds_[index_of(v.split)].error());
   }
   return worst;
 }

@@ -36,7 +36,13 @@ namespace crease {
 
 class BlockCut {
  public:
-  BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy);
+  // `bounds`: of the splits, in place of the hierarchy's; look_anew() says that they have changed.
+  BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy,
+           std::span<const SplitBounds> bounds);
+  void look_anew() {
+    refiner_.look_anew();
+    is_stale_ = true;
+  }
   BlockCut(const BlockCut&) = delete;
   BlockCut& operator=(const BlockCut&) = delete;
 
@@ -68,6 +74,7 @@ class BlockCut {
   const ResidentBlock& block() const { return *block_; }
   const BlockHierarchy::Data& data() const { return hierarchy_->data(); }
   const ActiveCut& cut() const { return cut_; }
+  std::span<const SplitBounds> bounds() const { return bounds_; }  // per split
 
  private:
   struct ShownPart {
@@ -87,6 +94,7 @@ class BlockCut {
 
   const ResidentBlockPtr block_;
   const BlockHierarchyPtr hierarchy_;
+  const std::span<const SplitBounds> bounds_;
   ActiveCut cut_;
   const Geomorphs at_rest_;
   Refiner refiner_;

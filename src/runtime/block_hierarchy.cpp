@@ -19,16 +19,21 @@ void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
   for (std::size_t i = 0; i < count; ++i) body(i);
 }
 
-// The finest mesh of the block alone, and the contractions that lead to its coarse end. Their
-// errors go from those that the file tells of the one end to those of the other, by the order in
-// which vertices are contracted, as for a whole model.
-DecodedModel model_of(const ResidentBlock::Data& block, std::span<const ResidentBlockPtr> needed) {
+struct ModelOfOne {
+  DecodedModel model;
+  std::vector<LevelError> own_errors;  // per contraction
+};
+
+// The finest mesh of the block alone, and the contractions that lead to its coarse end.
+ModelOfOne model_of(const ResidentBlock::Data& block, std::span<const ResidentBlockPtr> needed) {
   codec::BlockUnfolder unfolder;
   unfolder.add_alone(block.entry.facts, whole_end(block), block.splits,
                      coarse_end_of(needed, block.entry.facts));
-  DecodedModel model;
-  codec::ModelOfBlocks(*block.schema, unfolder).fill(model, 1, one_by_one);
-  return model;
+  ModelOfOne result;
+  codec::ModelOfBlocks blocks(*block.schema, unfolder);
+  blocks.fill(result.model, 1, one_by_one);
+  result.own_errors.assign(blocks.own_errors().begin(), blocks.own_errors().end());
+  return result;
 }
 
 // The first child of a split keeps its parent's number, so a root is the first vertex of its tree.
@@ -67,6 +72,15 @@ void find_nodes(const ResidentBlock::Data& block, const HierarchyMaps& maps,
   }
 }
 
+void find_own_errors(const ModelOfOne& of_one, const HierarchyMaps& maps,
+                     BlockHierarchy::Data& data) {
+  data.own_errors.resize(data.hierarchy.vertices.split_count());
+  for (std::size_t i = 0; i < of_one.own_errors.size(); ++i) {
+    data.own_errors[index_of(maps.split_of_contraction[i])] =
+        RoundedError::from(of_one.own_errors[i]);
+  }
+}
+
 // What a file may say and no hierarchy may have.
 bool is_sound(const DecodedModel& model) {
   if (!check_mesh(model.mesh).ok()) return false;
@@ -81,7 +95,8 @@ std::size_t bytes_of(const BlockHierarchy::Data& data) {
   return sizeof(data) + hierarchy_bytes(data.hierarchy).total() +
          4 * (data.leaf_of_vertex.size() + data.wedge_of_vertex.size() + data.node_of_root.size() +
               data.triangle_of.size()) +
-         sizeof(codec::Corners) * data.roots_of_triangle.size();
+         sizeof(codec::Corners) * data.roots_of_triangle.size() +
+         sizeof(RoundedError) * data.own_errors.size();
 }
 
 }  // namespace
@@ -104,7 +119,10 @@ BlockHierarchyPtr BlockHierarchyJob::run() const {
   const ResidentBlock::Data& block = block_->data();
   auto data = std::make_unique<BlockHierarchy::Data>();
   data->id = block_->id();
-  const DecodedModel model = model_of(block, needed_);
+  data->coarse = block.entry.facts.coarse;
+  data->fine = block.entry.facts.fine;
+  const ModelOfOne of_one = model_of(block, needed_);
+  const DecodedModel& model = of_one.model;
   HierarchyMaps maps;
   data->is_empty = true;
   if (is_sound(model)) {
@@ -112,7 +130,10 @@ BlockHierarchyPtr BlockHierarchyJob::run() const {
     data->is_empty = !hierarchy.ok();
     if (hierarchy.ok()) data->hierarchy = *std::move(hierarchy);
   }
-  if (!data->is_empty) find_nodes(block, maps, *data);
+  if (!data->is_empty) {
+    find_nodes(block, maps, *data);
+    find_own_errors(of_one, maps, *data);
+  }
   data->bytes = bytes_of(*data);
   return std::make_shared<const BlockHierarchy>(std::move(data));
 }

@@ -5,17 +5,39 @@
 #include "codec/patch_mesh.h"
 #include "crease/block_mesh.h"
 #include "crease/mesh_hierarchy.h"
+#include "crease/split_bounds.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace crease {
 
+// A LevelError, rounded up.
+struct RoundedError {
+  RoundedUp surface, line, degrees, texture;
+
+  static RoundedError from(const LevelError& error) {
+    const auto rounded = [](float x) {
+      return RoundedUp::from(x >= 0 ? x : std::numeric_limits<float>::infinity());  // or no number
+    };
+    return {rounded(error.surface), rounded(error.line), rounded(error.degrees),
+            rounded(error.texture)};
+  }
+  LevelError value() const {
+    return {surface.value(), line.value(), degrees.value(), texture.value()};
+  }
+  bool operator==(const RoundedError&) const = default;
+};
+
 struct BlockHierarchy::Data {
   BlockId id{};
-  bool is_empty = false;  // the block has none
+  bool is_empty = false;    // the block has none
+  LevelError coarse, fine;  // the largest at its ends
   MeshHierarchy hierarchy;
+  // Per split: what it adds to the errors that its vertex has at the fine end (BlockErrors).
+  std::vector<RoundedError> own_errors;
   // Per vertex of the fine end, by its number there.
   std::vector<NodeId> leaf_of_vertex;
   std::vector<std::uint32_t> wedge_of_vertex;  // the first one; kNone: no triangle has it

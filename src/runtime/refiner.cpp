@@ -62,7 +62,7 @@ UpdateReport Refiner::set_error(ActiveCut& cut, float error) {
   has_view_ = false;
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const auto is_coarse = [&](SplitId s) {
-    const SplitBounds& bounds = h.bounds[index_of(s)];
+    const SplitBounds& bounds = bounds_of(cut, s);
     return std::max(bounds.surface.value(), bounds.line.value()) > error || error < 0;
   };
   if (geomorphs_ != nullptr) {
@@ -215,7 +215,6 @@ void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t roo
 
 // What is below something that is wrong may be as wrong, and nothing of it is to be merged.
 void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
-  const VertexHierarchy& h = cut.hierarchy().vertices;
   const SplitId s = cut.vertices()[slot].split;
   const Vec3f position = error_.position(cut.vertices()[slot].position);
   const std::uint32_t other = move_down(cut, slot);
@@ -223,7 +222,7 @@ void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
     pair_of_slot_.resize(cut.vertices().size(), kNone);
     wrong_.resize(cut.vertices().size(), error_.uses_cones());
   }
-  watch_pair(slot, s, error_.watch(h.bounds[index_of(s)], position, merge_below_));
+  watch_pair(slot, s, error_.watch(bounds_of(cut, s), position, merge_below_));
   for (const std::uint32_t child : {slot, other}) {
     if (child == kNoSlot) continue;
     watch_vertex(cut, child);
@@ -263,14 +262,14 @@ void Refiner::count_merge(const ActiveCut& cut, SplitId s, std::uint32_t slot) {
 // A third vertex of what s brings whose own error is larger.
 bool Refiner::needs_split(const ActiveCut& cut, SplitId s, std::uint32_t& third) const {
   const VertexHierarchy& h = cut.hierarchy().vertices;
-  const float error = h.bounds[index_of(s)].surface.value();
+  const float error = bounds_of(cut, s).surface.value();
   const TriangleRange born = h.triangles_of(s);
   for (std::uint32_t t = born.begin; t < born.end; ++t) {
     for (const WedgeId wedge : h.triangles[t]) {
       third = cut.slot_at(wedge);
       const SplitId other = cut.vertices()[third].split;
       if (other == kNoSplit || other == s) continue;
-      if (h.bounds[index_of(other)].surface.value() > error) return true;
+      if (bounds_of(cut, other).surface.value() > error) return true;
     }
   }
   return false;
@@ -321,8 +320,7 @@ void Refiner::split_required(ActiveCut& cut) {
 bool Refiner::is_needed(const ActiveCut& cut, SplitId s) const {
   if (!is_required_.empty() && is_required_[index_of(s)]) return true;
   if (!view_.consistent) return false;
-  const VertexHierarchy& h = cut.hierarchy().vertices;
-  const float error = h.bounds[index_of(s)].surface.value();
+  const float error = bounds_of(cut, s).surface.value();
   const ActiveCut::Children children = cut.children(s);
   for (const std::uint32_t slot : {children.first, children.second}) {
     if (slot == kNoSlot) continue;
@@ -330,7 +328,7 @@ bool Refiner::is_needed(const ActiveCut& cut, SplitId s) const {
       const TriangleId t = cut.parts()[at.corner.part()].ids[at.corner.triangle()];
       const SplitId by = cut.introducing_split(t);
       if (by == kNoSplit || by == s) continue;
-      if (h.bounds[index_of(by)].surface.value() < error) return true;
+      if (bounds_of(cut, by).surface.value() < error) return true;
     }
   }
   return false;

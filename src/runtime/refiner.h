@@ -19,6 +19,7 @@
 #include "runtime/watch_list.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace crease {
@@ -27,6 +28,10 @@ class Refiner {
  public:
   // It tells `geomorphs`, if there are, of its moves, and lets merges wait for them.
   explicit Refiner(Geomorphs* geomorphs = nullptr) : geomorphs_(geomorphs) {}
+
+  // In place of the hierarchy's, per split. They may change if look_anew() says so.
+  void use_bounds(std::span<const SplitBounds> bounds) { bounds_ = bounds; }
+  void look_anew() { has_view_ = false; }
 
   UpdateReport update(ActiveCut& cut, const ViewParameters& view);
   UpdateReport set_error(ActiveCut& cut, float error);
@@ -68,6 +73,9 @@ class Refiner {
     std::uint32_t slot;
   };
 
+  const SplitBounds& bounds_of(const ActiveCut& cut, SplitId s) const {
+    return bounds_.empty() ? cut.hierarchy().vertices.bounds[index_of(s)] : bounds_[index_of(s)];
+  }
   void look_from(const ActiveCut& cut, const ViewParameters& view);
   void watch_all(const ActiveCut& cut);
   void watch_vertex(const ActiveCut& cut, std::uint32_t slot);
@@ -105,6 +113,7 @@ class Refiner {
   void split_required(ActiveCut& cut);
 
   Geomorphs* geomorphs_;
+  std::span<const SplitBounds> bounds_;  // or empty: the hierarchy's
   ViewParameters view_;
   ViewError error_;
   bool has_view_ = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 namespace crease {
 
@@ -10,6 +11,8 @@ namespace {
 // Of the fine ends of blocks that become by vertex in one update: each starts with its coarse end,
 // and is split as far as the view wants.
 constexpr std::size_t kNewTriangles = 32'000;
+// Blocks whose errors are worked out anew in one update.
+constexpr int kNewErrors = 16;
 
 }  // namespace
 
@@ -17,8 +20,69 @@ void VertexCuts::insert(BlockHierarchyPtr hierarchy) {
   const std::size_t block = index_of(hierarchy->id());
   if (block >= entries_.size()) entries_.resize(block + 1);
   if (entries_[block].hierarchy) return;
-  entries_[block].hierarchy = std::move(hierarchy);
+  Entry& entry = entries_[block];
+  entry.hierarchy = std::move(hierarchy);
   has_changed_ = true;
+  if (entry.hierarchy->data().is_empty) return;
+  entry.errors = std::make_unique<BlockErrors>(entry.hierarchy->data());
+  mark_stale(static_cast<std::uint32_t>(block));
+  for (const std::uint32_t coarser : graph_.dependencies(static_cast<std::uint32_t>(block))) {
+    mark_stale(coarser);
+  }
+}
+
+void VertexCuts::mark_stale(std::uint32_t block) {
+  if (!entries_[block].errors || entries_[block].is_stale) return;
+  entries_[block].is_stale = true;
+  stale_.push_back(block);
+  std::push_heap(stale_.begin(), stale_.end());
+}
+
+// From fine to coarse.
+void VertexCuts::settle_errors(const Blocks& blocks) {
+  for (int i = 0; i < kNewErrors && !stale_.empty(); ++i) {
+    std::pop_heap(stale_.begin(), stale_.end());
+    const std::uint32_t block = stale_.back();
+    stale_.pop_back();
+    Entry& entry = entries_[block];
+    if (!entry.is_stale) continue;
+    entry.is_stale = false;
+    tighten(block, blocks);
+    if (!entry.errors->settle()) continue;
+    if (entry.cut) entry.cut->look_anew();
+    for (const std::uint32_t coarser : graph_.dependencies(block)) mark_stale(coarser);
+  }
+}
+
+// By the roots of finer blocks: the triangles of a group are those of its coarse end, in order.
+void VertexCuts::tighten(std::uint32_t block, const Blocks& blocks) {
+  const ResidentBlock& resident = *blocks.resident[block];
+  const codec::FineEnd& end = resident.data().end;
+  struct Group {
+    const Entry* finer = nullptr;
+    std::size_t next = 0;
+  };
+  std::map<std::uint32_t, Group> groups;
+  for (const BlockGroup& group : resident.groups()) {
+    const std::uint32_t finer = graph_.next_finer(resident.facts().band, group.patch);
+    if (finer >= entries_.size() || !entries_[finer].errors) continue;
+    const std::span<const std::uint32_t> needed = graph_.dependencies(finer);
+    if (std::find(needed.begin(), needed.end(), block) == needed.end()) continue;
+    if (!std::all_of(needed.begin(), needed.end(),
+                     [&](std::uint32_t n) { return blocks.resident[n] != nullptr; })) {
+      continue;
+    }
+    groups[group.patch] = {&entries_[finer], first_triangle_in(finer, block, blocks)};
+  }
+  for (std::size_t t = 0; t < end.labels.size(); ++t) {
+    const auto at = groups.find(end.labels[t]);
+    if (at == groups.end()) continue;
+    const Entry& finer = *at->second.finer;
+    const codec::Corners& roots = finer.hierarchy->data().roots_of_triangle[at->second.next++];
+    for (std::size_t k = 0; k < 3; ++k) {
+      entries_[block].errors->tighten(end.mesh.triangles[t][k], finer.errors->of_root(roots[k]));
+    }
+  }
 }
 
 void VertexCuts::drop(std::uint32_t block) {
@@ -30,9 +94,11 @@ void VertexCuts::drop(std::uint32_t block) {
 
 void VertexCuts::clear() {
   for (Entry& entry : entries_) {
-    const BlockHierarchyPtr hierarchy = std::move(entry.hierarchy);
-    entry = {};
-    entry.hierarchy = hierarchy;
+    Entry cleared;
+    cleared.hierarchy = std::move(entry.hierarchy);
+    cleared.errors = std::move(entry.errors);
+    cleared.is_stale = entry.is_stale;
+    entry = std::move(cleared);
   }
   has_changed_ = has_arrived_ = true;
 }
@@ -40,7 +106,8 @@ void VertexCuts::clear() {
 std::size_t VertexCuts::bytes_of(std::uint32_t block) const {
   if (block >= entries_.size()) return 0;
   const Entry& entry = entries_[block];
-  return (entry.hierarchy ? entry.hierarchy->bytes() : 0) + (entry.cut ? entry.cut->bytes() : 0) +
+  return (entry.hierarchy ? entry.hierarchy->bytes() : 0) +
+         (entry.errors ? entry.errors->bytes() : 0) + (entry.cut ? entry.cut->bytes() : 0) +
          sizeof(Maker) * entry.makers.capacity() + 4 * entry.named_by.capacity();
 }
 
@@ -53,6 +120,7 @@ VertexCuts::Report VertexCuts::update(const Blocks& blocks, const ViewParameters
     report.have_changed = choose_blocks(blocks);
     link(blocks);
   }
+  settle_errors(blocks);
   move(blocks, view, report);
   return report;
 }
@@ -81,7 +149,8 @@ bool VertexCuts::choose_blocks(const Blocks& blocks) {
         continue;
       }
       triangles += more;
-      entry.cut = std::make_unique<BlockCut>(blocks.resident[block], entry.hierarchy);
+      entry.cut = std::make_unique<BlockCut>(blocks.resident[block], entry.hierarchy,
+                                             entry.errors->bounds());
       entry.seen_in_round = round_;
     } else {
       entry.cut.reset();
@@ -234,7 +303,7 @@ std::size_t VertexCuts::first_triangle_in(std::uint32_t finer, std::uint32_t blo
 void VertexCuts::move(const Blocks& blocks, const ViewParameters& view, Report& report) {
   const bool has_clock = view.clock != nullptr;
   const double stop_at = has_clock ? view.clock(view.clock_context) + view.max_seconds : 0;
-  has_arrived_ = !has_changed_;
+  has_arrived_ = !has_changed_ && stale_.empty();
   const bool is_over = std::none_of(blocks.cut.begin(), blocks.cut.end(), [this](std::uint32_t b) {
     return entries_[b].cut && entries_[b].seen_in_round != round_;
   });

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "runtime/block_cut.h"
+#include "runtime/block_errors.h"
 #include "runtime/block_graph.h"
 
 #include <cstddef>
@@ -63,7 +64,9 @@ class VertexCuts {
   enum class Way : std::uint8_t { Hidden, Whole, ByVertex };
   struct Entry {
     BlockHierarchyPtr hierarchy;
+    std::unique_ptr<BlockErrors> errors;
     std::unique_ptr<BlockCut> cut;
+    bool is_stale = false;                // finer blocks may know more of its errors
     std::vector<Maker> makers;            // of its roots, by block; while it is refined
     std::vector<std::uint32_t> named_by;  // refined blocks whose roots it made
     Way way = Way::Hidden;
@@ -72,6 +75,9 @@ class VertexCuts {
     std::uint64_t seen_in_round = 0;
   };
 
+  void mark_stale(std::uint32_t block);
+  void settle_errors(const Blocks& blocks);
+  void tighten(std::uint32_t block, const Blocks& blocks);
   bool can_be_by_vertex(std::uint32_t block) const;
   bool choose_blocks(const Blocks& blocks);
   void link(const Blocks& blocks);
@@ -86,9 +92,10 @@ class VertexCuts {
                                 const Blocks& blocks) const;
 
   const BlockGraph& graph_;
-  std::vector<Entry> entries_;  // per block
-  std::uint64_t round_ = 1;     // each block sees a view once a round
-  bool has_changed_ = true;     // hierarchies have come or cuts have gone
+  std::vector<Entry> entries_;        // per block
+  std::vector<std::uint32_t> stale_;  // a heap: finest first
+  std::uint64_t round_ = 1;           // each block sees a view once a round
+  bool has_changed_ = true;           // hierarchies have come or cuts have gone
   bool has_arrived_ = true;
 };
 

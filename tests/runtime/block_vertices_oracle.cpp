@@ -231,7 +231,7 @@ std::size_t check_nothing_is_wrong(const BlockMesh& mesh, const ViewParameters& 
     ++blocks;
     for (const ActiveVertex& v : cut->cut().vertices()) {
       if (v.node == kNoNode || v.split == kNoSplit) continue;
-      const SplitBounds& bounds = cut->data().hierarchy.vertices.bounds[index_of(v.split)];
+      const SplitBounds& bounds = cut->bounds()[index_of(v.split)];
       wrong += error.is_wrong(error.watch(bounds, error.position(v.position), 1));
     }
   }
