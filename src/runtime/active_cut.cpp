@@ -22,9 +22,10 @@ bool keeps_values(const AttributeHierarchy& layer, SplitId s) {
 
 }  // namespace
 
-ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
+ActiveCut::ActiveCut(const MeshHierarchy& hierarchy, const char* is_hidden)
     : hierarchy_(hierarchy),
       h_(hierarchy.vertices),
+      is_hidden_(is_hidden),
       place_of_layer_(hierarchy.layers.size(), kNone),
       done_((h_.split_count() + 63) / 64, 0),
       map_(h_.wedge_count()) {
@@ -276,7 +277,9 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
   }
   const bool is_derived = touches_triangles_ && is_derived_now(t);
   const bool is_smooth = !touches_triangles_ || (one_normal && !is_derived);
-  const Part kind = is_smooth ? kSnPart : kind_of(is_derived, slots, arriving_);
+  const Part kind = is_hidden(t) ? kHiddenPart
+                    : is_smooth  ? kSnPart
+                                 : kind_of(is_derived, slots, arriving_);
   ActiveTriangles& part = parts_[kind];
   const std::uint32_t place = part.add(t, arriving_.size());
   if (has_values) std::copy(arriving_.begin(), arriving_.end(), &part.values[3 * tracked * place]);
@@ -329,6 +332,7 @@ void ActiveCut::touch_corners(std::uint32_t slot, bool had_one_normal) {
   }
   for (const CornerAt& at : corners) {
     const std::uint32_t part = at.corner.part(), triangle = at.corner.triangle();
+    if (part == kHiddenPart) continue;
     const bool touched =
         part == kSnPart ? !has_one : !only_derived || parts_[part].is_derived[triangle] != 0;
     if (touched) parts_[part].touched.mark(triangle);

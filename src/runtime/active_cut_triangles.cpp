@@ -89,7 +89,7 @@ void ActiveCut::move_triangle(Part from, std::uint32_t triangle, Part to) {
 }
 
 void ActiveCut::fill_holes() {
-  for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
+  for (const Part p : {kSnPart, kFnPart, kNsnPart, kHiddenPart}) {
     ActiveTriangles& part = parts_[p];
     while (part.hole_count > 0) {
       while (!part.ids.empty() && part.ids.back() == kNoTriangle) {
@@ -111,6 +111,15 @@ void ActiveCut::fill_holes() {
     part.slots.resize(3 * part.ids.size());
     part.values.resize(3 * tracked_.size() * part.ids.size());
     part.is_derived.resize(part.ids.size());
+  }
+}
+
+void ActiveCut::touch(TriangleId t) {
+  const WedgeId wedge = h_.triangles[index_of(t)][0];
+  for (const CornerAt& at : lists_.of(vertices_[map_.slot_at(wedge)].corners)) {
+    ActiveTriangles& part = parts_[at.corner.part()];
+    if (at.wedge != wedge || part.ids[at.corner.triangle()] != t) continue;
+    return part.touched.mark(at.corner.triangle());
   }
 }
 

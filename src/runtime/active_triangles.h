@@ -1,4 +1,5 @@
-// The active triangles of one of the three parts of a draw list (SN, FN, NSN), in no order.
+// The active triangles of one of the three parts of a draw list (SN, FN, NSN), in no order; or
+// those that are active and hidden.
 //
 // A triangle that is taken away leaves a hole, which the next new one fills; holes that are left
 // when all moves are done are filled from the end (CutDrawing). So a frame that splits as much as
@@ -19,7 +20,7 @@
 
 namespace crease {
 
-enum Part : std::uint32_t { kSnPart, kFnPart, kNsnPart, kPartCount };
+enum Part : std::uint32_t { kSnPart, kFnPart, kNsnPart, kHiddenPart, kPartCount };
 
 inline constexpr TriangleId kNoTriangle{kNone};
 

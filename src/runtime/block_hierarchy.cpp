@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace crease {
@@ -62,6 +63,7 @@ void find_nodes(const ResidentBlock::Data& block, const HierarchyMaps& maps,
     while (!h.is_root(root)) root = h.parent(root);
     data.node_of_root.push_back(root);
   }
+  data.id_of_triangle = maps.new_of_triangle;
   data.triangle_of.resize(maps.new_of_triangle.size());
   data.roots_of_triangle.reserve(maps.new_of_triangle.size());
   for (std::uint32_t t = 0; t < maps.new_of_triangle.size(); ++t) {
@@ -70,6 +72,59 @@ void find_nodes(const ResidentBlock::Data& block, const HierarchyMaps& maps,
     for (std::uint32_t& v : roots) v = root_of_vertex[v];
     data.roots_of_triangle.push_back(roots);
   }
+  data.coarse_triangles = block.coarse_triangles;
+  const TriangleRange of_roots = h.coarse_triangles();
+  data.shows_roots = of_roots.size() > data.coarse_triangles;
+}
+
+void sort_triangles_by_root(BlockHierarchy::Data& data) {
+  const std::size_t roots = data.node_of_root.size();
+  const auto triangles = static_cast<std::uint32_t>(data.roots_of_triangle.size());
+  std::vector<std::uint32_t>& first = data.first_of_root;
+  first.assign(roots + 1, 0);
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    for (const std::uint32_t r : data.different_roots(t)) ++first[r + 1];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1), sorted(first.back());
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    for (const std::uint32_t r : data.different_roots(t)) sorted[next[r]++] = t;
+  }
+  data.triangles_of_root = PackedIndices<>(bits_for(triangles));
+  for (const std::uint32_t t : sorted) data.triangles_of_root.push_back(t);
+}
+
+void find_root_splits(BlockHierarchy::Data& data) {
+  const VertexHierarchy& h = data.hierarchy.vertices;
+  std::vector<std::uint32_t> root_of_node(h.root_count);
+  for (std::uint32_t r = 0; r < data.node_of_root.size(); ++r) {
+    root_of_node[index_of(data.node_of_root[r])] = r;
+  }
+  for (std::uint32_t n = 0; n < h.root_count; ++n) {
+    if (h.split_of(NodeId{n}) != kNoSplit) data.root_of_split.push_back(root_of_node[n]);
+  }
+}
+
+void count_requirable_splits(BlockHierarchy::Data& data) {
+  const VertexHierarchy& h = data.hierarchy.vertices;
+  std::vector<char> is_above(h.split_count(), 0);
+  for (std::uint32_t v = 0; v < data.leaf_of_vertex.size(); ++v) {
+    if (data.wedge_of_vertex[v] == kNone) continue;
+    for (NodeId n = data.leaf_of_vertex[v]; !h.is_root(n); n = h.parent(n)) {
+      char& above = is_above[index_of(h.split_above(n))];
+      if (above) break;
+      above = 1;
+      ++data.requirable_splits;
+    }
+  }
+}
+
+void sort_triangles_by_patch(const ResidentBlock::Data& block, BlockHierarchy::Data& data) {
+  const std::vector<std::uint32_t>& labels = block.end.labels;
+  data.triangles_by_patch.resize(labels.size());
+  std::iota(data.triangles_by_patch.begin(), data.triangles_by_patch.end(), 0);
+  std::stable_sort(data.triangles_by_patch.begin(), data.triangles_by_patch.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return labels[a] < labels[b]; });
 }
 
 void find_own_errors(const ModelOfOne& of_one, const HierarchyMaps& maps,
@@ -94,8 +149,9 @@ bool is_sound(const DecodedModel& model) {
 std::size_t bytes_of(const BlockHierarchy::Data& data) {
   return sizeof(data) + hierarchy_bytes(data.hierarchy).total() +
          4 * (data.leaf_of_vertex.size() + data.wedge_of_vertex.size() + data.node_of_root.size() +
-              data.triangle_of.size()) +
-         sizeof(codec::Corners) * data.roots_of_triangle.size() +
+              data.root_of_split.size() + data.id_of_triangle.size() + data.triangle_of.size() +
+              data.first_of_root.size() + data.triangles_by_patch.size()) +
+         data.triangles_of_root.bytes() + sizeof(codec::Corners) * data.roots_of_triangle.size() +
          sizeof(RoundedError) * data.own_errors.size();
 }
 
@@ -132,6 +188,10 @@ BlockHierarchyPtr BlockHierarchyJob::run() const {
   }
   if (!data->is_empty) {
     find_nodes(block, maps, *data);
+    sort_triangles_by_root(*data);
+    find_root_splits(*data);
+    count_requirable_splits(*data);
+    sort_triangles_by_patch(block, *data);
     find_own_errors(of_one, maps, *data);
   }
   data->bytes = bytes_of(*data);

@@ -21,7 +21,7 @@ std::vector<ActiveTriangle> in_order(const ActiveCut& cut,
                                      const std::function<bool(TriangleId)>& is_in) {
   std::vector<ActiveTriangle> all;
   all.reserve(cut.triangle_count());
-  for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
+  for (const Part p : {kSnPart, kFnPart, kNsnPart, kHiddenPart}) {
     const ActiveTriangles& part = cut.parts()[p];
     for (std::uint32_t i = 0; i < part.size(); ++i) {
       if (!is_in || is_in(part.ids[i])) all.push_back({part.ids[i], p, i});

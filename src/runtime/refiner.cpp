@@ -141,6 +141,8 @@ void Refiner::do_merges(ActiveCut& cut) {
     const bool has_both = children.first != kNoSlot && children.second != kNoSlot;
     if (!has_both && !cut.can_merge(wish.split)) {
       drop_pair(wish.slot);
+    } else if (is_required(wish.split)) {
+      watch_pair(wish.slot, wish.split, kAlwaysWrong);
     } else if (!is_needed(cut, wish.split) && !waits(cut, wish.split, children, false)) {
       merge(cut, wish.split, children);
     }
@@ -222,7 +224,9 @@ void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
     pair_of_slot_.resize(cut.vertices().size(), kNone);
     wrong_.resize(cut.vertices().size(), error_.uses_cones());
   }
-  watch_pair(slot, s, error_.watch(bounds_of(cut, s), position, merge_below_));
+  watch_pair(
+      slot, s,
+      is_required(s) ? kAlwaysWrong : error_.watch(bounds_of(cut, s), position, merge_below_));
   for (const std::uint32_t child : {slot, other}) {
     if (child == kNoSlot) continue;
     watch_vertex(cut, child);
@@ -291,34 +295,45 @@ void Refiner::split_consistently(ActiveCut& cut, std::uint32_t slot) {
   }
 }
 
-void Refiner::require(const ActiveCut& cut, std::vector<Required> leaves) {
-  const VertexHierarchy& h = cut.hierarchy().vertices;
-  required_ = std::move(leaves);
-  requires_anew_ = true;
-  is_required_.assign(required_.empty() ? 0 : h.split_count(), 0);
-  for (const Required& required : required_) {
-    for (NodeId n = required.leaf; !h.is_root(n); n = h.parent(n)) {
-      char& is_required = is_required_[index_of(h.split_above(n))];
-      if (is_required) break;
-      is_required = 1;
-    }
+// Its watchers need not look any more.
+void Refiner::hold(const ActiveCut& cut, SplitId s) {
+  if (!has_view_ || !cut.can_merge(s)) return;
+  const ActiveCut::Children children = cut.children(s);
+  for (const std::uint32_t slot : {children.first, children.second}) {
+    const std::uint32_t pair = slot < pair_of_slot_.size() ? pair_of_slot_[slot] : kNone;
+    if (pair != kNone && pairs_[pair].split == s) merged_.set(pair, kAlwaysWrong);
   }
 }
 
+void Refiner::release(const ActiveCut& cut, SplitId s) {
+  requires_anew_ = true;
+  if (!has_view_ || !cut.can_merge(s)) return;
+  const ActiveCut::Children children = cut.children(s);
+  const std::uint32_t slot = children.first != kNoSlot ? children.first : children.second;
+  if (slot != kNoSlot) watch_pair(slot, s, watch_above(cut, cut.vertices()[slot], s));
+}
+
 void Refiner::split_required(ActiveCut& cut) {
-  for (const Required& required : required_) {
+  for (const Required& required : required_leaves_) {
     for (;;) {
       const std::uint32_t slot = cut.slot_at(required.wedge);
       if (cut.vertices()[slot].node == required.leaf) break;
       split(cut, slot);
     }
   }
+  required_leaves_.clear();
+}
+
+WatchList::Slack Refiner::slack() const {
+  if (!splits_.empty() || !merges_.empty()) return {-kNever, -kNever};
+  const WatchList::Slack a = wrong_.slack(odometer_), b = merged_.slack(odometer_);
+  return {std::min(a.travel, b.travel), std::min(a.turn, b.turn)};
 }
 
 // Required, or in consistent mode: something that is split has a third vertex below s, and a
 // smaller error than s.
 bool Refiner::is_needed(const ActiveCut& cut, SplitId s) const {
-  if (!is_required_.empty() && is_required_[index_of(s)]) return true;
+  if (is_required(s)) return true;
   if (!view_.consistent) return false;
   const float error = bounds_of(cut, s).surface.value();
   const ActiveCut::Children children = cut.children(s);

@@ -98,6 +98,7 @@ void Refiner::drop_pair(std::uint32_t slot) {
 
 // Of the parent of v, as something that is to be merged.
 Watch Refiner::watch_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const {
+  if (is_required(above)) return kAlwaysWrong;
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const Vec3i position = grid_difference(v.position, h.delta_of(v.node));
   return error_.watch(bounds_of(cut, above), error_.position(position), merge_below_);
