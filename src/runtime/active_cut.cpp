@@ -52,6 +52,7 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy, const char* is_hidden)
   }
   const TriangleRange coarse = h_.coarse_triangles();
   for (std::uint32_t t = coarse.begin; t < coarse.end; ++t) {
+    if (this->is_hidden(TriangleId{t})) continue;
     std::array<std::uint32_t, 3> slots;
     for (std::size_t k = 0; k < 3; ++k) slots[k] = map_.slot_at(h_.triangles[t][k]);
     activate(TriangleId{t}, h_.triangles[t], slots);
@@ -161,6 +162,7 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
 
   const TriangleRange born = h_.triangles_of(s);
   for (std::uint32_t t = born.begin; t < born.end; ++t) {
+    if (is_hidden(TriangleId{t})) continue;
     const std::array<WedgeId, 3> wedges = h_.triangles[t];
     std::array<std::uint32_t, 3> slots;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -277,9 +279,7 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
   }
   const bool is_derived = touches_triangles_ && is_derived_now(t);
   const bool is_smooth = !touches_triangles_ || (one_normal && !is_derived);
-  const Part kind = is_hidden(t) ? kHiddenPart
-                    : is_smooth  ? kSnPart
-                                 : kind_of(is_derived, slots, arriving_);
+  const Part kind = is_smooth ? kSnPart : kind_of(is_derived, slots, arriving_);
   ActiveTriangles& part = parts_[kind];
   const std::uint32_t place = part.add(t, arriving_.size());
   if (has_values) std::copy(arriving_.begin(), arriving_.end(), &part.values[3 * tracked * place]);
@@ -332,7 +332,6 @@ void ActiveCut::touch_corners(std::uint32_t slot, bool had_one_normal) {
   }
   for (const CornerAt& at : corners) {
     const std::uint32_t part = at.corner.part(), triangle = at.corner.triangle();
-    if (part == kHiddenPart) continue;
     const bool touched =
         part == kSnPart ? !has_one : !only_derived || parts_[part].is_derived[triangle] != 0;
     if (touched) parts_[part].touched.mark(triangle);

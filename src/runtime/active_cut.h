@@ -53,8 +53,8 @@ static_assert(sizeof(ActiveVertex) == 128);
 
 class ActiveCut {
  public:
-  // `is_hidden`, if it is there: per triangle, whether it is in the part of those that are not
-  // shown. Stays the caller's, who tells touch() of changes.
+  // `is_hidden`, if it is there: per triangle, whether it is left out, as if it were not active.
+  // Stays the caller's, who tells hide_or_show() of each change.
   explicit ActiveCut(const MeshHierarchy& hierarchy, const char* is_hidden = nullptr);
 
   const MeshHierarchy& hierarchy() const { return hierarchy_; }
@@ -129,7 +129,7 @@ class ActiveCut {
   // normals are, if `with_normals`.
   void touch_moving(std::uint32_t slot, bool with_normals);
   bool is_hidden(TriangleId t) const { return is_hidden_ != nullptr && is_hidden_[index_of(t)]; }
-  void touch(TriangleId t);  // if it is active
+  void hide_or_show(TriangleId t);
   // A bit a split, in their order: it is done.
   std::span<const std::uint64_t> done_words() const { return done_; }
   // No part has holes afterwards.

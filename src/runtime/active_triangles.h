@@ -1,5 +1,4 @@
-// The active triangles of one of the three parts of a draw list (SN, FN, NSN), in no order; or
-// those that are active and hidden.
+// The active triangles of one of the three parts of a draw list (SN, FN, NSN), in no order.
 //
 // A triangle that is taken away leaves a hole, which the next new one fills; holes that are left
 // when all moves are done are filled from the end (CutDrawing). So a frame that splits as much as
@@ -20,7 +19,7 @@
 
 namespace crease {
 
-enum Part : std::uint32_t { kSnPart, kFnPart, kNsnPart, kHiddenPart, kPartCount };
+enum Part : std::uint32_t { kSnPart, kFnPart, kNsnPart, kPartCount };
 
 inline constexpr TriangleId kNoTriangle{kNone};
 

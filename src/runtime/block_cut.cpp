@@ -127,7 +127,7 @@ UpdateReport BlockCut::move() {
   }
   const UpdateReport report = refiner.update(cut, view_);
   links_->set_root_splits(cut.done_words());
-  for (const TriangleId t : links_->hidden_changes()) cut.touch(t);
+  for (const TriangleId t : links_->hidden_changes()) cut.hide_or_show(t);
   const bool has_changed = report.splits + report.merges > 0 || !links_->hidden_changes().empty();
   if (!has_changed && live_->is_drawn) return report;
   live_->is_drawn = true;

@@ -14,7 +14,6 @@ constexpr std::size_t kNormalsPerTriangle[] = {0, 1, 3};
 // Face normals that come from different ones are shown as three.
 Part shown_kind(const ActiveCut& cut, const Geomorphs& geomorphs, const ActiveTriangles& part,
                 std::uint32_t triangle) {
-  if (cut.is_hidden(part.ids[triangle])) return kHiddenPart;
   const Part kind = cut.kind_of(part, triangle);
   if (kind != kFnPart || part.is_derived[triangle] != 0 || geomorphs.moving_count() == 0) {
     return kind;
@@ -65,7 +64,7 @@ void CutDrawing::arrive(ActiveCut& cut, const Geomorphs& geomorphs) {
 }
 
 void CutDrawing::sort_touched(ActiveCut& cut, const Geomorphs& geomorphs) {
-  for (const Part p : {kSnPart, kFnPart, kNsnPart, kHiddenPart}) {
+  for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
     touched_.clear();
     ActiveTriangles& part = cut.parts()[p];
     part.touched.take(part.size(), ranges_,
