@@ -8,17 +8,17 @@ namespace crease {
 
 namespace {
 
-RoundedUp smaller(RoundedUp a, RoundedUp b) {
+RoundedUp better(RoundedUp a, RoundedUp b) {
   return a.bits < b.bits ? a : b;
 }
 
-RoundedUp larger(RoundedUp a, RoundedUp b) {
+RoundedUp worse(RoundedUp a, RoundedUp b) {
   return a.bits > b.bits ? a : b;
 }
 
-RoundedError larger(const RoundedError& a, const RoundedError& b) {
-  return {larger(a.surface, b.surface), larger(a.line, b.line), larger(a.degrees, b.degrees),
-          larger(a.texture, b.texture)};
+RoundedError worse(const RoundedError& a, const RoundedError& b) {
+  return {worse(a.surface, b.surface), worse(a.line, b.line), worse(a.degrees, b.degrees),
+          worse(a.texture, b.texture)};
 }
 
 }  // namespace
@@ -32,9 +32,9 @@ BlockErrors::BlockErrors(const BlockHierarchy::Data& data)
 
 void BlockErrors::tighten(std::uint32_t vertex, const RoundedError& error) {
   RoundedError& known = of_vertex_[vertex];
-  const RoundedError less{smaller(known.surface, error.surface), smaller(known.line, error.line),
-                          smaller(known.degrees, error.degrees),
-                          smaller(known.texture, error.texture)};
+  const RoundedError less{better(known.surface, error.surface), better(known.line, error.line),
+                          better(known.degrees, error.degrees),
+                          better(known.texture, error.texture)};
   if (less == known) return;
   known = less;
   is_new_ = true;
@@ -65,10 +65,10 @@ bool BlockErrors::settle() {
     const SplitId s{static_cast<std::uint32_t>(i)};
     const std::size_t node = index_of(h.node_of_split[i]);
     const std::size_t first = index_of(h.first_child(s)), second = index_of(h.second_child(s));
-    base[node] = larger(base[first], base[second]);
+    base[node] = worse(base[first], base[second]);
     const LevelError added =
         codec::added_error(base[node].value(), data_.own_errors[i].value(), data_.coarse);
-    error[node] = larger(larger(error[first], error[second]), RoundedError::from(added));
+    error[node] = worse(worse(error[first], error[second]), RoundedError::from(added));
     SplitBounds& bounds = bounds_[i];
     const RoundedError before{bounds.surface, bounds.line, bounds.degrees, bounds.texture};
     has_changed |= h.is_root(NodeId{static_cast<std::uint32_t>(node)}) && !(before == error[node]);

@@ -8,6 +8,7 @@
 #include "runtime/resident_block.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -77,21 +78,32 @@ void find_nodes(const ResidentBlock::Data& block, const HierarchyMaps& maps,
   data.shows_roots = of_roots.size() > data.coarse_triangles;
 }
 
-void sort_triangles_by_root(BlockHierarchy::Data& data) {
-  const std::size_t roots = data.node_of_root.size();
-  const auto triangles = static_cast<std::uint32_t>(data.roots_of_triangle.size());
-  std::vector<std::uint32_t>& first = data.first_of_root;
+// Pairs of a root and what belongs to it, as lists.
+void sort_by_root(std::vector<std::array<std::uint32_t, 2>> pairs, std::size_t roots,
+                  std::size_t limit, std::vector<std::uint32_t>& first, PackedIndices<>& lists) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   first.assign(roots + 1, 0);
-  for (std::uint32_t t = 0; t < triangles; ++t) {
-    for (const std::uint32_t r : data.different_roots(t)) ++first[r + 1];
+  lists = PackedIndices<>(bits_for(limit));
+  for (const auto& [root, what] : pairs) {
+    ++first[root + 1];
+    lists.push_back(what);
   }
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1), sorted(first.back());
-  for (std::uint32_t t = 0; t < triangles; ++t) {
-    for (const std::uint32_t r : data.different_roots(t)) sorted[next[r]++] = t;
+}
+
+void find_rings(BlockHierarchy::Data& data) {
+  const std::size_t roots = data.node_of_root.size();
+  std::vector<std::array<std::uint32_t, 2>> triangles, rings;
+  for (std::uint32_t t = 0; t < data.roots_of_triangle.size(); ++t) {
+    for (const std::uint32_t r : data.roots_of_triangle[t]) {
+      if (t < data.coarse_triangles) triangles.push_back({r, t});
+      for (const std::uint32_t other : data.roots_of_triangle[t]) rings.push_back({r, other});
+    }
   }
-  data.triangles_of_root = PackedIndices<>(bits_for(triangles));
-  for (const std::uint32_t t : sorted) data.triangles_of_root.push_back(t);
+  sort_by_root(std::move(triangles), roots, data.coarse_triangles, data.first_triangle_of_root,
+               data.triangles_of_root);
+  sort_by_root(std::move(rings), roots, roots, data.first_in_ring, data.rings);
 }
 
 void find_root_splits(BlockHierarchy::Data& data) {
@@ -150,7 +162,8 @@ std::size_t bytes_of(const BlockHierarchy::Data& data) {
   return sizeof(data) + hierarchy_bytes(data.hierarchy).total() +
          4 * (data.leaf_of_vertex.size() + data.wedge_of_vertex.size() + data.node_of_root.size() +
               data.root_of_split.size() + data.id_of_triangle.size() + data.triangle_of.size() +
-              data.first_of_root.size() + data.triangles_by_patch.size()) +
+              data.first_triangle_of_root.size() + data.first_in_ring.size() +
+              data.triangles_by_patch.size()) +
          data.triangles_of_root.bytes() + sizeof(codec::Corners) * data.roots_of_triangle.size() +
          sizeof(RoundedError) * data.own_errors.size();
 }
@@ -188,7 +201,7 @@ BlockHierarchyPtr BlockHierarchyJob::run() const {
   }
   if (!data->is_empty) {
     find_nodes(block, maps, *data);
-    sort_triangles_by_root(*data);
+    find_rings(*data);
     find_root_splits(*data);
     count_requirable_splits(*data);
     sort_triangles_by_patch(block, *data);

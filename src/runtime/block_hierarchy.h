@@ -50,31 +50,16 @@ struct BlockHierarchy::Data {
   std::vector<codec::Corners> roots_of_triangle;
   std::vector<TriangleId> id_of_triangle;
   std::vector<std::uint32_t> triangle_of;  // per triangle of the hierarchy: of the fine end
-  // Those under a root, root after root; each triangle once for each of its different roots.
-  std::vector<std::uint32_t> first_of_root;  // and the end
-  PackedIndices<> triangles_of_root;
+  // Those of the coarse end at each root, root after root, and the roots that it shares a triangle
+  // of the fine end with, itself among them if it has any.
+  std::vector<std::uint32_t> first_triangle_of_root, first_in_ring;  // and the end
+  PackedIndices<> triangles_of_root, rings;
   // Triangles of the fine end by the patch that goes on with them, as ResidentBlock::groups().
   std::vector<std::uint32_t> triangles_by_patch;
   std::uint32_t coarse_triangles = 0;
   bool shows_roots = false;  // with nothing split it has triangles that no coarser block has
   std::uint32_t requirable_splits = 0;  // those above leaves that triangles have
   std::size_t bytes = 0;
-
-  struct Roots {
-    codec::Corners all{};
-    std::size_t count = 0;
-
-    const std::uint32_t* begin() const { return all.data(); }
-    const std::uint32_t* end() const { return all.data() + count; }
-  };
-  // Of a triangle of the fine end, each once.
-  Roots different_roots(std::uint32_t t) const {
-    const auto& [a, b, c] = roots_of_triangle[t];
-    Roots roots{{a}, 1};
-    if (b != a) roots.all[roots.count++] = b;
-    if (c != a && c != b) roots.all[roots.count++] = c;
-    return roots;
-  }
 };
 
 }  // namespace crease

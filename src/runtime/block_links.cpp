@@ -12,7 +12,7 @@ BlockLinks::BlockLinks(const BlockHierarchy::Data& data)
       held_(data.leaf_of_vertex.size(), 0),
       required_(data.hierarchy.vertices.split_count(), 0),
       is_taken_(data.roots_of_triangle.size(), 0),
-      split_corners_(data.roots_of_triangle.size(), 0),
+      split_corners_(data.coarse_triangles, 0),
       is_hidden_(data.roots_of_triangle.size(), 0),
       needed_(data.node_of_root.size(), 0),
       split_roots_((data.root_of_split.size() + 63) / 64, 0) {
@@ -50,24 +50,27 @@ void BlockLinks::release(std::uint32_t vertex) {
 
 void BlockLinks::take(std::uint32_t triangle, bool is_taken) {
   if ((is_taken_[triangle] != 0) == is_taken) return;
-  const bool took_before = takes(triangle);
+  const bool is_coarse = triangle < data_.coarse_triangles;
+  const bool took_before = is_coarse && takes(triangle);
   is_taken_[triangle] = is_taken;
   taken_count_ += is_taken ? 1 : -1;
-  tell_taking(triangle, took_before);
+  if (is_coarse) tell_taking(triangle, took_before);
   set_hidden(triangle);
 }
 
 void BlockLinks::set_root_split(std::uint32_t root, bool is_split) {
   split_root_count_ += is_split ? 1 : -1;
-  for (std::uint32_t i = data_.first_of_root[root]; i < data_.first_of_root[root + 1]; ++i) {
+  for (std::uint32_t i = data_.first_in_ring[root]; i < data_.first_in_ring[root + 1]; ++i) {
+    const std::uint32_t r = data_.rings[i];
+    if (is_split ? needed_[r]++ == 0 : --needed_[r] == 0) root_changes_.push_back({r, is_split});
+  }
+  const std::uint32_t end = data_.first_triangle_of_root[root + 1];
+  for (std::uint32_t i = data_.first_triangle_of_root[root]; i < end; ++i) {
     const std::uint32_t t = data_.triangles_of_root[i];
     const bool took_before = takes(t);
     const std::uint8_t before = split_corners_[t];
     split_corners_[t] = static_cast<std::uint8_t>(is_split ? before + 1 : before - 1);
     if ((before > 0) == (split_corners_[t] > 0)) continue;
-    for (const std::uint32_t r : data_.different_roots(t)) {
-      if (is_split ? needed_[r]++ == 0 : --needed_[r] == 0) root_changes_.push_back({r, is_split});
-    }
     tell_taking(t, took_before);
     set_hidden(t);
   }
@@ -88,9 +91,7 @@ void BlockLinks::set_root_splits(std::span<const std::uint64_t> done_words) {
 }
 
 void BlockLinks::tell_taking(std::uint32_t t, bool took_before) {
-  if (t < data_.coarse_triangles && takes(t) != took_before) {
-    triangle_changes_.push_back({t, !took_before});
-  }
+  if (takes(t) != took_before) triangle_changes_.push_back({t, !took_before});
 }
 
 void BlockLinks::set_hidden(std::uint32_t t) {

@@ -15,8 +15,8 @@
 //   links.set_root_split(root, true);        // by its own cut
 //   for (const BlockLinks::Change& c : links.root_changes()) ...   // to be told coarser blocks
 //
-// Time of each call: O(depth), or O(triangles under a root). Memory: 4 bytes a vertex and a root, 3
-// a triangle, 1 a split.
+// Time of each call: O(depth), or O(triangles around a root). Memory: 4 bytes a vertex and a root,
+// 2 a triangle, 1 a triangle of the coarse end and a split.
 #pragma once
 
 #include "runtime/block_hierarchy.h"
@@ -41,7 +41,7 @@ class BlockLinks {
   // Takes over which splits of roots are done, out of a bit per split.
   void set_root_splits(std::span<const std::uint64_t> done_words);
 
-  // (1) and (2) for coarser blocks.
+  // (1) and (2) for coarser blocks; of triangles of the coarse end.
   bool needs(std::uint32_t root) const { return needed_[root] > 0; }
   bool takes(std::uint32_t t) const { return split_corners_[t] > 0 || is_taken_[t] != 0; }
   struct Change {
@@ -76,9 +76,9 @@ class BlockLinks {
   std::vector<std::uint32_t> held_;          // per vertex: by how many
   std::vector<std::uint8_t> required_;       // per split: children that are required
   std::vector<char> is_taken_;               // per triangle
-  std::vector<std::uint8_t> split_corners_;  // per triangle: of its different roots
+  std::vector<std::uint8_t> split_corners_;  // per triangle of the coarse end: at split roots
   std::vector<char> is_hidden_;              // per triangle of the hierarchy
-  std::vector<std::uint32_t> needed_;        // per root: triangles around it that have a split one
+  std::vector<std::uint32_t> needed_;        // per root: split ones in its ring
   std::vector<std::uint64_t> split_roots_;   // a bit per split of a root
   std::size_t held_count_ = 0, required_count_ = 0, taken_count_ = 0, hidden_count_ = 0,
               split_root_count_ = 0;

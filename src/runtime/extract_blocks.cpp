@@ -66,8 +66,7 @@ NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
 NamedMesh extract_by_vertex(const BlockMesh::Impl& mesh, const BlockCut& cut) {
   const BlockHierarchy::Data& data = cut.data();
   const ResidentBlock::Data& block = cut.block().data();
-  CutPiece piece =
-      extract_piece(*cut.live());
+  CutPiece piece = extract_piece(*cut.live());
   NamedMesh result{std::move(piece.mesh), {}};
   // A root that is not split is a vertex of the block that made it.
   std::unordered_map<std::uint32_t, std::uint32_t> root_of_node;
