@@ -117,7 +117,8 @@ std::vector<VertexCuts::Source> VertexCuts::sources_of(std::uint32_t block,
     for (const BlockGroup& group : blocks.resident[needed]->groups()) {
       const std::uint32_t count = group.sn.count + group.fn.count + group.nsn.count;
       if (group.patch == facts.patch) {
-        sources.push_back({needed, first, there});
+        const bool goes_on = !sources.empty() && sources.back().block == needed;
+        if (!goes_on) sources.push_back({needed, first, there});
         first += count;
       }
       there += count;

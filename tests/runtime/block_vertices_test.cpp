@@ -1,6 +1,7 @@
 // By vertex inside resident blocks, against the definition: whatever blocks and hierarchies have
 // come, and however the view went, what is shown is one cut.
 #include "codec/checksum.h"
+#include "crease/block_view.h"
 #include "crease/build_hierarchy.h"
 #include "crease/decode_model.h"
 #include "crease/import.h"
@@ -9,6 +10,7 @@
 #include "runtime/block_vertices_oracle.h"
 #include "runtime/draw_values.h"
 #include "runtime/extract_cut.h"
+#include "runtime/view_error.h"
 #include "support/described_mesh.h"
 #include "support/drawn_triangles.h"
 #include "support/mesh_zoo.h"
@@ -20,6 +22,7 @@
 
 #include <filesystem>
 #include <random>
+#include <set>
 
 namespace crease {
 namespace {
@@ -170,6 +173,53 @@ TEST_CASE("by vertex, a view gets what is seen to be wrong, whatever was shown b
     INFO(zoo.name);
     check_views_by_vertex(simplified_case(zoo.mesh, 100, 14, kCoarsePrecision), ++seed);
   }
+}
+
+// The triangles of ranges, by block, part and number.
+std::set<std::array<std::size_t, 3>> triangles_of(std::span<const ShownRange> ranges) {
+  std::set<std::array<std::size_t, 3>> all;
+  for (const ShownRange& range : ranges) {
+    const std::array<Range, 3> parts{range.sn, range.fn, range.nsn};
+    for (std::size_t p = 0; p < 3; ++p) {
+      for (std::uint32_t t = 0; t < parts[p].count; ++t) {
+        CHECK(all.insert({index_of(range.block->id()), p, parts[p].first + t}).second);
+      }
+    }
+  }
+  return all;
+}
+
+TEST_CASE("by block, what is left out of a frame is beside its view") {
+  const EncodedCase c = simplified_case(smooth_sphere(40, 60), 1000, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  const Vec3d& origin = file.facts().grid.origin;
+  Arrivals arrivals = opened_arrivals(file);
+  std::mt19937_64 random(5);
+  std::size_t kept = 0, left_out = 0;
+  for (int trial = 0; trial < (kSanitized ? 6 : 30); ++trial) {
+    BlockViewParameters parameters = random_view(c.mesh, random);
+    arrivals.load_all(parameters);
+    const Camera& camera = parameters.view.camera;
+    const auto all = triangles_of(arrivals.mesh.shown());
+    const auto in_view = triangles_of(shown_in_view(arrivals.mesh.shown(), origin, camera));
+    const ViewError error(parameters.view, file.facts().grid);
+    for (const auto& triangle : all) {
+      if (in_view.contains(triangle)) {
+        ++kept;
+        continue;
+      }
+      ++left_out;
+      const DrawList list = arrivals.mesh.resident(BlockId(triangle[0]))->draw_list();
+      const DrawPart& part = triangle[1] == 0 ? list.sn : triangle[1] == 1 ? list.fn : list.nsn;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3f& p = list.positions[part.indices[3 * triangle[2] + k]];
+        if (parameters.view.coarse_outside) CHECK(error.inside(p.x, p.y, p.z) < 1e-4f);
+      }
+    }
+    for (const auto& triangle : in_view) CHECK(all.contains(triangle));
+  }
+  CHECK(kept > 100);
+  CHECK(left_out > 100);
 }
 
 // Bands of one patch each, of about `size` contractions. A band can only contract vertices that
