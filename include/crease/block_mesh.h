@@ -23,8 +23,10 @@
 //
 // A block has a vertex hierarchy of its own, made of what its splits did, and a cut through it. A
 // vertex of a finer block's coarse end is split only where all vertices that share a triangle with
-// it are active in the coarser blocks; so much more than by vertex over the whole model is shown.
-// A triangle is shown by the finest block in which one of its vertices is split.
+// it are active in the coarser blocks; so much more is shown than by vertex over the whole model.
+// A triangle is shown by the finest block in which one of its vertices is split. How wrong a vertex
+// is at a block's fine end is known from the hierarchies of the finer blocks, of those that have
+// been there; so with more of them the same view may show less.
 //
 // BlockMesh does no input and has no threads: crease/block_streamer.h feeds one. What is shown is
 // at every moment a cut of blocks that are resident, however few they are; without any it is empty.
