@@ -13,6 +13,7 @@
 // Only the calls that a program makes each frame are timed; drawing is not among them.
 #include "crease/adaptive_mesh.h"
 #include "crease/block_streamer.h"
+#include "crease/block_view.h"
 #include "crease/build_hierarchy.h"
 #include "crease/decode_model.h"
 #include "crease/file.h"
@@ -222,7 +223,8 @@ int stand_still(const Options& options) {
 
 struct Granularity {
   const char* name;
-  std::vector<double> update_ms, triangles, ratios;  // per frame; ratios: to by vertex
+  // Per frame; ratios: to by vertex; drawn: in groups that are in view.
+  std::vector<double> update_ms, triangles, ratios, drawn, drawn_ratios;
 };
 
 void print(const Granularity& g) {
@@ -230,6 +232,8 @@ void print(const Granularity& g) {
               of_all(g.update_ms, 0.5), of_all(g.update_ms, 0.99), of_all(g.triangles, 0.5));
   if (!g.ratios.empty()) {
     std::printf(", %.2f times median, %.2f most", of_all(g.ratios, 0.5), of_all(g.ratios, 1));
+    std::printf("; in view %.0f, %.2f times median, %.2f most", of_all(g.drawn, 0.5),
+                of_all(g.drawn_ratios, 0.5), of_all(g.drawn_ratios, 1));
   }
   std::printf("\n");
 }
@@ -247,6 +251,15 @@ void time_one(Granularity& g, Update update) {
   g.triangles.push_back(double(triangles));
 }
 
+std::size_t drawn_triangles(const BlockMesh& mesh, const Camera& camera) {
+  std::size_t count = 0;
+  for (const ShownRange& r : shown_in_view(mesh.shown(), mesh.facts().grid.origin, camera)) {
+    count += r.triangle_count();
+  }
+  for (const ShownCut& cut : mesh.shown_cuts()) count += cut.triangle_count();
+  return count;
+}
+
 // Everything in memory: triangles and time at the same error, along the same path.
 int compare_granularities(const Options& options) {
   Result<BlockStreamer> opened = open(options);
@@ -260,8 +273,9 @@ int compare_granularities(const Options& options) {
   Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
   if (!hierarchy.ok()) return failed(hierarchy.failure());
   AdaptiveMesh whole(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
-  Granularity by_vertex{"by vertex, whole model", {}, {}, {}}, by_block{"by block", {}, {}, {}},
-      within_blocks{"by vertex in blocks", {}, {}, {}};
+  Granularity by_vertex{"by vertex, whole model", {}, {}, {}, {}, {}},
+      by_block{"by block", {}, {}, {}, {}, {}},
+      within_blocks{"by vertex in blocks", {}, {}, {}, {}, {}};
   BlockViewParameters parameters;
   parameters.max_bytes = std::size_t(8) << 30;
   const auto look = [&](int f) {
@@ -286,6 +300,7 @@ int compare_granularities(const Options& options) {
       went_on += !streamer.mesh().has_arrived();
       wait_for(streamer, parameters);
       g.triangles.back() = double(streamer.mesh().triangle_count());
+      g.drawn.push_back(double(drawn_triangles(streamer.mesh(), parameters.view.camera)));
     }
     std::printf("%s: %zu blocks resident, %.1f MB; %zu frames went on\n", g.name,
                 streamer.mesh().resident_count(), double(streamer.mesh().resident_bytes()) / 1e6,
@@ -302,6 +317,7 @@ int compare_granularities(const Options& options) {
     for (std::size_t f = 0; f < g->triangles.size(); ++f) {
       if (by_vertex.triangles[f] > 0) {
         g->ratios.push_back(g->triangles[f] / by_vertex.triangles[f]);
+        g->drawn_ratios.push_back(g->drawn[f] / by_vertex.triangles[f]);
       }
     }
   }

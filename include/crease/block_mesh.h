@@ -23,8 +23,10 @@
 //
 // A block has a vertex hierarchy of its own, made of what its splits did, and a cut through it. A
 // vertex of a finer block's coarse end is split only where all vertices that share a triangle with
-// it are active in the coarser blocks; so much more than by vertex over the whole model is shown.
-// A triangle is shown by the finest block in which one of its vertices is split.
+// it are active in the coarser blocks; so much more is shown than by vertex over the whole model.
+// A triangle is shown by the finest block in which one of its vertices is split. How wrong a vertex
+// is at a block's fine end is known from the hierarchies of the finer blocks, of those that have
+// been there; so with more of them the same view may show less.
 //
 // BlockMesh does no input and has no threads: crease/block_streamer.h feeds one. What is shown is
 // at every moment a cut of blocks that are resident, however few they are; without any it is empty.
@@ -48,11 +50,13 @@
 
 namespace crease {
 
-// The triangles of a block that one block of the next finer band goes on with. Each range is one of
+// Triangles of a block that one block of the next finer band goes on with, and near each other: few
+// enough to be left out where they are beside the view (crease/block_view.h). Each range is one of
 // triangles in that part of the block's draw list; those of consecutive groups follow each other.
 struct BlockGroup {
   std::uint32_t patch = 0;  // of the next finer band; 0 where there is none
   Range sn, fn, nsn;
+  Vec3f low, high;  // a box around them, as positions of the draw list
 };
 
 // A block that was decoded: its triangles at the fine end, and what finer blocks start from. Does
@@ -68,7 +72,7 @@ class ResidentBlock {
   // All triangles of the fine end, group by group. All blocks have the same origin, and a vertex
   // that several have has the same floats in all of them. Views into the block.
   DrawList draw_list() const;
-  std::span<const BlockGroup> groups() const;  // ascending by patch
+  std::span<const BlockGroup> groups() const;  // ascending by patch, of which each may have several
   std::size_t bytes() const;                   // of memory that it takes
   const Data& data() const { return *data_; }  // for the library
 

@@ -8,22 +8,22 @@ namespace crease::codec {
 
 namespace {
 
-// The errors of a contraction whose vertex has `base` at the fine end, as the simplifier adds them
-// up, but none above those of the block's coarse end, `most`.
-LevelError error_of(const LevelError& base, const LevelError& own, double step,
-                    const LevelError& most) {
-  const auto length = [step](float from, float by) {
-    return from + static_cast<float>(step * double(by));
-  };
-  const auto at_most = [](float x, float limit) { return x < limit ? x : limit; };  // or no number
-  const double from = double(base.degrees), by = double(own.degrees);
-  const float degrees = static_cast<float>(std::sqrt(from * from + by * by));
-  return {at_most(length(base.surface, own.surface), most.surface),
-          at_most(length(base.line, own.line), most.line), at_most(degrees, most.degrees),
-          at_most(base.texture + own.texture, most.texture)};
+// Lengths in model units.
+LevelError in_units(const LevelError& own, double step) {
+  return {static_cast<float>(step * double(own.surface)),
+          static_cast<float>(step * double(own.line)), own.degrees, own.texture};
 }
 
 }  // namespace
+
+LevelError added_error(const LevelError& base, const LevelError& own, const LevelError& most) {
+  const auto at_most = [](float x, float limit) { return x < limit ? x : limit; };  // or no number
+  const double from = double(base.degrees), by = double(own.degrees);
+  const float degrees = static_cast<float>(std::sqrt(from * from + by * by));
+  return {at_most(base.surface + own.surface, most.surface),
+          at_most(base.line + own.line, most.line), at_most(degrees, most.degrees),
+          at_most(base.texture + own.texture, most.texture)};
+}
 
 ModelOfBlocks::ModelOfBlocks(const ModelSchema& schema, const BlockUnfolder& unfolder)
     : schema_(schema),
@@ -132,8 +132,9 @@ void ModelOfBlocks::append(const UnfoldedBlock& block, const OrderedContraction&
   LevelError& base = base_of_slot_[index_of(c.kept)];
   base = larger(base, base_of_slot_[index_of(c.removed)]);
   LevelError& error = error_of_slot_[index_of(c.kept)];
+  own_errors_.push_back(in_units(contraction.own, schema_.facts.grid.step));
   error = larger(larger(error, error_of_slot_[index_of(c.removed)]),
-                 error_of(base, contraction.own, schema_.facts.grid.step, block.coarse));
+                 added_error(base, own_errors_.back(), block.coarse));
   c.error = error;
   Vec3i& kept = positions_[index_of(c.kept)];
   if (c.position != kept && c.position != positions_[index_of(c.removed)]) {

@@ -14,6 +14,10 @@
 
 namespace crease::codec {
 
+// The errors of a contraction whose vertex has `base` at the fine end, as the simplifier adds them
+// up, but none above those of the block's coarse end, `most`. `own`: what it adds.
+LevelError added_error(const LevelError& base, const LevelError& own, const LevelError& most);
+
 using ForEach = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
 
 class ModelOfBlocks {
@@ -23,6 +27,8 @@ class ModelOfBlocks {
   // The mesh, and the contractions of as many of the finest bands. Order and cost of each block's
   // are worked out by `for_each`.
   void fill(DecodedModel& model, std::size_t contracted_bands, const ForEach& for_each);
+  // Afterwards, per contraction: what it adds to the errors at its block's fine end.
+  std::span<const LevelError> own_errors() const { return own_errors_; }
 
  private:
   struct Pending;  // a contraction of the present band
@@ -42,6 +48,7 @@ class ModelOfBlocks {
   std::vector<Vec3i> positions_;  // per slot
   std::vector<LevelError> error_of_slot_;
   std::vector<LevelError> base_of_slot_;  // at the present band's fine end
+  std::vector<LevelError> own_errors_;
 };
 
 }  // namespace crease::codec

@@ -1,5 +1,7 @@
 #include "render/gl_blocks.h"
 
+#include "crease/block_view.h"
+
 namespace crease {
 
 namespace {
@@ -75,9 +77,23 @@ Result<DrawCount> GlBlocks::draw(ProgramCache& programs, const DrawPass& pass,
                                  const ColorOfBlock& color_of_block) const {
   DrawCount count;
   DrawStyle of_block = style;
-  for (const ShownRange& range : shown) {
+  const auto is_in_view = [&](const ShownRange& range) {
     const GlScene* scene = find(*range.block);
-    if (scene == nullptr || scene->box().empty || is_beside(pass.view, scene->box())) continue;
+    return scene != nullptr && !scene->box().empty && !is_beside(pass.view, scene->box());
+  };
+  std::vector<ShownRange> in_view;
+  for (const ShownRange& range : shown) {
+    if (!is_in_view(range)) continue;
+    const Vec3d origin = range.block->draw_list().origin;
+    const std::vector<ShownRange> groups = shown_groups({&range, 1}, [&](const BlockGroup& group) {
+      Box box;
+      for (const Vec3f& p : {group.low, group.high}) box.add(origin + Vec3d{p.x, p.y, p.z});
+      return !is_beside(pass.view, box);
+    });
+    in_view.insert(in_view.end(), groups.begin(), groups.end());
+  }
+  for (const ShownRange& range : in_view) {
+    const GlScene* scene = find(*range.block);
     if (color_of_block) of_block.surface = color_of_block(*range.block);
     const DrawRanges ranges{range.sn, range.fn, range.nsn};
     const Status drawn = scene->draw(programs, pass, of_block, ranges);

@@ -22,9 +22,10 @@ bool keeps_values(const AttributeHierarchy& layer, SplitId s) {
 
 }  // namespace
 
-ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
+ActiveCut::ActiveCut(const MeshHierarchy& hierarchy, const char* is_hidden)
     : hierarchy_(hierarchy),
       h_(hierarchy.vertices),
+      is_hidden_(is_hidden),
       place_of_layer_(hierarchy.layers.size(), kNone),
       done_((h_.split_count() + 63) / 64, 0),
       map_(h_.wedge_count()) {
@@ -51,6 +52,7 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
   }
   const TriangleRange coarse = h_.coarse_triangles();
   for (std::uint32_t t = coarse.begin; t < coarse.end; ++t) {
+    if (this->is_hidden(TriangleId{t})) continue;
     std::array<std::uint32_t, 3> slots;
     for (std::size_t k = 0; k < 3; ++k) slots[k] = map_.slot_at(h_.triangles[t][k]);
     activate(TriangleId{t}, h_.triangles[t], slots);
@@ -160,6 +162,7 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
 
   const TriangleRange born = h_.triangles_of(s);
   for (std::uint32_t t = born.begin; t < born.end; ++t) {
+    if (is_hidden(TriangleId{t})) continue;
     const std::array<WedgeId, 3> wedges = h_.triangles[t];
     std::array<std::uint32_t, 3> slots;
     for (std::size_t k = 0; k < 3; ++k) {

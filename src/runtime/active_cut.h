@@ -53,7 +53,9 @@ static_assert(sizeof(ActiveVertex) == 128);
 
 class ActiveCut {
  public:
-  explicit ActiveCut(const MeshHierarchy& hierarchy);
+  // `is_hidden`, if it is there: per triangle, whether it is left out, as if it were not active.
+  // Stays the caller's, who tells hide_or_show() of each change.
+  explicit ActiveCut(const MeshHierarchy& hierarchy, const char* is_hidden = nullptr);
 
   const MeshHierarchy& hierarchy() const { return hierarchy_; }
   std::span<const ActiveVertex> vertices() const { return vertices_; }  // by slot, free ones too
@@ -126,6 +128,10 @@ class ActiveCut {
   // The vertex looks different though the cut has not moved: it is on its way (Geomorphs), and its
   // normals are, if `with_normals`.
   void touch_moving(std::uint32_t slot, bool with_normals);
+  bool is_hidden(TriangleId t) const { return is_hidden_ != nullptr && is_hidden_[index_of(t)]; }
+  void hide_or_show(TriangleId t);
+  // A bit a split, in their order: it is done.
+  std::span<const std::uint64_t> done_words() const { return done_; }
   // No part has holes afterwards.
   void fill_holes();
 
@@ -200,6 +206,7 @@ class ActiveCut {
 
   const MeshHierarchy& hierarchy_;
   const VertexHierarchy& h_;
+  const char* const is_hidden_;
   std::uint32_t normal_layer_ = kNone, color_layer_ = kNone, texcoord_layer_ = kNone;
   std::vector<std::uint32_t> tracked_;         // layers that have nodes of several attributes
   std::vector<std::uint32_t> place_of_layer_;  // in tracked_, or kNone

@@ -114,6 +114,24 @@ void ActiveCut::fill_holes() {
   }
 }
 
+void ActiveCut::hide_or_show(TriangleId t) {
+  const std::array<WedgeId, 3> wedges = h_.triangles[index_of(t)];
+  std::array<std::uint32_t, 3> slots;
+  for (std::size_t k = 0; k < 3; ++k) slots[k] = map_.slot_at(wedges[k]);
+  if (slots[0] == slots[1] || slots[1] == slots[2] || slots[2] == slots[0]) return;
+  for (const CornerAt& at : lists_.of(vertices_[slots[0]].corners)) {
+    const Part part = static_cast<Part>(at.corner.part());
+    const std::uint32_t place = at.corner.triangle();
+    if (at.wedge != wedges[0] || parts_[part].ids[place] != t) continue;
+    if (!is_hidden(t)) return;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      lists_.erase(vertices_[slots[k]].corners, CornerRef(part, place, k));
+    }
+    return parts_[part].remove(place);
+  }
+  if (!is_hidden(t)) activate(t, wedges, slots);
+}
+
 std::size_t ActiveCut::bytes() const {
   std::size_t sum = 8 * done_.capacity() + map_.bytes() + lists_.bytes() +
                     sizeof(ActiveVertex) * vertices_.capacity() + 4 * free_slots_.capacity();

@@ -1,5 +1,7 @@
 #include "runtime/block_cut.h"
 
+#include "base/assert.h"
+
 #include <algorithm>
 #include <atomic>
 #include <limits>
@@ -9,158 +11,176 @@ namespace crease {
 
 namespace {
 
+constexpr int kLooksOnOdometer = 4096;  // as in the refiner
+constexpr double kNow = -std::numeric_limits<double>::infinity();
+
 // Of all cuts of the program, so that a block that comes again has others than before.
 std::uint64_t next_revision() {
   static std::atomic<std::uint64_t> last{0};
   return ++last;
 }
 
-template <typename T>
-std::size_t bytes_of_room(const std::vector<T>& all) {
-  return all.capacity() * sizeof(T);
-}
-
-// The view of one block among many: budgets are the mesh's.
-ViewParameters without_budgets(ViewParameters view) {
-  view.max_triangles = std::numeric_limits<std::size_t>::max();
-  view.max_seconds = std::numeric_limits<double>::infinity();
-  view.clock = nullptr;
-  view.clock_context = nullptr;
-  return view;
-}
-
 }  // namespace
 
-std::size_t BlockCut::ShownPart::bytes() const {
-  return bytes_of_room(indices) + bytes_of_room(triangles) + bytes_of_room(materials) +
-         bytes_of_room(normals) + bytes_of_room(colors) + bytes_of_room(texcoords);
+BlockCut::BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy,
+                   std::span<const SplitBounds> bounds)
+    : block_(std::move(block)), hierarchy_(std::move(hierarchy)), bounds_(bounds) {}
+
+void BlockCut::look_anew() {
+  seen_ = kind_ = 0;
+  if (live_) live_->refiner.look_anew();
 }
 
-BlockCut::BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy)
-    : block_(std::move(block)),
-      hierarchy_(std::move(hierarchy)),
-      cut_(data().hierarchy),
-      at_rest_(data().hierarchy) {
-  held_.assign(data().leaf_of_vertex.size(), 0);
-  taken_.assign(data().roots_of_triangle.size(), 0);
-  is_root_split_.assign(data().node_of_root.size(), 0);
-  needed_roots_.assign(data().node_of_root.size(), 0);
-  takes_.assign(block_->data().coarse_triangles, 0);
+BlockLinks& BlockCut::links() {
+  if (!links_) links_ = std::make_unique<BlockLinks>(data());
+  is_dirty_ = true;
+  return *links_;
 }
 
-void BlockCut::set_wants(std::vector<char> held, std::vector<char> taken) {
-  if (taken != taken_) {
-    taken_ = std::move(taken);
-    has_moved_ = has_new_taken_ = true;
+UpdateReport BlockCut::update(const ViewNow& now, bool may_look) {
+  UpdateReport report;
+  const bool looks = may_look || !has_view_;
+  is_dirty_ = false;
+  if (looks) {
+    const bool is_other = std::exchange(kind_, now.kind) != now.kind;
+    seen_ = now.number;
+    view_ = now.view;
+    has_view_ = true;
+    if (is_other && !live_ && !is_whole_) watch_roots(now);
   }
-  if (held == held_) return;
-  held_ = std::move(held);
-  is_stale_ = true;
-  std::vector<Refiner::Required> required;
-  for (std::uint32_t v = 0; v < held_.size(); ++v) {
-    if (!held_[v] || data().wedge_of_vertex[v] == kNone) continue;
-    required.push_back({WedgeId{data().wedge_of_vertex[v]}, data().leaf_of_vertex[v]});
+  if (!live_) {
+    if (!must_wake(now, looks, report)) return report;
+    wake();
   }
-  refiner_.require(cut_, std::move(required));
-}
-
-UpdateReport BlockCut::update(const ViewParameters& view) {
-  view_ = view;
-  has_view_ = true;
-  is_stale_ = false;
-  const UpdateReport report = refiner_.update(cut_, without_budgets(view));
-  has_moved_ |= report.splits + report.merges > 0;
+  const UpdateReport moved = move();
+  report.splits = moved.splits;
+  report.merges = moved.merges;
+  report.evaluated += moved.evaluated;
+  if (looks) set_due(now, live_->refiner.slack());
   return report;
 }
 
-bool BlockCut::finish() {
-  if (!has_moved_) return false;
-  has_moved_ = false;
-  drawing_.arrive(cut_, at_rest_);
-  const bool has_changed = find_split_roots() || has_new_taken_;
-  const std::vector<char> needed = needed_roots_, takes = takes_;
-  if (has_changed) find_shown();
-  has_new_taken_ = false;
-  const DrawList all = drawing_.draw_list(cut_);
-  copy_shown(all.sn, cut_.parts()[kSnPart], sn_);
-  copy_shown(all.fn, cut_.parts()[kFnPart], fn_);
-  copy_shown(all.nsn, cut_.parts()[kNsnPart], nsn_);
+// All leaves are held, and all triangles are shown by others.
+bool BlockCut::is_covered() const {
+  return links_ && links_->required_count() == data().requirable_splits &&
+         links_->hidden_count() == data().roots_of_triangle.size();
+}
+
+bool BlockCut::must_wake(const ViewNow& now, bool looks, UpdateReport& report) {
+  if (is_whole_) return !is_covered();
+  if (data().shows_roots || (links_ && links_->required_count() > 0)) return true;
+  return looks && finds_wrong_root(now, report);
+}
+
+void BlockCut::watch_roots(const ViewNow& now) {
+  const VertexHierarchy& h = data().hierarchy.vertices;
+  const auto count = static_cast<std::uint32_t>(data().root_of_split.size());
+  watched_roots_.resize(count, now.error.uses_cones());
+  for (std::uint32_t s = 0; s < count; ++s) {
+    const NodeId root = h.node_of_split[s];
+    const bool is_used = h.root_wedges[index_of(root)] < h.root_wedges[index_of(root) + 1];
+    const Vec3f position = now.error.position(h.root_positions[index_of(root)]);
+    watched_roots_.set(s, is_used ? now.error.watch(bounds_[s], position, 1) : Watch{});
+  }
+  looks_ = kLooksOnOdometer;
+}
+
+bool BlockCut::finds_wrong_root(const ViewNow& now, UpdateReport& report) {
+  if (++looks_ > kLooksOnOdometer) {
+    watched_roots_.look_at_all();
+    watched_from_travel_ = now.travel;
+    watched_from_turn_ = now.turn;
+    looks_ = 0;
+  }
+  const Odometer odometer{now.travel - watched_from_travel_, now.turn - watched_from_turn_,
+                          1e-6f * now.error.eye_length()};
+  bool any = false;
+  report.evaluated +=
+      watched_roots_.find<true>(now.error, odometer, [&any](std::uint32_t) { any = true; });
+  set_due(now, watched_roots_.slack(odometer));
+  return any;
+}
+
+void BlockCut::wake() {
+  if (!links_) links_ = std::make_unique<BlockLinks>(data());
+  live_ = std::make_unique<Live>(data().hierarchy, links_->hidden().data());
+  is_whole_ = false;
+  watched_roots_ = {};
+  live_->refiner.use_bounds(bounds_);
+  live_->refiner.use_required(links_->required());
+  for (std::uint32_t v = 0; v < data().leaf_of_vertex.size(); ++v) {
+    if (!links_->is_held(v) || data().wedge_of_vertex[v] == kNone) continue;
+    live_->refiner.require(WedgeId{data().wedge_of_vertex[v]}, data().leaf_of_vertex[v]);
+  }
+}
+
+// The cut, then what that shows.
+UpdateReport BlockCut::move() {
+  ActiveCut& cut = live_->cut;
+  Refiner& refiner = live_->refiner;
+  for (const SplitId s : links_->required_changes()) {
+    links_->required()[index_of(s)] != 0 ? refiner.hold(cut, s) : refiner.release(cut, s);
+  }
+  for (const std::uint32_t v : links_->newly_held()) {
+    if (!links_->is_held(v)) continue;
+    refiner.require(WedgeId{data().wedge_of_vertex[v]}, data().leaf_of_vertex[v]);
+  }
+  const UpdateReport report = refiner.update(cut, view_);
+  links_->set_root_splits(cut.done_words());
+  for (const TriangleId t : links_->hidden_changes()) cut.hide_or_show(t);
+  const bool has_changed = report.splits + report.merges > 0 || !links_->hidden_changes().empty();
+  if (!has_changed && live_->is_drawn) return report;
+  live_->is_drawn = true;
+  live_->drawing.arrive(cut, live_->at_rest);
   revision_ = next_revision();
-  return needed != needed_roots_ || takes != takes_;
+  return report;
 }
 
-// True if they are others than before.
-bool BlockCut::find_split_roots() {
-  bool has_changed = shows_.empty();
-  for (std::size_t r = 0; r < is_root_split_.size(); ++r) {
-    const char is_split = !cut_.is_cut_leaf(data().node_of_root[r]);
-    has_changed |= is_split != is_root_split_[r];
-    is_root_split_[r] = is_split;
-  }
-  return has_changed;
+void BlockCut::set_due(const ViewNow& now, const WatchList::Slack& slack) {
+  due_travel_ = slack.travel > 0 ? now.travel + slack.travel : kNow;
+  due_turn_ = slack.turn > 0 ? now.turn + slack.turn : kNow;
 }
 
-// One pass over the triangles of the fine end, active or not.
-void BlockCut::find_shown() {
-  std::fill(needed_roots_.begin(), needed_roots_.end(), 0);
-  shows_.resize(data().roots_of_triangle.size());
-  for (std::size_t t = 0; t < shows_.size(); ++t) {
-    const auto& [a, b, c] = data().roots_of_triangle[t];
-    const bool is_split = is_root_split_[a] || is_root_split_[b] || is_root_split_[c];
-    if (is_split) needed_roots_[a] = needed_roots_[b] = needed_roots_[c] = 1;
-    const bool is_coarse = t < takes_.size();
-    if (is_coarse) takes_[t] = is_split || taken_[t];
-    shows_[t] = !taken_[t] && (is_split || !is_coarse);
-  }
+bool BlockCut::could_rest() const {
+  if (!live_) return false;
+  const bool has_nothing = links_->split_root_count() == 0 && links_->required_count() == 0;
+  return is_covered() || (has_nothing && !data().shows_roots);
 }
 
-void BlockCut::copy_shown(const DrawPart& all, const ActiveTriangles& triangles,
-                          ShownPart& shown) const {
-  shown.indices.clear();
-  shown.triangles.clear();
-  shown.materials.clear();
-  shown.normals.clear();
-  shown.colors.clear();
-  shown.texcoords.clear();
-  const std::size_t count = triangles.size();
-  const std::size_t normals = count > 0 ? all.normals.size() / count : 0;
-  const auto append = [](auto& to, const auto& from, std::size_t first, std::size_t size) {
-    to.insert(to.end(), from.begin() + std::ptrdiff_t(first),
-              from.begin() + std::ptrdiff_t(first + size));
-  };
-  for (std::size_t t = 0; t < count; ++t) {
-    if (!is_shown(triangles.ids[t])) continue;
-    append(shown.indices, all.indices, 3 * t, 3);
-    shown.triangles.push_back(data().triangle_of[index_of(triangles.ids[t])]);
-    append(shown.normals, all.normals, normals * t, normals);
-    if (!all.materials.empty()) shown.materials.push_back(all.materials[t]);
-    if (!all.colors.empty()) append(shown.colors, all.colors, 3 * t, 3);
-    if (!all.texcoords.empty()) append(shown.texcoords, all.texcoords, 3 * t, 3);
-  }
+void BlockCut::rest() {
+  CREASE_ASSERT(could_rest());
+  is_whole_ = is_covered();
+  live_.reset();
+  if (!is_whole_) seen_ = kind_ = 0;
+  if (links_->is_unused()) links_.reset();
 }
 
 DrawList BlockCut::draw_list() const {
-  DrawList list = drawing_.draw_list(cut_);
-  list.sn = sn_.draw();
-  list.fn = fn_.draw();
-  list.nsn = nsn_.draw();
+  DrawList list = live_->drawing.draw_list(live_->cut);
   list.materials = block_->data().schema->materials;
   return list;
 }
 
 LevelError BlockCut::error() const {
   LevelError worst;
-  for (const ActiveVertex& v : cut_.vertices()) {
-    if (v.node == kNoNode || v.split == kNoSplit) continue;
-    worst = larger(worst, data().hierarchy.vertices.bounds[index_of(v.split)].error());
+  if (live_) {
+    for (const ActiveVertex& v : live_->cut.vertices()) {
+      if (v.node == kNoNode || v.split == kNoSplit) continue;
+      worst = larger(worst, bounds_[index_of(v.split)].error());
+    }
+  } else if (!is_whole_) {
+    for (std::size_t s = 0; s < data().root_of_split.size(); ++s) {
+      worst = larger(worst, bounds_[s].error());
+    }
   }
   return worst;
 }
 
 std::size_t BlockCut::bytes() const {
-  return sizeof(*this) + cut_.bytes() + refiner_.bytes() + drawing_.bytes() + at_rest_.bytes() +
-         held_.size() + taken_.size() + needed_roots_.size() + takes_.size() + shows_.size() +
-         is_root_split_.size() + sn_.bytes() + fn_.bytes() + nsn_.bytes();
+  std::size_t sum = sizeof(*this) + watched_roots_.bytes() + (links_ ? links_->bytes() : 0);
+  if (!live_) return sum;
+  return sum + sizeof(Live) + live_->cut.bytes() + live_->refiner.bytes() + live_->drawing.bytes() +
+         live_->at_rest.bytes();
 }
 
 }  // namespace crease

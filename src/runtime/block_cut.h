@@ -1,27 +1,22 @@
 // A cut through the vertex hierarchy of one block, beside those of the blocks around it.
 //
-//   BlockCut cut(block, hierarchy);
-//   cut.set_wants(held, taken);                   // by finer blocks
-//   cut.update(view);
-//   if (cut.finish()) ...                         // what it wants of coarser ones is another thing
-//   draw(cut.draw_list());
+//   BlockCut cut(block, hierarchy, errors.bounds());
+//   cut.links().hold(vertex);                     // by finer blocks (runtime/block_links.h)
+//   if (cut.must_update(now)) cut.update(now, true);
+//   ... cut.links().root_changes() ...            // to be told coarser ones
+//   cut.links().forget_changes();
+//   if (cut.live() != nullptr) draw(cut.draw_list());
 //
-// No two blocks of a band split the same vertex, since those that patches share are locked. So each
-// vertex is decided on by one block, the one that splits it, and blocks need to agree on two things
-// only.
-// (1) Where a root is split, all roots of the triangles around it are active, that is: they are in
-//     the coarser blocks that made them. needed_roots() says which, and there they are held.
-// (2) A triangle is shown by the finest block in which one of its corners is under a split root. By
-//     (1) all its roots are active there, so that its corners are where the block says. takes()
-//     says which triangles of its coarse end are shown by the block or by finer ones; those that
-//     have them at their fine ends leave them out.
-// With both, what is shown is every triangle with the active ancestors of its corners, as for one
-// hierarchy of the whole model.
+// Most blocks of a view are right as they are: where no root is wrong nothing is split, where all
+// leaves are held and finer blocks show all triangles nothing can change. Such a block rests: it
+// has no active vertices, only the roots' watches (WatchList) or not even these. And while none of
+// its vertices can become wrong or right, as far as the camera has come, a block is not looked at.
 #pragma once
 
 #include "crease/block_mesh.h"
 #include "runtime/active_cut.h"
 #include "runtime/block_hierarchy.h"
+#include "runtime/block_links.h"
 #include "runtime/cut_drawing.h"
 #include "runtime/geomorphs.h"
 #include "runtime/refiner.h"
@@ -29,75 +24,103 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <vector>
 
 namespace crease {
 
+// A view, and how far the camera has come until then.
+struct ViewNow {
+  ViewParameters view;  // without budgets
+  ViewError error;
+  double travel = 0, turn = 0;
+  // Another number for each view, and wherever anything else has changed than where the camera is
+  // and looks.
+  std::uint64_t number = 0, kind = 0;
+};
+
 class BlockCut {
  public:
-  BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy);
+  // `bounds`: of the splits, in place of the hierarchy's; look_anew() says that they have changed.
+  BlockCut(ResidentBlockPtr block, BlockHierarchyPtr hierarchy,
+           std::span<const SplitBounds> bounds);
   BlockCut(const BlockCut&) = delete;
   BlockCut& operator=(const BlockCut&) = delete;
 
-  // Of finer blocks: per vertex of the fine end whether it must be active, and per triangle whether
-  // it is shown there.
-  void set_wants(std::vector<char> held, std::vector<char> taken);
-  // Until then the view is the one of before, if there was one.
-  bool wants_update(const ViewParameters& view) const { return is_stale_ || !(view == view_); }
-  UpdateReport update(const ViewParameters& view);
-  const ViewParameters& view() const { return view_; }
-  bool has_view() const { return has_view_; }
+  void look_anew();
+  BlockLinks& links();
+  void forget_changes() {
+    if (links_) links_->forget_changes();
+  }
+  const BlockLinks* known_links() const { return links_.get(); }  // null: nothing is wanted
 
-  // After set_wants() and update(): true if needed_roots() or takes() have changed.
-  bool finish();
-  std::span<const char> needed_roots() const { return needed_roots_; }
-  std::span<const char> takes() const { return takes_; }  // per triangle of the coarse end
+  // Something is wanted that was not, or the view may find something to do.
+  bool must_update(const ViewNow& now) const { return is_dirty_ || is_due(now); }
+  bool is_due(const ViewNow& now) const {
+    return !is_whole_ && seen_ != now.number &&
+           (kind_ != now.kind || !(due_travel_ > now.travel && due_turn_ > now.turn));
+  }
+  // `may_look`: else only what is wanted is done, and the view stays the one of before, if there
+  // was one.
+  UpdateReport update(const ViewNow& now, bool may_look);
 
-  // What is shown. `revision()` is another number whenever it has changed.
+  // After some updates with nothing to do: goes to rest, if it could_rest().
+  bool could_rest() const;
+  void rest();
+  bool is_waiting_to_rest = false;  // for who asks
+
+  // Null: it rests and shows nothing.
+  const ActiveCut* live() const { return live_ ? &live_->cut : nullptr; }
+  bool is_done(SplitId s) const { return live_ ? live_->cut.is_done(s) : is_whole_; }
+  // What is shown, of a live one. `revision()` is another number whenever it has changed.
   DrawList draw_list() const;
   std::uint64_t revision() const { return revision_; }
   // Which triangle of the block's fine end one of draw_list() is.
   std::uint32_t triangle_of(Part part, std::uint32_t shown) const {
-    return (part == kSnPart ? sn_ : part == kFnPart ? fn_ : nsn_).triangles[shown];
+    return data().triangle_of[index_of(live_->cut.parts()[part].ids[shown])];
   }
-  bool is_shown(TriangleId t) const { return shows_[data().triangle_of[index_of(t)]] != 0; }
   LevelError error() const;  // of the active vertices that something finer stands for
   std::size_t bytes() const;
 
   const ResidentBlock& block() const { return *block_; }
   const BlockHierarchy::Data& data() const { return hierarchy_->data(); }
-  const ActiveCut& cut() const { return cut_; }
+  std::span<const SplitBounds> bounds() const { return bounds_; }  // per split
 
  private:
-  struct ShownPart {
-    std::vector<std::uint32_t> indices, materials;
-    std::vector<std::uint32_t> triangles;  // of the fine end
-    std::vector<Vec3f> normals;
-    std::vector<std::array<float, 4>> colors;
-    std::vector<std::array<float, 2>> texcoords;
+  struct Live {
+    Live(const MeshHierarchy& hierarchy, const char* is_hidden)
+        : cut(hierarchy, is_hidden), at_rest(hierarchy) {}
 
-    DrawPart draw() const { return {indices, normals, materials, colors, texcoords}; }
-    std::size_t bytes() const;
+    ActiveCut cut;
+    const Geomorphs at_rest;
+    Refiner refiner;
+    CutDrawing drawing;
+    bool is_drawn = false;
   };
 
-  bool find_split_roots();
-  void find_shown();
-  void copy_shown(const DrawPart& all, const ActiveTriangles& triangles, ShownPart& shown) const;
+  bool is_covered() const;
+  bool must_wake(const ViewNow& now, bool looks, UpdateReport& report);
+  bool finds_wrong_root(const ViewNow& now, UpdateReport& report);
+  void watch_roots(const ViewNow& now);
+  void wake();
+  UpdateReport move();
+  void set_due(const ViewNow& now, const WatchList::Slack& slack);
 
   const ResidentBlockPtr block_;
   const BlockHierarchyPtr hierarchy_;
-  ActiveCut cut_;
-  const Geomorphs at_rest_;
-  Refiner refiner_;
-  CutDrawing drawing_;
+  const std::span<const SplitBounds> bounds_;
+  std::unique_ptr<BlockLinks> links_;  // or none yet
+  std::unique_ptr<Live> live_;         // or it rests
+  bool is_whole_ = false;              // it rests with all splits done and nothing shown
+  bool is_dirty_ = true, has_view_ = false;
+  // Of the last view that it looked at, and until where that is good.
   ViewParameters view_;
-  bool has_view_ = false, is_stale_ = true, has_moved_ = true, has_new_taken_ = false;
-  std::vector<char> held_, taken_;          // per vertex, per triangle
-  std::vector<char> is_root_split_;         // per root, at the last finish()
-  std::vector<char> needed_roots_, takes_;  // per root, per triangle of the coarse end
-  std::vector<char> shows_;                 // per triangle
-  ShownPart sn_, fn_, nsn_;
+  std::uint64_t seen_ = 0, kind_ = 0;
+  double due_travel_ = 0, due_turn_ = 0;
+  // While it rests with no root split: per split of a root; from where on the odometer counts.
+  WatchList watched_roots_;
+  double watched_from_travel_ = 0, watched_from_turn_ = 0;
+  int looks_ = 0;
   std::uint64_t revision_ = 0;
 };
 

@@ -8,7 +8,9 @@
 #include "runtime/resident_block.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace crease {
@@ -19,16 +21,21 @@ void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
   for (std::size_t i = 0; i < count; ++i) body(i);
 }
 
-// The finest mesh of the block alone, and the contractions that lead to its coarse end. Their
-// errors go from those that the file tells of the one end to those of the other, by the order in
-// which vertices are contracted, as for a whole model.
-DecodedModel model_of(const ResidentBlock::Data& block, std::span<const ResidentBlockPtr> needed) {
+struct ModelOfOne {
+  DecodedModel model;
+  std::vector<LevelError> own_errors;  // per contraction
+};
+
+// The finest mesh of the block alone, and the contractions that lead to its coarse end.
+ModelOfOne model_of(const ResidentBlock::Data& block, std::span<const ResidentBlockPtr> needed) {
   codec::BlockUnfolder unfolder;
   unfolder.add_alone(block.entry.facts, whole_end(block), block.splits,
                      coarse_end_of(needed, block.entry.facts));
-  DecodedModel model;
-  codec::ModelOfBlocks(*block.schema, unfolder).fill(model, 1, one_by_one);
-  return model;
+  ModelOfOne result;
+  codec::ModelOfBlocks blocks(*block.schema, unfolder);
+  blocks.fill(result.model, 1, one_by_one);
+  result.own_errors.assign(blocks.own_errors().begin(), blocks.own_errors().end());
+  return result;
 }
 
 // The first child of a split keeps its parent's number, so a root is the first vertex of its tree.
@@ -57,6 +64,7 @@ void find_nodes(const ResidentBlock::Data& block, const HierarchyMaps& maps,
     while (!h.is_root(root)) root = h.parent(root);
     data.node_of_root.push_back(root);
   }
+  data.id_of_triangle = maps.new_of_triangle;
   data.triangle_of.resize(maps.new_of_triangle.size());
   data.roots_of_triangle.reserve(maps.new_of_triangle.size());
   for (std::uint32_t t = 0; t < maps.new_of_triangle.size(); ++t) {
@@ -64,6 +72,79 @@ void find_nodes(const ResidentBlock::Data& block, const HierarchyMaps& maps,
     codec::Corners roots = block.end.mesh.triangles[t];
     for (std::uint32_t& v : roots) v = root_of_vertex[v];
     data.roots_of_triangle.push_back(roots);
+  }
+  data.coarse_triangles = block.coarse_triangles;
+  const TriangleRange of_roots = h.coarse_triangles();
+  data.shows_roots = of_roots.size() > data.coarse_triangles;
+}
+
+// Pairs of a root and what belongs to it, as lists.
+void sort_by_root(std::vector<std::array<std::uint32_t, 2>> pairs, std::size_t roots,
+                  std::size_t limit, std::vector<std::uint32_t>& first, PackedIndices<>& lists) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  first.assign(roots + 1, 0);
+  lists = PackedIndices<>(bits_for(limit));
+  for (const auto& [root, what] : pairs) {
+    ++first[root + 1];
+    lists.push_back(what);
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+}
+
+void find_rings(BlockHierarchy::Data& data) {
+  const std::size_t roots = data.node_of_root.size();
+  std::vector<std::array<std::uint32_t, 2>> triangles, rings;
+  for (std::uint32_t t = 0; t < data.roots_of_triangle.size(); ++t) {
+    for (const std::uint32_t r : data.roots_of_triangle[t]) {
+      if (t < data.coarse_triangles) triangles.push_back({r, t});
+      for (const std::uint32_t other : data.roots_of_triangle[t]) rings.push_back({r, other});
+    }
+  }
+  sort_by_root(std::move(triangles), roots, data.coarse_triangles, data.first_triangle_of_root,
+               data.triangles_of_root);
+  sort_by_root(std::move(rings), roots, roots, data.first_in_ring, data.rings);
+}
+
+void find_root_splits(BlockHierarchy::Data& data) {
+  const VertexHierarchy& h = data.hierarchy.vertices;
+  std::vector<std::uint32_t> root_of_node(h.root_count);
+  for (std::uint32_t r = 0; r < data.node_of_root.size(); ++r) {
+    root_of_node[index_of(data.node_of_root[r])] = r;
+  }
+  for (std::uint32_t n = 0; n < h.root_count; ++n) {
+    if (h.split_of(NodeId{n}) != kNoSplit) data.root_of_split.push_back(root_of_node[n]);
+  }
+}
+
+void count_requirable_splits(BlockHierarchy::Data& data) {
+  const VertexHierarchy& h = data.hierarchy.vertices;
+  std::vector<char> is_above(h.split_count(), 0);
+  for (std::uint32_t v = 0; v < data.leaf_of_vertex.size(); ++v) {
+    if (data.wedge_of_vertex[v] == kNone) continue;
+    for (NodeId n = data.leaf_of_vertex[v]; !h.is_root(n); n = h.parent(n)) {
+      char& above = is_above[index_of(h.split_above(n))];
+      if (above) break;
+      above = 1;
+      ++data.requirable_splits;
+    }
+  }
+}
+
+void sort_triangles_by_patch(const ResidentBlock::Data& block, BlockHierarchy::Data& data) {
+  const std::vector<std::uint32_t>& labels = block.end.labels;
+  data.triangles_by_patch.resize(labels.size());
+  std::iota(data.triangles_by_patch.begin(), data.triangles_by_patch.end(), 0);
+  std::stable_sort(data.triangles_by_patch.begin(), data.triangles_by_patch.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return labels[a] < labels[b]; });
+}
+
+void find_own_errors(const ModelOfOne& of_one, const HierarchyMaps& maps,
+                     BlockHierarchy::Data& data) {
+  data.own_errors.resize(data.hierarchy.vertices.split_count());
+  for (std::size_t i = 0; i < of_one.own_errors.size(); ++i) {
+    data.own_errors[index_of(maps.split_of_contraction[i])] =
+        RoundedError::from(of_one.own_errors[i]);
   }
 }
 
@@ -80,8 +161,11 @@ bool is_sound(const DecodedModel& model) {
 std::size_t bytes_of(const BlockHierarchy::Data& data) {
   return sizeof(data) + hierarchy_bytes(data.hierarchy).total() +
          4 * (data.leaf_of_vertex.size() + data.wedge_of_vertex.size() + data.node_of_root.size() +
-              data.triangle_of.size()) +
-         sizeof(codec::Corners) * data.roots_of_triangle.size();
+              data.root_of_split.size() + data.id_of_triangle.size() + data.triangle_of.size() +
+              data.first_triangle_of_root.size() + data.first_in_ring.size() +
+              data.triangles_by_patch.size()) +
+         data.triangles_of_root.bytes() + sizeof(codec::Corners) * data.roots_of_triangle.size() +
+         sizeof(RoundedError) * data.own_errors.size();
 }
 
 }  // namespace
@@ -104,7 +188,10 @@ BlockHierarchyPtr BlockHierarchyJob::run() const {
   const ResidentBlock::Data& block = block_->data();
   auto data = std::make_unique<BlockHierarchy::Data>();
   data->id = block_->id();
-  const DecodedModel model = model_of(block, needed_);
+  data->coarse = block.entry.facts.coarse;
+  data->fine = block.entry.facts.fine;
+  const ModelOfOne of_one = model_of(block, needed_);
+  const DecodedModel& model = of_one.model;
   HierarchyMaps maps;
   data->is_empty = true;
   if (is_sound(model)) {
@@ -112,7 +199,14 @@ BlockHierarchyPtr BlockHierarchyJob::run() const {
     data->is_empty = !hierarchy.ok();
     if (hierarchy.ok()) data->hierarchy = *std::move(hierarchy);
   }
-  if (!data->is_empty) find_nodes(block, maps, *data);
+  if (!data->is_empty) {
+    find_nodes(block, maps, *data);
+    find_rings(*data);
+    find_root_splits(*data);
+    count_requirable_splits(*data);
+    sort_triangles_by_patch(block, *data);
+    find_own_errors(of_one, maps, *data);
+  }
   data->bytes = bytes_of(*data);
   return std::make_shared<const BlockHierarchy>(std::move(data));
 }

@@ -5,26 +5,60 @@
 #include "codec/patch_mesh.h"
 #include "crease/block_mesh.h"
 #include "crease/mesh_hierarchy.h"
+#include "crease/packed_indices.h"
+#include "crease/split_bounds.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace crease {
 
+// A LevelError, rounded up.
+struct RoundedError {
+  RoundedUp surface, line, degrees, texture;
+
+  static RoundedError from(const LevelError& error) {
+    const auto rounded = [](float x) {
+      return RoundedUp::from(x >= 0 ? x : std::numeric_limits<float>::infinity());  // or no number
+    };
+    return {rounded(error.surface), rounded(error.line), rounded(error.degrees),
+            rounded(error.texture)};
+  }
+  LevelError value() const {
+    return {surface.value(), line.value(), degrees.value(), texture.value()};
+  }
+  bool operator==(const RoundedError&) const = default;
+};
+
 struct BlockHierarchy::Data {
   BlockId id{};
-  bool is_empty = false;  // the block has none
+  bool is_empty = false;    // the block has none
+  LevelError coarse, fine;  // the largest at its ends
   MeshHierarchy hierarchy;
+  // Per split: what it adds to the errors that its vertex has at the fine end (BlockErrors).
+  std::vector<RoundedError> own_errors;
   // Per vertex of the fine end, by its number there.
   std::vector<NodeId> leaf_of_vertex;
   std::vector<std::uint32_t> wedge_of_vertex;  // the first one; kNone: no triangle has it
   // Per root; root r is vertex r until it is split.
   std::vector<NodeId> node_of_root;
-  // Per triangle of the fine end: under which roots its corners are, and which one it is in the
-  // hierarchy. The first ones are those of the coarse end.
+  std::vector<std::uint32_t> root_of_split;  // per split of a root; these are the first ones
+  // Per triangle of the fine end, of which the first ones are those of the coarse end: under which
+  // roots its corners are, and which one it is in the hierarchy.
   std::vector<codec::Corners> roots_of_triangle;
+  std::vector<TriangleId> id_of_triangle;
   std::vector<std::uint32_t> triangle_of;  // per triangle of the hierarchy: of the fine end
+  // Those of the coarse end at each root, root after root, and the roots that it shares a triangle
+  // of the fine end with, itself among them if it has any.
+  std::vector<std::uint32_t> first_triangle_of_root, first_in_ring;  // and the end
+  PackedIndices<> triangles_of_root, rings;
+  // Triangles of the fine end by the patch that goes on with them, as ResidentBlock::groups().
+  std::vector<std::uint32_t> triangles_by_patch;
+  std::uint32_t coarse_triangles = 0;
+  bool shows_roots = false;  // with nothing split it has triangles that no coarser block has
+  std::uint32_t requirable_splits = 0;  // those above leaves that triangles have
   std::size_t bytes = 0;
 };
 

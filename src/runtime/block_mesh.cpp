@@ -61,7 +61,7 @@ void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, Block
     report.merges = moved.merges;
     lists |= moved.have_changed;
     has_changed |= !cuts.has_arrived();
-    for (const std::uint32_t block : cut) count_bytes(block);
+    for (const std::uint32_t block : cuts.resized()) count_bytes(block);
     // What has grown beyond the budget is dropped by the next one.
     const bool has_grown = moved.splits + moved.merges > 0 || moved.have_changed;
     has_changed |= has_grown && resident_bytes > parameters.max_bytes;
@@ -82,7 +82,7 @@ void BlockMesh::Impl::list_cuts() {
   if (!was_by_vertex) return;
   for (const std::uint32_t block : cut) {
     const BlockCut* const by_vertex = cuts.cut(block);
-    if (by_vertex == nullptr) continue;
+    if (by_vertex == nullptr || by_vertex->live() == nullptr) continue;
     shown_cuts.push_back({resident[block].get(), by_vertex->draw_list(), by_vertex->revision()});
     cut_triangles += shown_cuts.back().triangle_count();
     if (shown_cuts.back().triangle_count() == 0) shown_cuts.pop_back();

@@ -24,7 +24,7 @@ struct BlockMesh::Impl {
         page_count(pages),
         graph(schema->facts, blocks),
         chooser(graph, schema->facts.grid),
-        cuts(graph) {}
+        cuts(graph, schema->facts.grid) {}
   // Of the same file, with no block.
   explicit Impl(const Impl* other)
       : schema(other->schema),
@@ -32,7 +32,7 @@ struct BlockMesh::Impl {
         page_count(other->page_count),
         graph(other->graph),
         chooser(graph, schema->facts.grid),
-        cuts(graph) {
+        cuts(graph, schema->facts.grid) {
     make_room();
   }
 

@@ -66,7 +66,7 @@ NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
 NamedMesh extract_by_vertex(const BlockMesh::Impl& mesh, const BlockCut& cut) {
   const BlockHierarchy::Data& data = cut.data();
   const ResidentBlock::Data& block = cut.block().data();
-  CutPiece piece = extract_piece(cut.cut(), [&cut](TriangleId t) { return cut.is_shown(t); });
+  CutPiece piece = extract_piece(*cut.live());
   NamedMesh result{std::move(piece.mesh), {}};
   // A root that is not split is a vertex of the block that made it.
   std::unordered_map<std::uint32_t, std::uint32_t> root_of_node;
@@ -94,7 +94,8 @@ Mesh extract_blocks(const BlockMesh::Impl& mesh) {
   std::vector<NamedMesh> meshes;
   meshes.push_back(extract_whole(mesh));  // with materials and parts, if with no triangle
   for (const std::uint32_t block : mesh.cut) {
-    if (const BlockCut* const cut = mesh.cuts.cut(block)) {
+    const BlockCut* const cut = mesh.cuts.cut(block);
+    if (cut != nullptr && cut->live() != nullptr) {
       meshes.push_back(extract_by_vertex(mesh, *cut));
     }
   }

@@ -17,14 +17,13 @@ struct ActiveTriangle {
   std::uint32_t place = 0;
 };
 
-std::vector<ActiveTriangle> in_order(const ActiveCut& cut,
-                                     const std::function<bool(TriangleId)>& is_in) {
+std::vector<ActiveTriangle> in_order(const ActiveCut& cut) {
   std::vector<ActiveTriangle> all;
   all.reserve(cut.triangle_count());
   for (const Part p : {kSnPart, kFnPart, kNsnPart}) {
     const ActiveTriangles& part = cut.parts()[p];
     for (std::uint32_t i = 0; i < part.size(); ++i) {
-      if (!is_in || is_in(part.ids[i])) all.push_back({part.ids[i], p, i});
+      all.push_back({part.ids[i], p, i});
     }
   }
   std::sort(all.begin(), all.end(),
@@ -93,12 +92,12 @@ AttributeLayer extract_layer(const ActiveCut& cut, const std::vector<ActiveTrian
 }  // namespace
 
 Mesh extract_cut(const ActiveCut& cut) {
-  return extract_piece(cut, {}).mesh;
+  return extract_piece(cut).mesh;
 }
 
-CutPiece extract_piece(const ActiveCut& cut, const std::function<bool(TriangleId)>& is_in) {
+CutPiece extract_piece(const ActiveCut& cut) {
   const MeshHierarchy& hierarchy = cut.hierarchy();
-  const std::vector<ActiveTriangle> triangles = in_order(cut, is_in);
+  const std::vector<ActiveTriangle> triangles = in_order(cut);
   CutPiece piece;
   Mesh& mesh = piece.mesh;
   mesh.materials = hierarchy.materials;

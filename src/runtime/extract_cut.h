@@ -4,7 +4,6 @@
 #include "crease/mesh.h"
 #include "runtime/active_cut.h"
 
-#include <functional>
 #include <vector>
 
 namespace crease {
@@ -14,12 +13,12 @@ namespace crease {
 // normal is one of its own.
 Mesh extract_cut(const ActiveCut& cut);
 
-// Of some triangles of a cut only, and what they are in the hierarchy.
+// And what its triangles and vertices are in the hierarchy.
 struct CutPiece {
   Mesh mesh;
   std::vector<NodeId> node_of_vertex;
   std::vector<TriangleId> id_of_triangle;  // ascending
 };
-CutPiece extract_piece(const ActiveCut& cut, const std::function<bool(TriangleId)>& is_in);
+CutPiece extract_piece(const ActiveCut& cut);
 
 }  // namespace crease

@@ -14,6 +14,9 @@ namespace crease {
 
 namespace {
 
+// Of a group at most: small enough for a view to leave out most of what is beside it.
+constexpr std::size_t kGroupTriangles = 128;
+
 class BlockLayout {
  public:
   explicit BlockLayout(ResidentBlock::Data& block)
@@ -36,15 +39,61 @@ class BlockLayout {
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return label(a) < label(b); });
     reserve();
+    std::vector<std::size_t> ends;
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-      BlockGroup group{label(order[begin]), next(block_.sn), next(block_.fn), next(block_.nsn)};
-      for (; end < order.size() && label(order[end]) == group.patch; ++end) add(order[end], group);
+      while (end < order.size() && label(order[end]) == label(order[begin])) ++end;
+      part_by_place(order, begin, end, ends);
+    }
+    for (std::size_t begin = 0, i = 0; i < ends.size(); begin = ends[i++]) {
+      BlockGroup group{.patch = label(order[begin]),
+                       .sn = next(block_.sn),
+                       .fn = next(block_.fn),
+                       .nsn = next(block_.nsn),
+                       .low = first_position(order[begin]),
+                       .high = first_position(order[begin])};
+      for (std::size_t t = begin; t < ends[i]; ++t) add(order[t], group);
       block_.groups.push_back(group);
     }
     block_.groups.shrink_to_fit();
   }
 
  private:
+  // Halves until they are small, across the longest side; the order within stays.
+  void part_by_place(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
+                     std::vector<std::size_t>& ends) const {
+    if (end - begin <= kGroupTriangles) return ends.push_back(end);
+    const auto place = [this](std::uint32_t t) {
+      std::array<std::int64_t, 3> sum{};
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        const Vec3i& p = mesh_.positions[v];
+        sum = {sum[0] + p.x, sum[1] + p.y, sum[2] + p.z};
+      }
+      return sum;
+    };
+    std::array<std::int64_t, 3> low = place(order[begin]), high = low;
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::array<std::int64_t, 3> at = place(order[i]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], at[k]);
+        high[k] = std::max(high[k], at[k]);
+      }
+    }
+    std::size_t axis = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+      if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+    }
+    const auto at = [&order](std::size_t i) { return order.begin() + std::ptrdiff_t(i); };
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+      const std::int64_t x = place(a)[axis], y = place(b)[axis];
+      return x != y ? x < y : a < b;
+    });
+    std::sort(at(begin), at(middle));
+    std::sort(at(middle), at(end));
+    part_by_place(order, begin, middle, ends);
+    part_by_place(order, middle, end, ends);
+  }
+
   struct Layer {
     std::size_t index;
     LayerValues values;
@@ -132,6 +181,11 @@ class BlockLayout {
     ++(k == TriangleKind::SN ? group.sn : k == TriangleKind::FN ? group.fn : group.nsn).count;
     for (const std::uint32_t v : mesh_.triangles[t]) {
       to.indices.push_back(block_.position_of_vertex[v]);
+      const Vec3f& p = block_.positions[to.indices.back()];
+      group.low = {std::min(group.low.x, p.x), std::min(group.low.y, p.y),
+                   std::min(group.low.z, p.z)};
+      group.high = {std::max(group.high.x, p.x), std::max(group.high.y, p.y),
+                    std::max(group.high.z, p.z)};
     }
     if (k == TriangleKind::FN) to.normals.push_back(flat_normal(t));
     if (k == TriangleKind::NSN) {
@@ -153,6 +207,10 @@ class BlockLayout {
       colors_->values.read(codes(*colors_, t)[c], numbers);
       to.colors.push_back(draw_color(numbers));
     }
+  }
+
+  const Vec3f& first_position(std::uint32_t t) const {
+    return block_.positions[block_.position_of_vertex[mesh_.triangles[t][0]]];
   }
 
   Vec3f flat_normal(std::uint32_t t) const {

@@ -62,7 +62,7 @@ UpdateReport Refiner::set_error(ActiveCut& cut, float error) {
   has_view_ = false;
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const auto is_coarse = [&](SplitId s) {
-    const SplitBounds& bounds = h.bounds[index_of(s)];
+    const SplitBounds& bounds = bounds_of(cut, s);
     return std::max(bounds.surface.value(), bounds.line.value()) > error || error < 0;
   };
   if (geomorphs_ != nullptr) {
@@ -141,6 +141,8 @@ void Refiner::do_merges(ActiveCut& cut) {
     const bool has_both = children.first != kNoSlot && children.second != kNoSlot;
     if (!has_both && !cut.can_merge(wish.split)) {
       drop_pair(wish.slot);
+    } else if (is_required(wish.split)) {
+      watch_pair(wish.slot, wish.split, kAlwaysWrong);
     } else if (!is_needed(cut, wish.split) && !waits(cut, wish.split, children, false)) {
       merge(cut, wish.split, children);
     }
@@ -215,7 +217,6 @@ void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t roo
 
 // What is below something that is wrong may be as wrong, and nothing of it is to be merged.
 void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
-  const VertexHierarchy& h = cut.hierarchy().vertices;
   const SplitId s = cut.vertices()[slot].split;
   const Vec3f position = error_.position(cut.vertices()[slot].position);
   const std::uint32_t other = move_down(cut, slot);
@@ -223,7 +224,9 @@ void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
     pair_of_slot_.resize(cut.vertices().size(), kNone);
     wrong_.resize(cut.vertices().size(), error_.uses_cones());
   }
-  watch_pair(slot, s, error_.watch(h.bounds[index_of(s)], position, merge_below_));
+  watch_pair(
+      slot, s,
+      is_required(s) ? kAlwaysWrong : error_.watch(bounds_of(cut, s), position, merge_below_));
   for (const std::uint32_t child : {slot, other}) {
     if (child == kNoSlot) continue;
     watch_vertex(cut, child);
@@ -263,14 +266,14 @@ void Refiner::count_merge(const ActiveCut& cut, SplitId s, std::uint32_t slot) {
 // A third vertex of what s brings whose own error is larger.
 bool Refiner::needs_split(const ActiveCut& cut, SplitId s, std::uint32_t& third) const {
   const VertexHierarchy& h = cut.hierarchy().vertices;
-  const float error = h.bounds[index_of(s)].surface.value();
+  const float error = bounds_of(cut, s).surface.value();
   const TriangleRange born = h.triangles_of(s);
   for (std::uint32_t t = born.begin; t < born.end; ++t) {
     for (const WedgeId wedge : h.triangles[t]) {
       third = cut.slot_at(wedge);
       const SplitId other = cut.vertices()[third].split;
       if (other == kNoSplit || other == s) continue;
-      if (h.bounds[index_of(other)].surface.value() > error) return true;
+      if (bounds_of(cut, other).surface.value() > error) return true;
     }
   }
   return false;
@@ -292,37 +295,47 @@ void Refiner::split_consistently(ActiveCut& cut, std::uint32_t slot) {
   }
 }
 
-void Refiner::require(const ActiveCut& cut, std::vector<Required> leaves) {
-  const VertexHierarchy& h = cut.hierarchy().vertices;
-  required_ = std::move(leaves);
-  requires_anew_ = true;
-  is_required_.assign(required_.empty() ? 0 : h.split_count(), 0);
-  for (const Required& required : required_) {
-    for (NodeId n = required.leaf; !h.is_root(n); n = h.parent(n)) {
-      char& is_required = is_required_[index_of(h.split_above(n))];
-      if (is_required) break;
-      is_required = 1;
-    }
+// Its watchers need not look any more.
+void Refiner::hold(const ActiveCut& cut, SplitId s) {
+  if (!has_view_ || !cut.can_merge(s)) return;
+  const ActiveCut::Children children = cut.children(s);
+  for (const std::uint32_t slot : {children.first, children.second}) {
+    const std::uint32_t pair = slot < pair_of_slot_.size() ? pair_of_slot_[slot] : kNone;
+    if (pair != kNone && pairs_[pair].split == s) merged_.set(pair, kAlwaysWrong);
   }
 }
 
+void Refiner::release(const ActiveCut& cut, SplitId s) {
+  requires_anew_ = true;
+  if (!has_view_ || !cut.can_merge(s)) return;
+  const ActiveCut::Children children = cut.children(s);
+  const std::uint32_t slot = children.first != kNoSlot ? children.first : children.second;
+  if (slot != kNoSlot) watch_pair(slot, s, watch_above(cut, cut.vertices()[slot], s));
+}
+
 void Refiner::split_required(ActiveCut& cut) {
-  for (const Required& required : required_) {
+  for (const Required& required : required_leaves_) {
     for (;;) {
       const std::uint32_t slot = cut.slot_at(required.wedge);
       if (cut.vertices()[slot].node == required.leaf) break;
       split(cut, slot);
     }
   }
+  required_leaves_.clear();
+}
+
+WatchList::Slack Refiner::slack() const {
+  if (!splits_.empty() || !merges_.empty()) return {-kNever, -kNever};
+  const WatchList::Slack a = wrong_.slack(odometer_), b = merged_.slack(odometer_);
+  return {std::min(a.travel, b.travel), std::min(a.turn, b.turn)};
 }
 
 // Required, or in consistent mode: something that is split has a third vertex below s, and a
 // smaller error than s.
 bool Refiner::is_needed(const ActiveCut& cut, SplitId s) const {
-  if (!is_required_.empty() && is_required_[index_of(s)]) return true;
+  if (is_required(s)) return true;
   if (!view_.consistent) return false;
-  const VertexHierarchy& h = cut.hierarchy().vertices;
-  const float error = h.bounds[index_of(s)].surface.value();
+  const float error = bounds_of(cut, s).surface.value();
   const ActiveCut::Children children = cut.children(s);
   for (const std::uint32_t slot : {children.first, children.second}) {
     if (slot == kNoSlot) continue;
@@ -330,7 +343,7 @@ bool Refiner::is_needed(const ActiveCut& cut, SplitId s) const {
       const TriangleId t = cut.parts()[at.corner.part()].ids[at.corner.triangle()];
       const SplitId by = cut.introducing_split(t);
       if (by == kNoSplit || by == s) continue;
-      if (h.bounds[index_of(by)].surface.value() < error) return true;
+      if (bounds_of(cut, by).surface.value() < error) return true;
     }
   }
   return false;

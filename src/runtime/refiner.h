@@ -19,6 +19,7 @@
 #include "runtime/watch_list.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace crease {
@@ -28,24 +29,40 @@ class Refiner {
   // It tells `geomorphs`, if there are, of its moves, and lets merges wait for them.
   explicit Refiner(Geomorphs* geomorphs = nullptr) : geomorphs_(geomorphs) {}
 
+  // In place of the hierarchy's, per split. They may change if look_anew() says so.
+  void use_bounds(std::span<const SplitBounds> bounds) { bounds_ = bounds; }
+  void look_anew() { has_view_ = false; }
+
   UpdateReport update(ActiveCut& cut, const ViewParameters& view);
   UpdateReport set_error(ActiveCut& cut, float error);
 
-  // Whatever the view says, these leaves of the hierarchy are active from the next update() on,
-  // until others are required. Not with a budget.
-  struct Required {
-    WedgeId wedge{};  // the leaf's first one
-    NodeId leaf = kNoNode;
-  };
-  void require(const ActiveCut& cut, std::vector<Required> leaves);
+  // Whatever the view says, what has a number here is split, on the way to leaves that must be
+  // active. Per split; the caller's. Not with a budget.
+  void use_required(std::span<const std::uint8_t> required) { required_ = required; }
+  // Each change of it is told before the next update(): that a leaf, whose first wedge this is,
+  // must be active; that a number is no longer 0; that it is 0 again.
+  void require(WedgeId wedge, NodeId leaf) {
+    required_leaves_.push_back({wedge, leaf});
+    requires_anew_ = true;
+  }
+  void hold(const ActiveCut& cut, SplitId s);
+  void release(const ActiveCut& cut, SplitId s);
+
+  // How much farther the camera may travel, and turn, before update() finds something to do.
+  WatchList::Slack slack() const;
+
   std::size_t bytes() const {
     return wrong_.bytes() + merged_.bytes() + 4 * pair_of_slot_.capacity() +
            sizeof(Pair) * pairs_.capacity() +
            sizeof(Wish) * (splits_.capacity() + merges_.capacity()) +
-           sizeof(Required) * required_.capacity() + is_required_.capacity();
+           sizeof(Required) * required_leaves_.capacity();
   }
 
  private:
+  struct Required {
+    WedgeId wedge{};
+    NodeId leaf = kNoNode;
+  };
   struct Wish {
     float excess;  // of what is to be split, or merged; 0 where the order is of no consequence
     SplitId split;
@@ -68,6 +85,9 @@ class Refiner {
     std::uint32_t slot;
   };
 
+  const SplitBounds& bounds_of(const ActiveCut& cut, SplitId s) const {
+    return bounds_.empty() ? cut.hierarchy().vertices.bounds[index_of(s)] : bounds_[index_of(s)];
+  }
   void look_from(const ActiveCut& cut, const ViewParameters& view);
   void watch_all(const ActiveCut& cut);
   void watch_vertex(const ActiveCut& cut, std::uint32_t slot);
@@ -103,8 +123,10 @@ class Refiner {
   bool needs_split(const ActiveCut& cut, SplitId s, std::uint32_t& third) const;
   bool is_needed(const ActiveCut& cut, SplitId s) const;
   void split_required(ActiveCut& cut);
+  bool is_required(SplitId s) const { return !required_.empty() && required_[index_of(s)] != 0; }
 
   Geomorphs* geomorphs_;
+  std::span<const SplitBounds> bounds_;  // or empty: the hierarchy's
   ViewParameters view_;
   ViewError error_;
   bool has_view_ = false;
@@ -117,9 +139,9 @@ class Refiner {
   std::vector<Pair> pairs_;                  // in no order
   std::vector<std::uint32_t> pair_of_slot_;  // or kNone
   Queue splits_, merges_;
-  bool finds_splits_ = false;  // still to be done for this view
-  std::vector<Required> required_;
-  std::vector<char> is_required_;  // per split; empty: none is
+  bool finds_splits_ = false;               // still to be done for this view
+  std::span<const std::uint8_t> required_;  // per split; or empty: none is
+  std::vector<Required> required_leaves_;   // new ones
   bool requires_anew_ = false;
   std::vector<Wish>
       least_visible_;  // a heap of every possible merge, while a triangle budget binds

@@ -67,7 +67,7 @@ void Refiner::watch_all(const ActiveCut& cut) {
 void Refiner::watch_vertex(const ActiveCut& cut, std::uint32_t slot) {
   const ActiveVertex& v = cut.vertices()[slot];
   if (v.split == kNoSplit) return wrong_.turn_off(slot);
-  const SplitBounds& bounds = cut.hierarchy().vertices.bounds[index_of(v.split)];
+  const SplitBounds& bounds = bounds_of(cut, v.split);
   wrong_.set(slot, error_.watch(bounds, error_.position(v.position), 1));
 }
 
@@ -98,15 +98,16 @@ void Refiner::drop_pair(std::uint32_t slot) {
 
 // Of the parent of v, as something that is to be merged.
 Watch Refiner::watch_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const {
+  if (is_required(above)) return kAlwaysWrong;
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const Vec3i position = grid_difference(v.position, h.delta_of(v.node));
-  return error_.watch(h.bounds[index_of(above)], error_.position(position), merge_below_);
+  return error_.watch(bounds_of(cut, above), error_.position(position), merge_below_);
 }
 
 float Refiner::excess_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const {
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const Vec3i position = grid_difference(v.position, h.delta_of(v.node));
-  return error_.of(h.bounds[index_of(above)], error_.position(position));
+  return error_.of(bounds_of(cut, above), error_.position(position));
 }
 
 void Refiner::find_merges(const ActiveCut& cut) {
@@ -125,7 +126,7 @@ void Refiner::wish_split(const ActiveCut& cut, std::uint32_t slot) {
   std::vector<Wish>& wishes = splits_.wishes;
   wishes.push_back({0, v.split, slot});
   if (!is_ordered_) return;
-  const SplitBounds& bounds = cut.hierarchy().vertices.bounds[index_of(v.split)];
+  const SplitBounds& bounds = bounds_of(cut, v.split);
   wishes.back().excess = error_.of(bounds, error_.position(v.position));
   std::push_heap(wishes.begin(), wishes.end(),
                  [](const Wish& a, const Wish& b) { return a.excess < b.excess; });

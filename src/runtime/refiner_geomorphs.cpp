@@ -31,7 +31,7 @@ bool Refiner::waits(const ActiveCut& cut, SplitId s, const ActiveCut::Children& 
     const ActiveVertex& v = cut.vertices()[slot];
     const VertexHierarchy& h = cut.hierarchy().vertices;
     const Vec3f at = error_.position(grid_difference(v.position, h.delta_of(v.node)));
-    if (error_.inside(at.x, at.y, at.z) + h.bounds[index_of(s)].radius.value() < 0) return false;
+    if (error_.inside(at.x, at.y, at.z) + bounds_of(cut, s).radius.value() < 0) return false;
   }
   return geomorphs_->leave(cut, s, children, for_room);
 }

@@ -1,20 +1,23 @@
 // The cuts by vertex of a BlockMesh, one a block, and what they want of each other.
 //
-//   VertexCuts cuts(graph);
+//   VertexCuts cuts(graph, grid);
 //   cuts.insert(hierarchy);                                    // whenever one has come
 //   const VertexCuts::Report report = cuts.update(blocks, view, true);
-//   if (const BlockCut* cut = cuts.cut(block)) draw(cut->draw_list());   // else it is shown whole
+//   if (const BlockCut* cut = cuts.cut(block)) ...             // else it is shown whole
 //
 // A block is by vertex only if all that it needs are; so what is shown whole is finer than what is
 // by vertex around it, and all of its coarse end must be active there. Each update goes from fine
-// blocks to coarse ones: what a block wants of coarser ones is known before they move.
+// blocks to coarse ones: what a block wants of coarser ones is known before they move. Time: that
+// of what changes, and O(1) for each other block of the cut.
 #pragma once
 
 #include "runtime/block_cut.h"
+#include "runtime/block_errors.h"
 #include "runtime/block_graph.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <span>
 #include <utility>
@@ -24,7 +27,7 @@ namespace crease {
 
 class VertexCuts {
  public:
-  explicit VertexCuts(const BlockGraph& graph) : graph_(graph) {}
+  VertexCuts(const BlockGraph& graph, const Grid& grid) : graph_(graph), grid_(grid) {}
 
   // The cut by block.
   struct Blocks {
@@ -45,6 +48,8 @@ class VertexCuts {
   Report update(const Blocks& blocks, const ViewParameters& view, bool cut_has_changed);
   // All blocks that could be by vertex are, and have seen the last update()'s view.
   bool has_arrived() const { return has_arrived_; }
+  // Blocks of which bytes_of() may be another since the last update().
+  std::span<const std::uint32_t> resized() const { return resized_; }
 
   // Null: it is shown whole, if at all.
   const BlockCut* cut(std::uint32_t block) const {
@@ -56,39 +61,59 @@ class VertexCuts {
   std::size_t bytes_of(std::uint32_t block) const;  // hierarchy and cut
 
  private:
-  // A vertex that a block starts from, and where it was made.
-  struct Maker {
-    std::uint32_t block = 0, vertex = 0, root = 0;
-  };
   enum class Way : std::uint8_t { Hidden, Whole, ByVertex };
+  // Triangles of a block's coarse end from `first` on are, in order, those of `block` by patch from
+  // `there` on.
+  struct Source {
+    std::uint32_t block = 0, first = 0, there = 0;
+  };
   struct Entry {
     BlockHierarchyPtr hierarchy;
+    std::unique_ptr<BlockErrors> errors;
+    bool is_stale = false;   // finer blocks may know more of its errors
+    Way way = Way::Hidden;   // what coarser blocks know of it
+    ResidentBlockPtr block;  // while it is not hidden
+    std::vector<Source> sources;
+    std::vector<std::uint32_t> makers;  // of its roots and triangles, ascending
     std::unique_ptr<BlockCut> cut;
-    std::vector<Maker> makers;            // of its roots, by block; while it is refined
-    std::vector<std::uint32_t> named_by;  // refined blocks whose roots it made
-    Way way = Way::Hidden;
-    bool wants_changed = false;  // in this update(): what it wants of coarser ones
-    bool must_ask = false;       // others want something of it than did before
     std::uint64_t seen_in_round = 0;
   };
 
-  bool can_be_by_vertex(std::uint32_t block) const;
-  bool choose_blocks(const Blocks& blocks);
-  void link(const Blocks& blocks);
-  void unlink(std::uint32_t block);
-  void find_makers(const ResidentBlock& block, Entry& entry) const;
-  static std::vector<std::uint32_t> makers_of(const Entry& entry);
+  void mark_stale(std::uint32_t block);
+  void settle_errors(const Blocks& blocks);
+  void tighten(std::uint32_t block, const Blocks& blocks);
+
+  bool can_be_by_vertex(std::uint32_t block, std::span<const Way> ways) const;
+  std::vector<Way> choose_ways(const Blocks& blocks);
+  bool link(const Blocks& blocks);
+  void hide(std::uint32_t block);
+  void show(std::uint32_t block, Way way, const Blocks& blocks);
+  std::vector<Source> sources_of(std::uint32_t block, const Blocks& blocks) const;
+  std::vector<std::uint32_t> makers_of(const ResidentBlock& block) const;
+  void want(std::uint32_t root, const Entry& entry, bool is_wanted);
+  void take(std::uint32_t triangle, const Entry& entry, bool is_taken);
+  void want_all(const Entry& entry, bool is_wanted, std::uint32_t of);
+  void unwant(const Entry& entry);
+
+  void look(const ViewParameters& view);
+  void begin_round(const Blocks& blocks);
   void move(const Blocks& blocks, const ViewParameters& view, Report& report);
-  bool must_ask(std::uint32_t block) const;
-  void ask_finer(std::uint32_t block, const Blocks& blocks);
-  void ask_for_triangles(std::uint32_t block, const Blocks& blocks, std::vector<char>& taken) const;
-  std::size_t first_triangle_in(std::uint32_t finer, std::uint32_t block,
-                                const Blocks& blocks) const;
+  void tell(Entry& entry);
+  void let_rest(std::uint32_t block);
 
   const BlockGraph& graph_;
-  std::vector<Entry> entries_;  // per block
-  std::uint64_t round_ = 1;     // each block sees a view once a round
-  bool has_changed_ = true;     // hierarchies have come or cuts have gone
+  const Grid grid_;
+  std::vector<Entry> entries_;                  // per block
+  std::vector<std::uint32_t> stale_, resized_;  // stale_: a heap, finest first
+  struct Waiting {
+    std::uint64_t since = 0;
+    std::uint32_t block = 0;
+  };
+  std::deque<Waiting> waiting_to_rest_;
+  ViewNow now_;
+  std::uint64_t updates_ = 0;
+  std::uint64_t round_ = 1;  // each block sees a view once a round
+  bool has_changed_ = true;  // hierarchies have come or cuts have gone
   bool has_arrived_ = true;
 };
 

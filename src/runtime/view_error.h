@@ -65,6 +65,9 @@ struct Watch {
   float reach_aside = -kNever;  // in place of reach for what may be a silhouette
 };
 
+// Wrong for every eye.
+inline constexpr Watch kAlwaysWrong{{}, kNever, kNever, {}, 1, 0, kNever};
+
 class ViewError {
  public:
   ViewError() = default;

@@ -104,6 +104,19 @@ class WatchList {
     return looked_at;
   }
 
+  // How much farther the camera may travel, and turn, with no answer to change; negative: now.
+  struct Slack {
+    double travel, turn;
+  };
+  Slack slack(const Odometer& now) const {
+    Dates first{kNever, kNever};
+    for (std::size_t b = 0; b < (size_ + kLanes - 1) / kLanes; ++b) {
+      first.travel = lesser(first.travel, due_[b].travel);
+      first.turn = lesser(first.turn, due_[b].turn);
+    }
+    return {double(first.travel) - now.travel, double(first.turn) - now.turn};
+  }
+
   std::size_t bytes() const {
     return sizeof(Spheres) * spheres_.capacity() + sizeof(Facings) * facings_.capacity() +
            sizeof(Dates) * due_.capacity();

@@ -31,6 +31,18 @@ struct Place {
   std::uint32_t block = 0, triangle = 0;
 };
 
+// The lowest node that is above the leaf and not below a split that is not done.
+NodeId active_above(const BlockCut& cut, NodeId leaf) {
+  const VertexHierarchy& h = cut.data().hierarchy.vertices;
+  NodeId active = leaf;
+  for (NodeId n = leaf; !h.is_root(n);) {
+    const SplitId s = h.split_above(n);
+    n = h.node_of_split[index_of(s)];
+    if (!cut.is_done(s)) active = n;
+  }
+  return active;
+}
+
 class BlocksOracle {
  public:
   explicit BlocksOracle(const BlockMesh::Impl& mesh) : mesh_(mesh) {
@@ -79,18 +91,6 @@ class BlocksOracle {
     REQUIRE(sources_[block].size() == data(block).coarse_triangles);
   }
 
-  // The lowest node that is above the leaf and not below a split that is not done.
-  static NodeId active_above(const BlockCut& cut, NodeId leaf) {
-    const VertexHierarchy& h = cut.data().hierarchy.vertices;
-    NodeId active = leaf;
-    for (NodeId n = leaf; !h.is_root(n);) {
-      const SplitId s = h.split_above(n);
-      n = h.node_of_split[index_of(s)];
-      if (!cut.cut().is_done(s)) active = n;
-    }
-    return active;
-  }
-
   Active active(const codec::VertexName& name) const {
     const BlockCut* const cut = mesh_.cuts.cut(name.block);
     if (cut == nullptr) {
@@ -108,11 +108,15 @@ class BlocksOracle {
     return {name.block, static_cast<std::uint32_t>(node), d.hierarchy.vertices.position_of(node)};
   }
 
+  static bool is_split(const BlockCut& cut, std::uint32_t root) {
+    const SplitId s = cut.data().hierarchy.vertices.split_of(cut.data().node_of_root[root]);
+    return s != kNoSplit && cut.is_done(s);
+  }
   bool has_split_root(const Place& at) const {
     const BlockCut* const cut = mesh_.cuts.cut(at.block);
     if (cut == nullptr) return true;
     for (const std::uint32_t root : cut->data().roots_of_triangle[at.triangle]) {
-      if (!cut->cut().is_cut_leaf(cut->data().node_of_root[root])) return true;
+      if (is_split(*cut, root)) return true;
     }
     return false;
   }
@@ -190,7 +194,7 @@ class BlocksOracle {
     const StoredValue found = h.value(l, active, a);
     value.assign(found.begin(), found.end());
     const SplitId deriving = h.vertices.deriving_split(TriangleId{t});
-    return deriving != kNoSplit && !cut.cut().is_done(deriving);
+    return deriving != kNoSplit && !cut.is_done(deriving);
   }
 
   const BlockMesh::Impl& mesh_;
@@ -229,10 +233,14 @@ std::size_t check_nothing_is_wrong(const BlockMesh& mesh, const ViewParameters& 
     const BlockCut* const cut = mesh.impl().cuts.cut(block);
     if (cut == nullptr) continue;
     ++blocks;
-    for (const ActiveVertex& v : cut->cut().vertices()) {
-      if (v.node == kNoNode || v.split == kNoSplit) continue;
-      const SplitBounds& bounds = cut->data().hierarchy.vertices.bounds[index_of(v.split)];
-      wrong += error.is_wrong(error.watch(bounds, error.position(v.position), 1));
+    const VertexHierarchy& h = cut->data().hierarchy.vertices;
+    for (std::uint32_t v = 0; v < cut->data().leaf_of_vertex.size(); ++v) {
+      if (cut->data().wedge_of_vertex[v] == kNone) continue;
+      const NodeId node = active_above(*cut, cut->data().leaf_of_vertex[v]);
+      const SplitId s = h.split_of(node);
+      if (s == kNoSplit) continue;
+      const Vec3f position = error.position(h.position_of(node));
+      wrong += error.is_wrong(error.watch(cut->bounds()[index_of(s)], position, 1));
     }
   }
   CHECK(wrong == 0);

@@ -1,12 +1,16 @@
 // By vertex inside resident blocks, against the definition: whatever blocks and hierarchies have
 // come, and however the view went, what is shown is one cut.
 #include "codec/checksum.h"
+#include "crease/block_view.h"
+#include "crease/build_hierarchy.h"
+#include "crease/decode_model.h"
 #include "crease/import.h"
 #include "runtime/block_mesh_impl.h"
 #include "runtime/block_mesh_oracle.h"
 #include "runtime/block_vertices_oracle.h"
 #include "runtime/draw_values.h"
 #include "runtime/extract_cut.h"
+#include "runtime/view_error.h"
 #include "support/described_mesh.h"
 #include "support/drawn_triangles.h"
 #include "support/mesh_zoo.h"
@@ -18,6 +22,7 @@
 
 #include <filesystem>
 #include <random>
+#include <set>
 
 namespace crease {
 namespace {
@@ -52,6 +57,18 @@ struct Arrivals {
       if (missing.empty() && hierarchies.empty() && mesh.has_arrived()) return;
       for (const BlockEntry& entry : missing) load(entry);
       for (const BlockId id : hierarchies) make(id);
+    }
+  }
+
+  // What another one knows: errors depend on it.
+  void load_as(const Arrivals& other) {
+    const std::uint32_t blocks = other.mesh.impl().graph.size();
+    for (std::uint32_t b = 0; b < blocks; ++b) {
+      const BlockEntry& entry = other.mesh.impl().graph.entry(b);
+      if (other.mesh.is_resident(entry.id) && !mesh.is_resident(entry.id)) load(entry);
+    }
+    for (std::uint32_t b = 0; b < blocks; ++b) {
+      if (other.mesh.hierarchy(BlockId{b}) && !mesh.hierarchy(BlockId{b})) make(BlockId{b});
     }
   }
 
@@ -109,7 +126,7 @@ void check_walk(const EncodedCase& c, std::uint64_t seed) {
   }
 }
 
-// The same view gives the same, whatever was shown before.
+// The same view gives the same of the same blocks, whatever was shown before.
 void check_views_by_vertex(const EncodedCase& c, std::uint64_t seed) {
   if (c.mesh.vertex_count() == 0) return;
   const BlockFile file = opened(c.bytes);
@@ -127,6 +144,8 @@ void check_views_by_vertex(const EncodedCase& c, std::uint64_t seed) {
     const DescribedMesh shown = described(walked.mesh.extract());
     const std::size_t triangles = walked.mesh.triangle_count();
     Arrivals fresh = opened_arrivals(file);
+    fresh.load_all(parameters);
+    fresh.load_as(walked);
     fresh.load_all(parameters);
     CHECK((described(fresh.mesh.extract()) == shown));
     parameters.by_vertex = false;
@@ -154,6 +173,53 @@ TEST_CASE("by vertex, a view gets what is seen to be wrong, whatever was shown b
     INFO(zoo.name);
     check_views_by_vertex(simplified_case(zoo.mesh, 100, 14, kCoarsePrecision), ++seed);
   }
+}
+
+// The triangles of ranges, by block, part and number.
+std::set<std::array<std::size_t, 3>> triangles_of(std::span<const ShownRange> ranges) {
+  std::set<std::array<std::size_t, 3>> all;
+  for (const ShownRange& range : ranges) {
+    const std::array<Range, 3> parts{range.sn, range.fn, range.nsn};
+    for (std::size_t p = 0; p < 3; ++p) {
+      for (std::uint32_t t = 0; t < parts[p].count; ++t) {
+        CHECK(all.insert({index_of(range.block->id()), p, parts[p].first + t}).second);
+      }
+    }
+  }
+  return all;
+}
+
+TEST_CASE("by block, what is left out of a frame is beside its view") {
+  const EncodedCase c = simplified_case(smooth_sphere(40, 60), 1000, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  const Vec3d& origin = file.facts().grid.origin;
+  Arrivals arrivals = opened_arrivals(file);
+  std::mt19937_64 random(5);
+  std::size_t kept = 0, left_out = 0;
+  for (int trial = 0; trial < (kSanitized ? 6 : 30); ++trial) {
+    BlockViewParameters parameters = random_view(c.mesh, random);
+    arrivals.load_all(parameters);
+    const Camera& camera = parameters.view.camera;
+    const auto all = triangles_of(arrivals.mesh.shown());
+    const auto in_view = triangles_of(shown_in_view(arrivals.mesh.shown(), origin, camera));
+    const ViewError error(parameters.view, file.facts().grid);
+    for (const auto& triangle : all) {
+      if (in_view.contains(triangle)) {
+        ++kept;
+        continue;
+      }
+      ++left_out;
+      const DrawList list = arrivals.mesh.resident(BlockId(triangle[0]))->draw_list();
+      const DrawPart& part = triangle[1] == 0 ? list.sn : triangle[1] == 1 ? list.fn : list.nsn;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3f& p = list.positions[part.indices[3 * triangle[2] + k]];
+        if (parameters.view.coarse_outside) CHECK(error.inside(p.x, p.y, p.z) < 1e-4f);
+      }
+    }
+    for (const auto& triangle : in_view) CHECK(all.contains(triangle));
+  }
+  CHECK(kept > 100);
+  CHECK(left_out > 100);
 }
 
 // Bands of one patch each, of about `size` contractions. A band can only contract vertices that
@@ -202,6 +268,35 @@ TEST_CASE("by vertex, random complexes are one cut as well") {
   }
 }
 
+TEST_CASE("by vertex, with all blocks there, hardly more is shown than of one hierarchy") {
+  std::uint64_t seed = 400;
+  for (const Mesh& mesh : {city_blocks(6, 2), smooth_sphere(40, 60)}) {
+    const EncodedCase c = simplified_case(mesh, 250, 16, kCoarsePrecision);
+    const BlockFile file = opened(c.bytes);
+    const Result<DecodedModel> model = decode_model(file);
+    REQUIRE(model.ok());
+    Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
+    REQUIRE(hierarchy.ok());
+    AdaptiveMesh whole(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));
+    Arrivals arrivals = opened_arrivals(file);
+    BlockViewParameters parameters = view_of_all();
+    parameters.by_vertex = true;
+    arrivals.load_all(parameters);
+    std::mt19937_64 random(++seed);
+    std::size_t in_blocks = 0, of_whole = 0;
+    for (int trial = 0; trial < 12; ++trial) {
+      parameters.view = random_vertex_view(c.mesh, random).view;
+      arrivals.load_all(parameters);
+      whole.update(parameters.view);
+      in_blocks += arrivals.mesh.triangle_count();
+      of_whole += whole.triangle_count();
+    }
+    CAPTURE(in_blocks);
+    CAPTURE(of_whole);
+    CHECK(double(in_blocks) <= 1.3 * double(of_whole));
+  }
+}
+
 TEST_CASE("by vertex, models of many blocks are one cut") {
   std::uint64_t seed = 200;
   for (const Mesh& mesh : {city_blocks(6, 2), crossing_walls(3, 6), smooth_sphere(30, 44)}) {
@@ -244,7 +339,7 @@ TEST_CASE("by vertex, an update without time leaves one cut, and the next ones g
   CHECK(slow > 0);
 }
 
-TEST_CASE("by vertex, a cut of which all is held is the block's fine end") {
+TEST_CASE("by vertex, a cut of which all is split is the block's fine end") {
   const EncodedCase c = simplified_case(faceted_sphere(30, 44), 150, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   Arrivals arrivals = opened_arrivals(file);
@@ -254,17 +349,14 @@ TEST_CASE("by vertex, a cut of which all is held is the block's fine end") {
   std::size_t blocks = 0;
   for (const std::uint32_t block : arrivals.mesh.impl().cut) {
     const ResidentBlockPtr resident = arrivals.mesh.resident(BlockId{block});
-    BlockCut cut(resident, arrivals.mesh.hierarchy(BlockId{block}));
-    const std::size_t triangles = cut.data().roots_of_triangle.size();
-    const std::size_t roots = cut.data().node_of_root.size();
-    cut.set_wants(std::vector<char>(cut.data().leaf_of_vertex.size(), 1),
-                  std::vector<char>(triangles, 0));
-    ViewParameters nothing;
-    nothing.camera.pixels = 1e9;
-    cut.update(nothing);
-    cut.finish();
-    CHECK(cut.cut().triangle_count() == triangles);
-    blocks += roots < cut.data().leaf_of_vertex.size();
+    const BlockHierarchyPtr hierarchy = arrivals.mesh.hierarchy(BlockId{block});
+    const BlockHierarchy::Data& data = hierarchy->data();
+    ActiveCut cut(data.hierarchy);
+    for (std::uint32_t slot = 0; slot < cut.vertices().size();) {
+      cut.vertices()[slot].split == kNoSplit ? void(++slot) : void(cut.split(slot));
+    }
+    CHECK(cut.triangle_count() == data.roots_of_triangle.size());
+    blocks += data.node_of_root.size() < data.leaf_of_vertex.size();
     // As the mesh by block has it, with nothing else shown.
     const Grid& grid = file.facts().grid;
     const auto place = [&grid](const Vec3d& p) { return draw_position(grid, grid.nearest(p)); };
@@ -272,7 +364,7 @@ TEST_CASE("by vertex, a cut of which all is held is the block's fine end") {
     for (const BlockGroup& group : resident->groups()) {
       add_drawn(resident->draw_list(), {group.sn, group.fn, group.nsn}, fine);
     }
-    CHECK((drawn_of_mesh(extract_cut(cut.cut()), place) == fine));
+    CHECK((drawn_of_mesh(extract_cut(cut), place) == fine));
   }
   CHECK(blocks > 3);
 }

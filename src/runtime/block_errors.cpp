@@ -1,0 +1,88 @@
+#include "runtime/block_errors.h"
+
+#include "codec/model_of_blocks.h"
+
+#include <utility>
+
+namespace crease {
+
+namespace {
+
+RoundedUp better(RoundedUp a, RoundedUp b) {
+  return a.bits < b.bits ? a : b;
+}
+
+RoundedUp worse(RoundedUp a, RoundedUp b) {
+  return a.bits > b.bits ? a : b;
+}
+
+RoundedError worse(const RoundedError& a, const RoundedError& b) {
+  return {worse(a.surface, b.surface), worse(a.line, b.line), worse(a.degrees, b.degrees),
+          worse(a.texture, b.texture)};
+}
+
+}  // namespace
+
+BlockErrors::BlockErrors(const BlockHierarchy::Data& data)
+    : data_(data),
+      of_vertex_(data.leaf_of_vertex.size(), RoundedError::from(data.fine)),
+      bounds_(data.hierarchy.vertices.bounds) {
+  settle();
+}
+
+void BlockErrors::tighten(std::uint32_t vertex, const RoundedError& error) {
+  RoundedError& known = of_vertex_[vertex];
+  const RoundedError less{better(known.surface, error.surface), better(known.line, error.line),
+                          better(known.degrees, error.degrees),
+                          better(known.texture, error.texture)};
+  if (less == known) return;
+  known = less;
+  is_new_ = true;
+  const bool is_root = vertex < data_.node_of_root.size();
+  has_new_root_ |=
+      is_root && data_.hierarchy.vertices.split_of(data_.node_of_root[vertex]) == kNoSplit;
+}
+
+RoundedError BlockErrors::of_root(std::uint32_t root) const {
+  const SplitId s = data_.hierarchy.vertices.split_of(data_.node_of_root[root]);
+  if (s == kNoSplit) return of_vertex_[root];
+  const SplitBounds& bounds = bounds_[index_of(s)];
+  return {bounds.surface, bounds.line, bounds.degrees, bounds.texture};
+}
+
+// Children come after their parents.
+bool BlockErrors::settle() {
+  if (!is_new_) return false;
+  is_new_ = false;
+  const VertexHierarchy& h = data_.hierarchy.vertices;
+  std::vector<RoundedError> base(h.node_count()), error(h.node_count());  // at the fine end, here
+  for (std::size_t v = 0; v < of_vertex_.size(); ++v) {
+    const std::size_t leaf = index_of(data_.leaf_of_vertex[v]);
+    base[leaf] = error[leaf] = of_vertex_[v];
+  }
+  bool has_changed = std::exchange(has_new_root_, false);
+  for (std::size_t i = h.split_count(); i-- > 0;) {
+    const SplitId s{static_cast<std::uint32_t>(i)};
+    const std::size_t node = index_of(h.node_of_split[i]);
+    const std::size_t first = index_of(h.first_child(s)), second = index_of(h.second_child(s));
+    base[node] = worse(base[first], base[second]);
+    const LevelError added =
+        codec::added_error(base[node].value(), data_.own_errors[i].value(), data_.coarse);
+    error[node] = worse(worse(error[first], error[second]), RoundedError::from(added));
+    SplitBounds& bounds = bounds_[i];
+    const RoundedError before{bounds.surface, bounds.line, bounds.degrees, bounds.texture};
+    has_changed |= h.is_root(NodeId{static_cast<std::uint32_t>(node)}) && !(before == error[node]);
+    bounds.surface = error[node].surface;
+    bounds.line = error[node].line;
+    bounds.degrees = error[node].degrees;
+    bounds.texture = error[node].texture;
+  }
+  return has_changed;
+}
+
+std::size_t BlockErrors::bytes() const {
+  return sizeof(*this) + sizeof(RoundedError) * of_vertex_.capacity() +
+         sizeof(SplitBounds) * bounds_.capacity();
+}
+
+}  // namespace crease

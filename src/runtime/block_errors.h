@@ -1,0 +1,44 @@
+// How wrong the vertices of a block are. A file says of each block's ends how wrong the worst
+// vertex is; what each contraction adds follows from the shapes. So the errors of all vertices
+// follow from those at the fine end, and these are known where the finer blocks are, whose roots
+// they are: from the finest blocks on, whose fine ends are right, they are those of a hierarchy of
+// the whole model. Until a finer block has come the worst vertex's stands for its.
+//
+//   BlockErrors errors(data);                    // by what the file says
+//   errors.tighten(vertex, finer.of_root(root)); // of any vertices of the fine end
+//   if (errors.settle()) ...                     // the roots' have changed
+//
+// They only get smaller, and are good whatever is dropped. Memory: 8 bytes a vertex, 14 a split.
+#pragma once
+
+#include "crease/split_bounds.h"
+#include "runtime/block_hierarchy.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace crease {
+
+class BlockErrors {
+ public:
+  explicit BlockErrors(const BlockHierarchy::Data& data);
+
+  void tighten(std::uint32_t vertex, const RoundedError& error);
+  // True if errors of roots have changed. Time O(vertices) if tighten() told anything new.
+  bool settle();
+
+  // Per split. Changes with settle().
+  std::span<const SplitBounds> bounds() const { return bounds_; }
+  RoundedError of_root(std::uint32_t root) const;
+  std::size_t bytes() const;
+
+ private:
+  const BlockHierarchy::Data& data_;
+  std::vector<RoundedError> of_vertex_;  // at the fine end
+  std::vector<SplitBounds> bounds_;
+  bool is_new_ = true, has_new_root_ = false;
+};
+
+}  // namespace crease
