@@ -200,12 +200,14 @@ void Geomorphs::stay(const ActiveCut& cut, SplitId s) {
 
 void Geomorphs::merged(SplitId s, const ActiveCut::Children& children) {
   if (is_leaving(s, children)) leaving_triangles_ -= hierarchy_.vertices.triangles_of(s).size();
+  bool moved = false;
   for (const std::uint32_t slot : {children.first, children.second}) {
-    if (slot == kNoSlot) continue;
+    if (slot == kNoSlot || !is_moving(slot)) continue;
     drop(slot);
+    moved = true;
   }
   // Corners of the second one stand at the first one now.
-  if (children.first != kNoSlot) at_rest_.push_back(children.first);
+  if (moved && children.first != kNoSlot) at_rest_.push_back(children.first);
 }
 
 const std::vector<Geomorphs::Leaving>& Geomorphs::all_leaving() {
