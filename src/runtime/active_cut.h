@@ -102,7 +102,7 @@ class ActiveCut {
     for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[slots[k]]);
   }
 
-  std::span<const CornerAt> corners_of(std::uint32_t slot) const {
+  CornerLists::View corners_of(std::uint32_t slot) const {
     return lists_.of(vertices_[slot].corners);
   }
 
@@ -177,9 +177,15 @@ class ActiveCut {
   void touch_corners(std::uint32_t slot, bool had_one_normal);
   void give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle);
   void take_corners(std::uint32_t from, std::uint32_t to);
+  void take_many_corners(std::uint32_t from, std::uint32_t to);
   void activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
                 const std::array<std::uint32_t, 3>& slots);
-  void deactivate(CornerRef corner, std::uint32_t from);
+  void deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to);
+  void stand_at(CornerRef corner, std::uint32_t slot) {
+    ActiveTriangles& part = parts_[corner.part()];
+    part.slots[corner.index()] = slot;
+    part.moved.mark(corner.triangle());
+  }
   void touch_derived(SplitId s);
   void prefetch_vertex(std::uint32_t slot) const {
     const char* const vertex = reinterpret_cast<const char*>(&vertices_[slot]);

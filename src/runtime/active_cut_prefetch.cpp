@@ -59,7 +59,7 @@ void ActiveCut::prefetch_siblings_further(SplitId s) const {
   if (middle == 0 || middle >= h_.wedge_count()) return;
   const std::uint32_t second = map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle)});
   const std::uint32_t first = map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle - 1)});
-  for (const CornerAt& at : corners_of(second)) {
+  for (const CornerAt at : corners_of(second)) {
     const std::uint32_t* const of =
         &parts_[at.corner.part()].slots[3 * std::size_t(at.corner.triangle())];
     if ((of[0] == first) | (of[1] == first) | (of[2] == first)) {
@@ -81,7 +81,7 @@ void ActiveCut::prefetch_born(std::uint32_t slot, SplitId s) const {
 }
 
 void ActiveCut::prefetch_corners(std::uint32_t slot) const {
-  for (const CornerAt& at : corners_of(slot)) {
+  for (const CornerAt at : corners_of(slot)) {
     __builtin_prefetch(&parts_[at.corner.part()].slots[3 * std::size_t(at.corner.triangle())]);
   }
 }

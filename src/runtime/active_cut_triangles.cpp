@@ -1,5 +1,4 @@
 // What kind active triangles are, and where they are kept.
-#include "base/assert.h"
 #include "hierarchy/geometric_normal.h"
 #include "runtime/active_cut.h"
 
@@ -56,14 +55,7 @@ SplitId ActiveCut::introducing_split(TriangleId t) const {
 }
 
 void ActiveCut::replace_corner(CornerRef from, CornerRef to) {
-  const std::uint32_t slot = parts_[from.part()].slots[from.index()];
-  for (CornerAt& at : lists_.of(vertices_[slot].corners)) {
-    if (at.corner == from) {
-      at.corner = to;
-      return;
-    }
-  }
-  CREASE_ASSERT(false);
+  lists_.replace(vertices_[parts_[from.part()].slots[from.index()]].corners, from, to);
 }
 
 void ActiveCut::copy_triangle(Part from, std::uint32_t source, Part to, std::uint32_t target) {

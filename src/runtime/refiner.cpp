@@ -326,7 +326,7 @@ bool Refiner::is_needed(const ActiveCut& cut, SplitId s) const {
   const ActiveCut::Children children = cut.children(s);
   for (const std::uint32_t slot : {children.first, children.second}) {
     if (slot == kNoSlot) continue;
-    for (const CornerAt& at : cut.corners_of(slot)) {
+    for (const CornerAt at : cut.corners_of(slot)) {
       const TriangleId t = cut.parts()[at.corner.part()].ids[at.corner.triangle()];
       const SplitId by = cut.introducing_split(t);
       if (by == kNoSplit || by == s) continue;
