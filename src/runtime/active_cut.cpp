@@ -36,6 +36,8 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy)
     if (!has_choices(layer)) continue;
     place_of_layer_[l] = static_cast<std::uint32_t>(tracked_.size());
     tracked_.push_back(l);
+    orders_.push_back(layer.constant_of_wedge.empty() ? AttributeOrder(hierarchy, l)
+                                                      : AttributeOrder());
     tracks_others_ |= l != normal_layer_;
   }
   texcoord_layer_ = painted_layer(hierarchy_.layers, hierarchy_.materials);
@@ -290,6 +292,10 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
 // there already.
 std::uint32_t ActiveCut::value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge) const {
   const std::uint32_t l = tracked_[place];
+  if (!orders_[place].empty()) {
+    const RelativeAttribute a = orders_[place].attribute_at(hierarchy_.layers[l], v.node, wedge);
+    return hierarchy_.value_index(l, v.node, a);
+  }
   const PackedIndices<>& constants = hierarchy_.layers[l].constant_of_wedge;
   const std::uint32_t constant = constants.empty() ? 0 : constants[index_of(wedge)];
   if (constant != 0) return constant - 1;

@@ -22,6 +22,7 @@
 
 #include "crease/mesh_hierarchy.h"
 #include "runtime/active_triangles.h"
+#include "runtime/attribute_order.h"
 #include "runtime/change_set.h"
 #include "runtime/corner_lists.h"
 #include "runtime/wedge_map.h"
@@ -94,9 +95,6 @@ class ActiveCut {
   void prefetch_split_further(std::uint32_t slot, SplitId s) const;
   void prefetch_merge(std::uint32_t slot, SplitId s) const;
   void prefetch_merge_further(std::uint32_t slot, SplitId s) const;
-  void prefetch_born(std::uint32_t slot, SplitId s) const;
-  void prefetch_siblings(SplitId s) const;
-  void prefetch_siblings_further(SplitId s) const;
   void prefetch_vertices_of(const ActiveTriangles& part, std::size_t triangle) const {
     const std::uint32_t* const slots = &part.slots[3 * triangle];
     for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[slots[k]]);
@@ -209,6 +207,7 @@ class ActiveCut {
   std::uint32_t normal_layer_ = kNone, color_layer_ = kNone, texcoord_layer_ = kNone;
   std::vector<std::uint32_t> tracked_;         // layers that have nodes of several attributes
   std::vector<std::uint32_t> place_of_layer_;  // in tracked_, or kNone
+  std::vector<AttributeOrder> orders_;         // of those; empty where wedges keep values
   bool tracks_others_ = false;                 // layers beside normals
   bool touches_triangles_ = false;             // some triangle is, or may become, other than SN
   std::vector<std::uint64_t> done_;            // a bit a split

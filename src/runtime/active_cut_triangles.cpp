@@ -109,6 +109,7 @@ void ActiveCut::fill_holes() {
 std::size_t ActiveCut::bytes() const {
   std::size_t sum = 8 * done_.capacity() + map_.bytes() + lists_.bytes() +
                     sizeof(ActiveVertex) * vertices_.capacity() + 4 * free_slots_.capacity();
+  for (const AttributeOrder& order : orders_) sum += order.bytes();
   for (const ActiveTriangles& part : parts_) {
     sum += 4 * (part.ids.capacity() + part.slots.capacity() + part.holes.capacity() +
                 part.materials.capacity() + part.values.capacity()) +

@@ -67,17 +67,20 @@ struct CornerList {
   }
   std::uint32_t of_triangle(CornerRef corner) const {
     const FourInts one = FourInts{} + static_cast<std::int32_t>(corner.bits());
-    return all() & lanes(refs, [&](const FourInts& x) -> FourInts { return ((x ^ one) & ~3) == 0; });
+    return all() &
+           lanes(refs, [&](const FourInts& x) -> FourInts { return ((x ^ one) & ~3) == 0; });
   }
   std::uint32_t of_other_parts(std::uint32_t part) const {
     const auto bits = static_cast<std::int32_t>(CornerRef(part, 0, 0).bits());
     const FourInts one = FourInts{} + bits, high = FourInts{} + (std::int32_t(-1) << 30);
-    return all() & lanes(refs, [&](const FourInts& x) -> FourInts { return ((x ^ one) & high) != 0; });
+    return all() &
+           lanes(refs, [&](const FourInts& x) -> FourInts { return ((x ^ one) & high) != 0; });
   }
   std::uint32_t from_wedge(WedgeId first) const {
     constexpr std::int32_t kSign = std::int32_t(1u << 31);  // compares as if there were none
     const FourInts least = FourInts{} + (static_cast<std::int32_t>(first) ^ kSign);
-    return all() & lanes(wedges, [&](const FourInts& x) -> FourInts { return (x ^ kSign) >= least; });
+    return all() &
+           lanes(wedges, [&](const FourInts& x) -> FourInts { return (x ^ kSign) >= least; });
   }
   void erase_own(std::uint32_t i) {  // the last one takes its place
     --count;
