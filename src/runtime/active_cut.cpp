@@ -193,6 +193,7 @@ void ActiveCut::merge(SplitId s, const Children& slots) {
     pass_up(s, slots.first, slots.second);
     const bool had_one = vertices_[slot].has_one_normal();
     stand(slot, node, grid_difference(vertices_[slot].position, delta));
+    renew_after_merge(s, slot);
     touch_corners(slot, had_one);
     touch_derived(s);
     return;
@@ -206,6 +207,7 @@ void ActiveCut::merge(SplitId s, const Children& slots) {
   take_corners(slots.second, slots.first);
   const bool had_one = first.has_one_normal() || second.has_one_normal();
   stand(slots.first, node, position);
+  renew_after_merge(s, slots.first);
   touch_corners(slots.first, had_one);
   lists_.clear(second.corners);
   second.node = kNoNode;
@@ -277,7 +279,9 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
   const Part kind = is_smooth ? kSnPart : kind_of(is_derived, slots, arriving_);
   ActiveTriangles& part = parts_[kind];
   const std::uint32_t place = part.add(t, arriving_.size());
-  if (has_values) std::copy(arriving_.begin(), arriving_.end(), &part.values[3 * tracked * place]);
+  if (has_values || kind != kSnPart) {
+    std::copy_n(arriving_.begin(), 3 * tracked, part.values.begin() + 3 * tracked * place);
+  }
   part.is_derived[place] = is_derived ? 1 : 0;
   std::uint32_t* const placed = &part.slots[3 * std::size_t(place)];
   for (std::uint32_t k = 0; k < 3; ++k) {
@@ -293,8 +297,9 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
 std::uint32_t ActiveCut::value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge) const {
   const std::uint32_t l = tracked_[place];
   if (!orders_[place].empty()) {
-    const RelativeAttribute a = orders_[place].attribute_at(hierarchy_.layers[l], v.node, wedge);
-    return hierarchy_.value_index(l, v.node, a);
+    const AttributeHierarchy& layer = hierarchy_.layers[l];
+    const AttributeOrder::Node node = AttributeOrder::node(layer, v.node);
+    return hierarchy_.value_index(l, v.node, orders_[place].attribute_at(node, wedge));
   }
   const PackedIndices<>& constants = hierarchy_.layers[l].constant_of_wedge;
   const std::uint32_t constant = constants.empty() ? 0 : constants[index_of(wedge)];
@@ -325,12 +330,12 @@ void ActiveCut::touch_corners(std::uint32_t slot, bool had_one_normal) {
     return;
   }
   const CornerList& list = vertices_[slot].corners;
+  const bool needs_derived = only_derived && !is_painted();
   const auto touch = [&](CornerRef corner) {
-    const std::uint32_t part = corner.part(), triangle = corner.triangle();
-    if (only_derived && !is_painted() && part != kSnPart && !parts_[part].is_derived[triangle]) {
-      return;
-    }
-    parts_[part].touched.mark(triangle);
+    ActiveTriangles& part = parts_[corner.part()];
+    const bool is_derived = part.is_derived[corner.triangle()] != 0;
+    part.touched.mark_if(corner.triangle(),
+                         !needs_derived | is_derived | (corner.part() == kSnPart));
   };
   const bool only_others = has_one && !is_painted();
   if (!list.is_own()) {
@@ -362,6 +367,10 @@ void ActiveCut::pass_down(SplitId s, std::uint32_t first, std::uint32_t second,
     const std::uint32_t l = tracked_[i];
     const AttributeHierarchy& layer = hierarchy_.layers[l];
     if (layer.parents_of_split.is_empty(index_of(s))) continue;  // neither has several
+    if (!orders_[i].empty()) {
+      for (const std::uint32_t slot : {first, second}) renew_values(slot, i);
+      continue;
+    }
     const bool had_several = l == normal_layer_
                                  ? !had_one_normal
                                  : layer.attribute_count(h_.node_of_split[index_of(s)]) > 1;
@@ -370,6 +379,31 @@ void ActiveCut::pass_down(SplitId s, std::uint32_t first, std::uint32_t second,
       if (slot == kNoSlot || !has_several(i, vertices_[slot])) continue;
       step_down(s, slot, slot == second, i);
     }
+  }
+}
+
+// Looks up what all corners at a vertex have now.
+void ActiveCut::renew_values(std::uint32_t slot, std::size_t place) {
+  if (slot == kNoSlot || !has_several(place, vertices_[slot])) return;
+  const AttributeHierarchy& layer = hierarchy_.layers[tracked_[place]];
+  const std::size_t n = index_of(vertices_[slot].node);
+  const AttributeOrder::Node node = AttributeOrder::node(layer, vertices_[slot].node);
+  const std::uint32_t first = layer.place_of_value(layer.attribute_ranges.begin(n));
+  for (const CornerAt at : corners_of(slot)) {
+    const std::uint32_t value =
+        layer.stored_value(first + orders_[place].attribute_at(node, at.wedge));
+    ActiveTriangles& part = parts_[at.corner.part()];
+    std::uint32_t& kept = part.values[tracked_.size() * at.corner.index() + place];
+    part.touched.mark_if(at.corner.triangle(), value != kept);
+    kept = value;
+  }
+}
+
+void ActiveCut::renew_after_merge(SplitId s, std::uint32_t slot) {
+  for (std::size_t i = 0; i < tracked_.size(); ++i) {
+    if (orders_[i].empty()) continue;
+    if (hierarchy_.layers[tracked_[i]].parents_of_split.is_empty(index_of(s))) continue;
+    renew_values(slot, i);
   }
 }
 
@@ -425,7 +459,7 @@ void ActiveCut::step_down(SplitId s, std::uint32_t slot, bool second, std::size_
 void ActiveCut::pass_up(SplitId s, std::uint32_t first, std::uint32_t second) {
   for (std::size_t i = 0; i < tracked_.size(); ++i) {
     const AttributeHierarchy& layer = hierarchy_.layers[tracked_[i]];
-    if (layer.parents_of_split.is_empty(index_of(s))) continue;
+    if (!orders_[i].empty() || layer.parents_of_split.is_empty(index_of(s))) continue;
     const bool keeps = keeps_values(layer, s);
     for (const std::uint32_t slot : {first, second}) {
       if (slot == kNoSlot || (keeps && has_several(i, vertices_[slot]))) continue;

@@ -108,8 +108,13 @@ class ActiveCut {
   std::uint32_t color_layer() const { return color_layer_; }
   std::uint32_t texcoord_layer() const { return texcoord_layer_; }  // kNone: no textures
 
-  // By DB03, of what the corners have now.
-  Part kind_of(const ActiveTriangles& part, std::uint32_t triangle) const;
+  // By DB03, of what the corners have now, which sorted_normal() tells from then on.
+  Part sort(ActiveTriangles& part, std::uint32_t triangle) const;
+  std::uint32_t sorted_normal(const ActiveTriangles& part, std::size_t corner_index) const {
+    const std::uint32_t place = place_of_layer_[normal_layer_];
+    return place == kNone ? vertices_[part.slots[corner_index]].normal
+                          : part.values[tracked_.size() * corner_index + place];
+  }
   // The value that a corner shows, if its triangle shows stored ones: its index in the layer.
   std::size_t value_index(const ActiveTriangles& part, std::uint32_t corner_index,
                           std::size_t layer) const;
@@ -142,9 +147,9 @@ class ActiveCut {
                          const Vec3i& position);
   std::uint32_t normal_in(const CompactRanges::Range& attributes) const;
   bool is_painted() const { return color_layer_ != kNone || texcoord_layer_ != kNone; }
-  // `values`: per corner one for each tracked layer.
+  // `values`: per corner one for each tracked layer; those of normals are told for all corners.
   Part kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
-               std::span<const std::uint32_t> values) const;
+               std::span<std::uint32_t> values) const;
   // The value at a corner that has `kept` one of a tracked layer.
   std::uint32_t value_of(std::size_t place, std::uint32_t slot, std::uint32_t kept) const {
     const ActiveVertex& v = vertices_[slot];
@@ -162,6 +167,8 @@ class ActiveCut {
   // Of the corners at both children; kNoSlot where one has no triangles.
   void pass_down(SplitId s, std::uint32_t first, std::uint32_t second, bool had_one_normal);
   void pass_up(SplitId s, std::uint32_t first, std::uint32_t second);
+  void renew_values(std::uint32_t slot, std::size_t place);
+  void renew_after_merge(SplitId s, std::uint32_t slot);
   void step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place);
   void step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place);
   std::uint32_t kept_value(const CornerAt& at, std::size_t place) const {

@@ -7,7 +7,7 @@
 namespace crease {
 
 Part ActiveCut::kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
-                        std::span<const std::uint32_t> values) const {
+                        std::span<std::uint32_t> values) const {
   if (normal_layer_ == kNone) return kFnPart;
   if (is_derived) {
     const Vec3f n = geometric_normal(vertices_[slots[0]].position, vertices_[slots[1]].position,
@@ -16,21 +16,26 @@ Part ActiveCut::kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots
   }
   const auto has_one = [&](std::uint32_t slot) { return vertices_[slot].has_one_normal(); };
   // A derived one without area shows what it stores, for as long as its corners stay: no SN.
-  if (!is_derived && std::all_of(slots.begin(), slots.end(), has_one)) return kSnPart;
+  if (!is_derived && (has_one(slots[0]) & has_one(slots[1]) & has_one(slots[2]))) return kSnPart;
   const std::uint32_t place = place_of_layer_[normal_layer_];
   std::uint32_t at[3];
   for (std::size_t k = 0; k < 3; ++k) {
-    at[k] = place == kNone ? vertices_[slots[k]].normal
-                           : value_of(place, slots[k], values[k * tracked_.size() + place]);
+    const ActiveVertex& v = vertices_[slots[k]];
+    if (place == kNone) {
+      at[k] = v.normal;
+      continue;
+    }
+    std::uint32_t& value = values[k * tracked_.size() + place];
+    value = at[k] = v.has_one_normal() ? v.normal : value;
   }
   return at[0] == at[1] && at[1] == at[2] ? kFnPart : kNsnPart;
 }
 
-Part ActiveCut::kind_of(const ActiveTriangles& part, std::uint32_t triangle) const {
+Part ActiveCut::sort(ActiveTriangles& part, std::uint32_t triangle) const {
   const std::size_t each = 3 * tracked_.size();
   return kind_of(part.is_derived[triangle] != 0,
                  std::span<const std::uint32_t, 3>(&part.slots[3 * std::size_t(triangle)], 3),
-                 std::span<const std::uint32_t>(part.values).subspan(each * triangle, each));
+                 std::span<std::uint32_t>(part.values).subspan(each * triangle, each));
 }
 
 std::size_t ActiveCut::value_index(const ActiveTriangles& part, std::uint32_t corner_index,

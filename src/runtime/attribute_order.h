@@ -2,7 +2,7 @@
 // attribute forest of a layer.
 //
 //   AttributeOrder order(hierarchy, layer);
-//   RelativeAttribute a = order.attribute_at(n, wedge);      // as MeshHierarchy::attribute_at()
+//   RelativeAttribute a = order.attribute_at(order.node(layer, n), wedge);  // as MeshHierarchy::attribute_at()
 //
 // An attribute has one parent, so attributes and below them wedges are trees. Where wedges are
 // numbered tree by tree, from left to right, every attribute has a range of them, and those of one
@@ -29,14 +29,19 @@ class AttributeOrder {
   AttributeOrder(const MeshHierarchy& hierarchy, std::size_t layer);
 
   bool empty() const { return place_of_wedge_.empty(); }
-  // Of a corner that can stand at n, which has several. Time O(attributes of n).
-  RelativeAttribute attribute_at(const AttributeHierarchy& layer, NodeId n, WedgeId wedge) const {
-    const std::uint32_t count = layer.attribute_count(n);
+  // Of a corner that can stand at a node with several. Time O(attributes of the node).
+  struct Node {
+    std::size_t first;
+    std::uint32_t count;
+  };
+  static Node node(const AttributeHierarchy& layer, NodeId n) {
+    return {layer.attribute_ranges.unusual_before(index_of(n)), layer.attribute_count(n)};
+  }
+  RelativeAttribute attribute_at(const Node& node, WedgeId wedge) const {
     const std::uint32_t place = place_of_wedge_[index_of(wedge)];
-    const std::size_t first = layer.attribute_ranges.unusual_before(index_of(n));
     std::uint32_t found = 0, begin = 0;
-    for (std::uint32_t a = 0; a < count; ++a) {
-      const std::uint32_t next = begin_of_attribute_[first + a];
+    for (std::uint32_t a = 0; a < node.count; ++a) {
+      const std::uint32_t next = begin_of_attribute_[node.first + a];
       const bool is_later = next <= place && next >= begin;
       found = is_later ? a : found;
       begin = is_later ? next : begin;

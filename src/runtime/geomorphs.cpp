@@ -44,6 +44,7 @@ Vec3f Geomorphs::normal_of(const Moving& m, std::uint32_t index) const {
 }
 
 Vec3f Geomorphs::normal(std::uint32_t slot, std::uint32_t index) const {
+  if (moving_.empty()) return value(index);
   const std::uint32_t i = moving_of(slot);
   return i == kNone ? value(index) : normal_of(moving_[i], index);
 }
@@ -109,6 +110,7 @@ void Geomorphs::advance(double seconds) {
 }
 
 void Geomorphs::before_split(const ActiveCut& cut, std::uint32_t slot) {
+  if (!is_on() && moving_.empty()) return;
   const std::uint32_t i = moving_of(slot);
   if (i == kNone) {
     above_ = going(cut, slot);
