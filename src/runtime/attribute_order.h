@@ -2,7 +2,8 @@
 // attribute forest of a layer.
 //
 //   AttributeOrder order(hierarchy, layer);
-//   RelativeAttribute a = order.attribute_at(order.node(layer, n), wedge);  // as MeshHierarchy::attribute_at()
+//   RelativeAttribute a = order.attribute_at(order.node(layer, n), wedge);  // as
+//   MeshHierarchy::attribute_at()
 //
 // An attribute has one parent, so attributes and below them wedges are trees. Where wedges are
 // numbered tree by tree, from left to right, every attribute has a range of them, and those of one

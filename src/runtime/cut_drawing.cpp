@@ -42,8 +42,9 @@ void CutDrawing::show_normals(const ActiveCut& cut, const Geomorphs& geomorphs,
   if (part.is_derived[triangle] != 0) {
     Vec3f n = geometric_normal_of(cut, part, triangle);
     const bool is_plain = n != Vec3f{} || cut.normal_layer() == kNone;
-    if (is_plain && geomorphs.moving_count() > 0 && std::any_of(slots, slots + 3,
-                                [&](std::uint32_t slot) { return geomorphs.is_moving(slot); })) {
+    if (is_plain && geomorphs.moving_count() > 0 &&
+        std::any_of(slots, slots + 3,
+                    [&](std::uint32_t slot) { return geomorphs.is_moving(slot); })) {
       const Vec3f& a = positions_[slots[0]];
       const Vec3f now = normalized(cross(positions_[slots[1]] - a, positions_[slots[2]] - a));
       if (now != Vec3f{}) n = now;

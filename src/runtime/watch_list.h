@@ -9,8 +9,9 @@
 // All that the answer depends on stands in 20 bytes in a row, so a frame streams through memory
 // and looks nothing up. Four in a row also have dates, on an odometer of the camera's travels and
 // on one of its turns, until which none of the four answers can change; a frame passes over those
-// that are not due, looking at the dates of four times four. To date each vertex alone was tried before: a fast camera found two thirds of
-// them due in every frame, each for a cache miss or three.
+// that are not due, looking at the dates of four times four. To date each vertex alone was tried
+// before: a fast camera found two thirds of them due in every frame, each for a cache miss or
+// three.
 //
 // Memory per watch: 22 bytes, and 24 more while facing counts.
 #pragma once
