@@ -11,13 +11,15 @@
 //
 // A corner at a vertex with several attributes of a layer keeps its value, not the relative index
 // of G03 3.6: on the walls of a city values stay while indices change with every move. Where a
-// value does change (AttributeHierarchy::keeps_values), the way goes by indices.
+// value does change (AttributeHierarchy::keeps_values), the way goes by indices. A layer whose
+// values do not repeat has an AttributeOrder instead.
 //
 // A vertex without triangles has no wedges and no slot; its splits and merges are never needed. So
 // a split one of whose children has no triangles only renames the slot.
 //
 // Memory: a vertex and the corners at it 128, its position and normal to be drawn 24; a triangle as
-// in active_triangles.h. Whatever is active: a bit a split, 4.2 bytes a wedge.
+// in active_triangles.h. Whatever is active: a bit a split, 4.2 bytes a wedge, and
+// the AttributeOrders.
 #pragma once
 
 #include "crease/mesh_hierarchy.h"
