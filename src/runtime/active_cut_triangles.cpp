@@ -14,9 +14,10 @@ Part ActiveCut::kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots
                                      vertices_[slots[2]].position);
     if (n != Vec3f{}) return kFnPart;
   }
-  const auto has_one = [&](std::uint32_t slot) { return vertices_[slot].has_one_normal(); };
   // A derived one without area shows what it stores, for as long as its corners stay: no SN.
-  if (!is_derived && (has_one(slots[0]) & has_one(slots[1]) & has_one(slots[2]))) return kSnPart;
+  bool one_each = true;
+  for (const std::uint32_t slot : slots) one_each &= vertices_[slot].has_one_normal();
+  if (!is_derived && one_each) return kSnPart;
   const std::uint32_t place = place_of_layer_[normal_layer_];
   std::uint32_t at[3];
   for (std::size_t k = 0; k < 3; ++k) {
