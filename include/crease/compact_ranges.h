@@ -109,6 +109,11 @@ class CompactRanges {
     return found;
   }
   bool is_usual(std::size_t key) const { return !is_unusual_.test(key); }
+  // How many items the unusual keys before this one have.
+  std::uint32_t unusual_before(std::size_t key) const {
+    const std::uint32_t rank = is_unusual_.rank(key);
+    return rank * usual_ + excess_[rank];
+  }
   std::uint32_t total() const {
     return static_cast<std::uint32_t>(size()) * usual_ + excess_.back();
   }

@@ -1,6 +1,7 @@
 // Four floats at once, in one register: each result is what the same does to single ones.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -34,6 +35,17 @@ inline FourFloats greater(const FourFloats& a, const FourFloats& b) {
   return _mm_max_ps(a, b);
 #else
   return a > b ? a : b;
+#endif
+}
+
+// A bit for each lane that is negative, as those are for which a comparison holds.
+inline std::uint32_t negative_lanes(const FourInts& x) {
+#if defined(__SSE2__)
+  return static_cast<std::uint32_t>(_mm_movemask_ps(std::bit_cast<FourFloats>(x)));
+#else
+  std::uint32_t bits = 0;
+  for (int i = 0; i < 4; ++i) bits |= std::uint32_t(x[i] < 0) << i;
+  return bits;
 #endif
 }
 

@@ -114,8 +114,11 @@ class OctahedralCoding {
 // The integer vector of a point of the square.
 inline Vec3i octahedral_vector(std::int32_t m, std::int32_t x, std::int32_t y) {
   const std::int32_t size_x = std::abs(x), size_y = std::abs(y), z = m - size_x - size_y;
-  if (z >= 0) return {x, y, z};
-  return {x < 0 ? size_y - m : m - size_y, y < 0 ? size_x - m : m - size_x, z};
+  // Without a branch: which half it is in, nobody can foretell.
+  const std::int32_t sign_x = x >> 31, sign_y = y >> 31, below = z >> 31;  // -1 or 0
+  const std::int32_t folded_x = ((m - size_y) ^ sign_x) - sign_x;
+  const std::int32_t folded_y = ((m - size_x) ^ sign_y) - sign_y;
+  return {x ^ ((x ^ folded_x) & below), y ^ ((y ^ folded_y) & below), z};
 }
 
 // decode() for those who keep no coding: max_component = 2 m.

@@ -7,6 +7,7 @@
 #include "hierarchy/grid_sum.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace crease {
 
@@ -14,10 +15,6 @@ namespace {
 
 bool has_choices(const AttributeHierarchy& layer) {
   return !layer.leaf_attribute.empty() || layer.parents_of_split.list_count() > 0;
-}
-
-bool keeps_values(const AttributeHierarchy& layer, SplitId s) {
-  return !layer.keeps_values.empty() && layer.keeps_values.test(index_of(s));
 }
 
 }  // namespace
@@ -36,6 +33,8 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy, const char* is_hidden)
     if (!has_choices(layer)) continue;
     place_of_layer_[l] = static_cast<std::uint32_t>(tracked_.size());
     tracked_.push_back(l);
+    orders_.push_back(layer.constant_of_wedge.empty() ? AttributeOrder(hierarchy, l)
+                                                      : AttributeOrder());
     tracks_others_ |= l != normal_layer_;
   }
   texcoord_layer_ = painted_layer(hierarchy_.layers, hierarchy_.materials);
@@ -164,48 +163,21 @@ std::uint32_t ActiveCut::split(std::uint32_t slot) {
   for (std::uint32_t t = born.begin; t < born.end; ++t) {
     if (is_hidden(TriangleId{t})) continue;
     const std::array<WedgeId, 3> wedges = h_.triangles[t];
+    const auto is_outside = [&](WedgeId wedge) { return wedge < begin || wedge >= end; };
     std::array<std::uint32_t, 3> slots;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const WedgeId wedge = wedges[k];
-      slots[k] = wedge < begin || wedge >= end ? map_.slot_at(wedge)
-                 : wedge < middle              ? slot
-                                               : other;
-    }
+    for (std::size_t k = 0; k < 3; ++k) slots[k] = wedges[k] < middle ? slot : other;
+    const std::size_t third = is_outside(wedges[0]) ? 0 : is_outside(wedges[1]) ? 1 : 2;
+    slots[third] = map_.slot_at(wedges[third]);
     activate(TriangleId{t}, wedges, slots);
   }
   touch_derived(s);
   return other;
 }
 
-// Those from `middle` on. Which way a corner goes is a coin toss, so both ways are written and one
-// counts. `to` has none yet.
+// Those from `middle` on. `to` has none yet.
 void ActiveCut::give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle) {
-  CornerList& list = vertices_[from].corners;
-  CornerList& other = vertices_[to].corners;
-  const std::span<CornerAt> all = lists_.of(list);
-  const bool fits = all.size() <= CornerList::kOwn;
-  if (!fits) leaving_.resize(all.size());
-  CornerAt* const leaving = fits ? other.own.data() : leaving_.data();
-  std::uint32_t stay = 0, leave = 0;
-  for (const CornerAt at : all) {
-    const bool leaves = at.wedge >= middle;
-    leaving[leave] = at;
-    all[stay] = at;
-    leave += leaves ? 1 : 0;
-    stay += leaves ? 0 : 1;
-  }
-  if (fits) {
-    list.count = stay;
-    other.count = leave;
-  } else {
-    lists_.resize(list, stay);
-    lists_.resize(other, leave);
-    std::copy_n(leaving_.begin(), leave, lists_.of(other).begin());
-  }
-  for (const CornerAt& at : lists_.of(other)) {
-    slots_of(at.corner)[at.corner.corner()] = to;
-    parts_[at.corner.part()].moved.mark(at.corner.triangle());
-  }
+  lists_.give(vertices_[from].corners, vertices_[to].corners, middle,
+              [&](CornerRef corner) { stand_at(corner, to); });
 }
 
 void ActiveCut::merge(SplitId s, const Children& slots) {
@@ -220,6 +192,7 @@ void ActiveCut::merge(SplitId s, const Children& slots) {
     pass_up(s, slots.first, slots.second);
     const bool had_one = vertices_[slot].has_one_normal();
     stand(slot, node, grid_difference(vertices_[slot].position, delta));
+    renew_after_merge(s, slot);
     touch_corners(slot, had_one);
     touch_derived(s);
     return;
@@ -233,6 +206,7 @@ void ActiveCut::merge(SplitId s, const Children& slots) {
   take_corners(slots.second, slots.first);
   const bool had_one = first.has_one_normal() || second.has_one_normal();
   stand(slots.first, node, position);
+  renew_after_merge(s, slots.first);
   touch_corners(slots.first, had_one);
   lists_.clear(second.corners);
   second.node = kNoNode;
@@ -241,26 +215,48 @@ void ActiveCut::merge(SplitId s, const Children& slots) {
   touch_derived(s);
 }
 
-// All of them, but for those of triangles that have a corner at either.
+// All of them, but for those of triangles that have a corner at either: they are told by what
+// stands in both lists, so no triangle that stays is read.
 void ActiveCut::take_corners(std::uint32_t from, std::uint32_t to) {
-  CornerList& list = vertices_[to].corners;
-  const std::span<const CornerAt> all = lists_.of(vertices_[from].corners);
-  if (leaving_.size() < all.size()) leaving_.resize(2 * all.size());
-  CornerAt* leaving = leaving_.data();
-  for (const CornerAt& at : all) {
-    ActiveTriangles& part = parts_[at.corner.part()];
-    std::uint32_t* const slots = &part.slots[3 * std::size_t(at.corner.triangle())];
-    if ((slots[0] == to) | (slots[1] == to) | (slots[2] == to)) {
-      deactivate(at.corner, from);
+  CornerList& list = vertices_[from].corners;
+  CornerList& kept = vertices_[to].corners;
+  if (!list.is_own() || !kept.is_own()) return take_many_corners(from, to);
+  std::uint32_t vanishing = 0, vanishing_of_kept = 0;
+  for (std::uint32_t i = 0; i < list.count; ++i) {
+    const std::uint32_t same = kept.of_triangle(list.refs[i]);
+    vanishing_of_kept |= same;
+    vanishing |= std::uint32_t(same != 0) << i;
+  }
+  while (vanishing_of_kept != 0) {
+    const auto i = static_cast<std::uint32_t>(31 - std::countl_zero(vanishing_of_kept));
+    vanishing_of_kept ^= 1u << i;
+    kept.erase_own(i);
+  }
+  for (std::uint32_t left = list.all() & ~vanishing; left != 0; left &= left - 1) {
+    const CornerAt at = list.own(static_cast<std::uint32_t>(std::countr_zero(left)));
+    stand_at(at.corner, to);
+    lists_.push_back(kept, at);
+  }
+  for (; vanishing != 0; vanishing &= vanishing - 1) {
+    deactivate(list.refs[static_cast<std::size_t>(std::countr_zero(vanishing))], from, to);
+  }
+}
+
+void ActiveCut::take_many_corners(std::uint32_t from, std::uint32_t to) {
+  leaving_.clear();
+  for (const CornerAt at : lists_.of(vertices_[from].corners)) leaving_.push_back(at);
+  CornerList& kept = vertices_[to].corners;
+  for (const CornerAt& at : leaving_) {
+    const std::uint32_t* const slots = slots_of(at.corner);
+    const auto other = static_cast<std::uint32_t>(std::find(slots, slots + 3, to) - slots);
+    if (other == 3) {
+      stand_at(at.corner, to);
+      lists_.push_back(kept, at);
     } else {
-      slots[at.corner.corner()] = to;
-      part.moved.mark(at.corner.triangle());
-      *leaving++ = at;
+      lists_.erase(kept, CornerRef(at.corner.part(), at.corner.triangle(), other));
+      deactivate(at.corner, from, to);
     }
   }
-  const std::size_t staying = list.count;
-  lists_.resize(list, staying + static_cast<std::size_t>(leaving - leaving_.data()));
-  std::copy(leaving_.data(), leaving, lists_.of(list).begin() + std::ptrdiff_t(staying));
 }
 
 void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
@@ -282,7 +278,9 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
   const Part kind = is_smooth ? kSnPart : kind_of(is_derived, slots, arriving_);
   ActiveTriangles& part = parts_[kind];
   const std::uint32_t place = part.add(t, arriving_.size());
-  if (has_values) std::copy(arriving_.begin(), arriving_.end(), &part.values[3 * tracked * place]);
+  if (has_values || kind != kSnPart) {
+    std::copy_n(arriving_.begin(), 3 * tracked, part.values.begin() + 3 * tracked * place);
+  }
   part.is_derived[place] = is_derived ? 1 : 0;
   std::uint32_t* const placed = &part.slots[3 * std::size_t(place)];
   for (std::uint32_t k = 0; k < 3; ++k) {
@@ -293,26 +291,13 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
   if (kind != kSnPart || is_painted()) part.shaded.mark(place);
 }
 
-// What a corner that comes to v shows. Where the wedge varies, another corner of it often stands
-// there already.
-std::uint32_t ActiveCut::value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge) const {
-  const std::uint32_t l = tracked_[place];
-  const PackedIndices<>& constants = hierarchy_.layers[l].constant_of_wedge;
-  const std::uint32_t constant = constants.empty() ? 0 : constants[index_of(wedge)];
-  if (constant != 0) return constant - 1;
-  for (const CornerAt& at : lists_.of(v.corners)) {
-    if (at.wedge == wedge) return kept_value(at, place);
-  }
-  return hierarchy_.value_index(l, v.node, hierarchy_.attribute_at(l, v.node, wedge));
-}
-
-// Which has a corner at `from`, whose list is left as it is.
-void ActiveCut::deactivate(CornerRef corner, std::uint32_t from) {
+// Whose third corner is at neither of two, whose lists are left as they are.
+void ActiveCut::deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to) {
   const std::uint32_t* const slots = slots_of(corner);
-  for (std::uint32_t k = 0; k < 3; ++k) {
-    if (slots[k] == from) continue;
-    lists_.erase(vertices_[slots[k]].corners, CornerRef(corner.part(), corner.triangle(), k));
-  }
+  const bool first = (slots[0] != from) & (slots[0] != to);
+  const bool second = (slots[1] != from) & (slots[1] != to);
+  const std::uint32_t k = first ? 0 : 2 - std::uint32_t(second);
+  lists_.erase(vertices_[slots[k]].corners, CornerRef(corner.part(), corner.triangle(), k));
   parts_[corner.part()].remove(corner.triangle());
 }
 
@@ -325,142 +310,34 @@ void ActiveCut::touch_corners(std::uint32_t slot, bool had_one_normal) {
   if (only_derived && !is_painted() && normal_layer_ != kNone && h_.deriving_splits.empty()) {
     return;
   }
-  const std::span<const CornerAt> corners = lists_.of(vertices_[slot].corners);
-  if (is_painted()) {
-    for (const CornerAt& at : corners) parts_[at.corner.part()].touched.mark(at.corner.triangle());
+  const CornerList& list = vertices_[slot].corners;
+  const bool needs_derived = only_derived && !is_painted();
+  const auto touch = [&](CornerRef corner) {
+    ActiveTriangles& part = parts_[corner.part()];
+    const bool is_derived = part.is_derived[corner.triangle()] != 0;
+    part.touched.mark_if(corner.triangle(),
+                         !needs_derived | is_derived | (corner.part() == kSnPart));
+  };
+  const bool only_others = has_one && !is_painted();
+  if (!list.is_own()) {
+    for (const CornerAt at : lists_.of(list)) {
+      if (!only_others || at.corner.part() != kSnPart) touch(at.corner);
+    }
     return;
   }
-  for (const CornerAt& at : corners) {
-    const std::uint32_t part = at.corner.part(), triangle = at.corner.triangle();
-    const bool touched =
-        part == kSnPart ? !has_one : !only_derived || parts_[part].is_derived[triangle] != 0;
-    if (touched) parts_[part].touched.mark(triangle);
+  std::uint32_t left = only_others ? list.of_other_parts(kSnPart) : list.all();
+  for (; left != 0; left &= left - 1) {
+    touch(list.refs[static_cast<std::size_t>(std::countr_zero(left))]);
   }
 }
 
 void ActiveCut::touch_moving(std::uint32_t slot, bool with_normals) {
   vertex_changes_.mark(slot);
   if (!touches_triangles_) return;
-  for (const CornerAt& at : lists_.of(vertices_[slot].corners)) {
+  for (const CornerAt at : lists_.of(vertices_[slot].corners)) {
     const std::uint32_t part = at.corner.part(), triangle = at.corner.triangle();
     if (part == kSnPart) continue;
     if (with_normals || parts_[part].is_derived[triangle] != 0) parts_[part].touched.mark(triangle);
-  }
-}
-
-// The corners at the children of s had their values at v_s.
-void ActiveCut::pass_down(SplitId s, std::uint32_t first, std::uint32_t second,
-                          bool had_one_normal) {
-  for (std::size_t i = 0; i < tracked_.size(); ++i) {
-    const std::uint32_t l = tracked_[i];
-    const AttributeHierarchy& layer = hierarchy_.layers[l];
-    if (layer.parents_of_split.is_empty(index_of(s))) continue;  // neither has several
-    const bool had_several = l == normal_layer_
-                                 ? !had_one_normal
-                                 : layer.attribute_count(h_.node_of_split[index_of(s)]) > 1;
-    if (had_several && keeps_values(layer, s)) continue;
-    for (const std::uint32_t slot : {first, second}) {
-      if (slot == kNoSlot || !has_several(i, vertices_[slot])) continue;
-      step_down(s, slot, slot == second, i);
-    }
-  }
-}
-
-// MeshHierarchy::below() for all of them: what each attribute above comes from. Where values stay,
-// v_s has a single one.
-void ActiveCut::step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place) {
-  const std::uint32_t l = tracked_[place];
-  const AttributeHierarchy& layer = hierarchy_.layers[l];
-  const CompactRanges::Range at_s =
-      layer.attribute_ranges.range(index_of(h_.node_of_split[index_of(s)]));
-  const CompactRanges::Range at_child =
-      layer.attribute_ranges.range(index_of(vertices_[slot].node));
-  const std::uint32_t count_above = at_s.end - at_s.begin;
-  const std::uint32_t count_below = at_child.end - at_child.begin;
-  const std::uint32_t above = layer.place_of_value(at_s.begin);
-  if (keeps_values(layer, s)) {
-    const std::uint32_t value = layer.stored_value(above);
-    for (const CornerAt& at : corners_of(slot)) set_value(at, place, value);
-    return;
-  }
-  const std::uint32_t below = layer.place_of_value(at_child.begin);
-  const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
-  const std::size_t first = second ? parents.size() - count_below : 0;
-  const bool had_several = count_above > 1;
-  steps_.assign(count_above, {});
-  for (std::uint32_t a = 0; a < count_below; ++a) {
-    const RelativeAttribute to = parents[first + a];
-    if (to == kRemoved) continue;
-    Step& step = steps_[to];
-    step.has_more = step.below != kNone;
-    if (step.has_more) continue;
-    step = {layer.stored_value(above + to), layer.stored_value(below + a), to, false};
-  }
-  const auto is_idle = [had_several](const Step& step) {
-    return step.below == kNone || (had_several && !step.has_more && step.above == step.below);
-  };
-  steps_.erase(std::remove_if(steps_.begin(), steps_.end(), is_idle), steps_.end());
-  if (steps_.empty()) return;
-  for (const CornerAt& at : corners_of(slot)) {
-    const std::uint32_t value = kept_value(at, place);
-    for (const Step& step : steps_) {
-      if (had_several && step.above != value) continue;
-      set_value(
-          at, place,
-          step.has_more
-              ? layer.stored_value(below + hierarchy_.below(l, s, second, step.at_parent, at.wedge))
-              : step.below);
-      break;
-    }
-  }
-}
-
-void ActiveCut::pass_up(SplitId s, std::uint32_t first, std::uint32_t second) {
-  for (std::size_t i = 0; i < tracked_.size(); ++i) {
-    const AttributeHierarchy& layer = hierarchy_.layers[tracked_[i]];
-    if (layer.parents_of_split.is_empty(index_of(s))) continue;
-    const bool keeps = keeps_values(layer, s);
-    for (const std::uint32_t slot : {first, second}) {
-      if (slot == kNoSlot || (keeps && has_several(i, vertices_[slot]))) continue;
-      step_up(s, slot, slot == second, i);
-    }
-  }
-}
-
-// MeshHierarchy::above() for all of them. Where values stay, the child has a single one.
-void ActiveCut::step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place) {
-  const AttributeHierarchy& layer = hierarchy_.layers[tracked_[place]];
-  const CompactRanges::Range at_s =
-      layer.attribute_ranges.range(index_of(h_.node_of_split[index_of(s)]));
-  if (at_s.end - at_s.begin <= 1) return;
-  const CompactRanges::Range at_child =
-      layer.attribute_ranges.range(index_of(vertices_[slot].node));
-  const std::uint32_t count_below = at_child.end - at_child.begin;
-  const std::uint32_t below = layer.place_of_value(at_child.begin);
-  if (keeps_values(layer, s)) {
-    const std::uint32_t value = layer.stored_value(below);
-    for (const CornerAt& at : corners_of(slot)) set_value(at, place, value);
-    return;
-  }
-  const std::uint32_t above = layer.place_of_value(at_s.begin);
-  const ParentMaps::Map parents = layer.parents_of_split.of(index_of(s));
-  const std::size_t first = second ? parents.size() - count_below : 0;
-  const bool has_several = count_below > 1;
-  steps_.clear();
-  for (std::uint32_t a = 0; a < count_below; ++a) {
-    const RelativeAttribute to = parents[first + a];
-    if (to == kRemoved) continue;
-    const Step step{layer.stored_value(above + to), layer.stored_value(below + a)};
-    if (!has_several || step.above != step.below) steps_.push_back(step);
-  }
-  if (steps_.empty()) return;
-  for (const CornerAt& at : corners_of(slot)) {
-    const std::uint32_t value = kept_value(at, place);
-    for (const Step& step : steps_) {
-      if (has_several && step.below != value) continue;
-      set_value(at, place, step.above);
-      break;
-    }
   }
 }
 
@@ -469,7 +346,7 @@ void ActiveCut::touch_derived(SplitId s) {
   if (h_.deriving_splits.empty() || normal_layer_ == kNone) return;
   for (TriangleId t : h_.derived_of_split.of(index_of(s))) {
     const WedgeId wedge = h_.triangles[index_of(t)][0];
-    for (const CornerAt& at : lists_.of(vertices_[map_.slot_at(wedge)].corners)) {
+    for (const CornerAt at : lists_.of(vertices_[map_.slot_at(wedge)].corners)) {
       ActiveTriangles& part = parts_[at.corner.part()];
       if (at.wedge != wedge || part.ids[at.corner.triangle()] != t) continue;
       part.is_derived[at.corner.triangle()] = is_done(s) ? 0 : 1;

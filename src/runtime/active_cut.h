@@ -11,17 +11,20 @@
 //
 // A corner at a vertex with several attributes of a layer keeps its value, not the relative index
 // of G03 3.6: on the walls of a city values stay while indices change with every move. Where a
-// value does change (AttributeHierarchy::keeps_values), the way goes by indices.
+// value does change (AttributeHierarchy::keeps_values), the way goes by indices. A layer whose
+// values do not repeat has an AttributeOrder instead.
 //
 // A vertex without triangles has no wedges and no slot; its splits and merges are never needed. So
 // a split one of whose children has no triangles only renames the slot.
 //
 // Memory: a vertex and the corners at it 128, its position and normal to be drawn 24; a triangle as
-// in active_triangles.h. Whatever is active: a bit a split, 4.2 bytes a wedge.
+// in active_triangles.h. Whatever is active: a bit a split, 4.2 bytes a wedge, and
+// the AttributeOrders.
 #pragma once
 
 #include "crease/mesh_hierarchy.h"
 #include "runtime/active_triangles.h"
+#include "runtime/attribute_order.h"
 #include "runtime/change_set.h"
 #include "runtime/corner_lists.h"
 #include "runtime/wedge_map.h"
@@ -96,15 +99,12 @@ class ActiveCut {
   void prefetch_split_further(std::uint32_t slot, SplitId s) const;
   void prefetch_merge(std::uint32_t slot, SplitId s) const;
   void prefetch_merge_further(std::uint32_t slot, SplitId s) const;
-  void prefetch_born(std::uint32_t slot, SplitId s) const;
-  void prefetch_siblings(SplitId s) const;
-  void prefetch_siblings_further(SplitId s) const;
   void prefetch_vertices_of(const ActiveTriangles& part, std::size_t triangle) const {
     const std::uint32_t* const slots = &part.slots[3 * triangle];
     for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[slots[k]]);
   }
 
-  std::span<const CornerAt> corners_of(std::uint32_t slot) const {
+  CornerLists::View corners_of(std::uint32_t slot) const {
     return lists_.of(vertices_[slot].corners);
   }
 
@@ -112,8 +112,13 @@ class ActiveCut {
   std::uint32_t color_layer() const { return color_layer_; }
   std::uint32_t texcoord_layer() const { return texcoord_layer_; }  // kNone: no textures
 
-  // By DB03, of what the corners have now.
-  Part kind_of(const ActiveTriangles& part, std::uint32_t triangle) const;
+  // By DB03, of what the corners have now, which sorted_normal() tells from then on.
+  Part sort(ActiveTriangles& part, std::uint32_t triangle) const;
+  std::uint32_t sorted_normal(const ActiveTriangles& part, std::size_t corner_index) const {
+    const std::uint32_t place = place_of_layer_[normal_layer_];
+    return place == kNone ? vertices_[part.slots[corner_index]].normal
+                          : part.values[tracked_.size() * corner_index + place];
+  }
   // The value that a corner shows, if its triangle shows stored ones: its index in the layer.
   std::size_t value_index(const ActiveTriangles& part, std::uint32_t corner_index,
                           std::size_t layer) const;
@@ -150,9 +155,9 @@ class ActiveCut {
                          const Vec3i& position);
   std::uint32_t normal_in(const CompactRanges::Range& attributes) const;
   bool is_painted() const { return color_layer_ != kNone || texcoord_layer_ != kNone; }
-  // `values`: per corner one for each tracked layer.
+  // `values`: per corner one for each tracked layer; those of normals are told for all corners.
   Part kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
-               std::span<const std::uint32_t> values) const;
+               std::span<std::uint32_t> values) const;
   // The value at a corner that has `kept` one of a tracked layer.
   std::uint32_t value_of(std::size_t place, std::uint32_t slot, std::uint32_t kept) const {
     const ActiveVertex& v = vertices_[slot];
@@ -170,6 +175,8 @@ class ActiveCut {
   // Of the corners at both children; kNoSlot where one has no triangles.
   void pass_down(SplitId s, std::uint32_t first, std::uint32_t second, bool had_one_normal);
   void pass_up(SplitId s, std::uint32_t first, std::uint32_t second);
+  void renew_values(std::uint32_t slot, std::size_t place);
+  void renew_after_merge(SplitId s, std::uint32_t slot);
   void step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place);
   void step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place);
   std::uint32_t kept_value(const CornerAt& at, std::size_t place) const {
@@ -183,9 +190,15 @@ class ActiveCut {
   void touch_corners(std::uint32_t slot, bool had_one_normal);
   void give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle);
   void take_corners(std::uint32_t from, std::uint32_t to);
+  void take_many_corners(std::uint32_t from, std::uint32_t to);
   void activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
                 const std::array<std::uint32_t, 3>& slots);
-  void deactivate(CornerRef corner, std::uint32_t from);
+  void deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to);
+  void stand_at(CornerRef corner, std::uint32_t slot) {
+    ActiveTriangles& part = parts_[corner.part()];
+    part.slots[corner.index()] = slot;
+    part.moved.mark(corner.triangle());
+  }
   void touch_derived(SplitId s);
   void prefetch_vertex(std::uint32_t slot) const {
     const char* const vertex = reinterpret_cast<const char*>(&vertices_[slot]);
@@ -210,6 +223,7 @@ class ActiveCut {
   std::uint32_t normal_layer_ = kNone, color_layer_ = kNone, texcoord_layer_ = kNone;
   std::vector<std::uint32_t> tracked_;         // layers that have nodes of several attributes
   std::vector<std::uint32_t> place_of_layer_;  // in tracked_, or kNone
+  std::vector<AttributeOrder> orders_;         // of those; empty where wedges keep values
   bool tracks_others_ = false;                 // layers beside normals
   bool touches_triangles_ = false;             // some triangle is, or may become, other than SN
   std::vector<std::uint64_t> done_;            // a bit a split

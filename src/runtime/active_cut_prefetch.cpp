@@ -45,43 +45,8 @@ void ActiveCut::prefetch_merge_further(std::uint32_t slot, SplitId s) const {
   h_.deltas.prefetch(3 * (index_of(node) - h_.root_count));
 }
 
-// As children(), but what is not there yet is not waited for.
-void ActiveCut::prefetch_siblings(SplitId s) const {
-  const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
-  if (middle == 0 || middle >= h_.wedge_count()) return;
-  prefetch_vertex(map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle)}));
-  prefetch_vertex(map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle - 1)}));
-}
-
-// The third vertices of the triangles that collapse.
-void ActiveCut::prefetch_siblings_further(SplitId s) const {
-  const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
-  if (middle == 0 || middle >= h_.wedge_count()) return;
-  const std::uint32_t second = map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle)});
-  const std::uint32_t first = map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle - 1)});
-  for (const CornerAt& at : corners_of(second)) {
-    const std::uint32_t* const of =
-        &parts_[at.corner.part()].slots[3 * std::size_t(at.corner.triangle())];
-    if ((of[0] == first) | (of[1] == first) | (of[2] == first)) {
-      prefetch_vertex(of[0] ^ of[1] ^ of[2] ^ first ^ second);
-    }
-  }
-}
-
-// The third vertices of what a split brings.
-void ActiveCut::prefetch_born(std::uint32_t slot, SplitId s) const {
-  const WedgeId begin = vertices_[slot].begin, end = vertices_[slot].end;
-  const TriangleRange born = h_.triangles_of(s);
-  const std::uint32_t last = std::min(born.end, born.begin + 4);
-  for (std::uint32_t t = born.begin; t < last; ++t) {
-    for (const WedgeId wedge : h_.triangles[t]) {
-      if (wedge < begin || wedge >= end) prefetch_vertex(map_.slot_at(wedge));
-    }
-  }
-}
-
 void ActiveCut::prefetch_corners(std::uint32_t slot) const {
-  for (const CornerAt& at : corners_of(slot)) {
+  for (const CornerAt at : corners_of(slot)) {
     __builtin_prefetch(&parts_[at.corner.part()].slots[3 * std::size_t(at.corner.triangle())]);
   }
 }

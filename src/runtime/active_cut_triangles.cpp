@@ -1,5 +1,4 @@
 // What kind active triangles are, and where they are kept.
-#include "base/assert.h"
 #include "hierarchy/geometric_normal.h"
 #include "runtime/active_cut.h"
 
@@ -8,30 +7,36 @@
 namespace crease {
 
 Part ActiveCut::kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots,
-                        std::span<const std::uint32_t> values) const {
+                        std::span<std::uint32_t> values) const {
   if (normal_layer_ == kNone) return kFnPart;
   if (is_derived) {
     const Vec3f n = geometric_normal(vertices_[slots[0]].position, vertices_[slots[1]].position,
                                      vertices_[slots[2]].position);
     if (n != Vec3f{}) return kFnPart;
   }
-  const auto has_one = [&](std::uint32_t slot) { return vertices_[slot].has_one_normal(); };
   // A derived one without area shows what it stores, for as long as its corners stay: no SN.
-  if (!is_derived && std::all_of(slots.begin(), slots.end(), has_one)) return kSnPart;
+  bool one_each = true;
+  for (const std::uint32_t slot : slots) one_each &= vertices_[slot].has_one_normal();
+  if (!is_derived && one_each) return kSnPart;
   const std::uint32_t place = place_of_layer_[normal_layer_];
   std::uint32_t at[3];
   for (std::size_t k = 0; k < 3; ++k) {
-    at[k] = place == kNone ? vertices_[slots[k]].normal
-                           : value_of(place, slots[k], values[k * tracked_.size() + place]);
+    const ActiveVertex& v = vertices_[slots[k]];
+    if (place == kNone) {
+      at[k] = v.normal;
+      continue;
+    }
+    std::uint32_t& value = values[k * tracked_.size() + place];
+    value = at[k] = v.has_one_normal() ? v.normal : value;
   }
   return at[0] == at[1] && at[1] == at[2] ? kFnPart : kNsnPart;
 }
 
-Part ActiveCut::kind_of(const ActiveTriangles& part, std::uint32_t triangle) const {
+Part ActiveCut::sort(ActiveTriangles& part, std::uint32_t triangle) const {
   const std::size_t each = 3 * tracked_.size();
   return kind_of(part.is_derived[triangle] != 0,
                  std::span<const std::uint32_t, 3>(&part.slots[3 * std::size_t(triangle)], 3),
-                 std::span<const std::uint32_t>(part.values).subspan(each * triangle, each));
+                 std::span<std::uint32_t>(part.values).subspan(each * triangle, each));
 }
 
 std::size_t ActiveCut::value_index(const ActiveTriangles& part, std::uint32_t corner_index,
@@ -56,14 +61,7 @@ SplitId ActiveCut::introducing_split(TriangleId t) const {
 }
 
 void ActiveCut::replace_corner(CornerRef from, CornerRef to) {
-  const std::uint32_t slot = parts_[from.part()].slots[from.index()];
-  for (CornerAt& at : lists_.of(vertices_[slot].corners)) {
-    if (at.corner == from) {
-      at.corner = to;
-      return;
-    }
-  }
-  CREASE_ASSERT(false);
+  lists_.replace(vertices_[parts_[from.part()].slots[from.index()]].corners, from, to);
 }
 
 void ActiveCut::copy_triangle(Part from, std::uint32_t source, Part to, std::uint32_t target) {
@@ -135,6 +133,7 @@ void ActiveCut::hide_or_show(TriangleId t) {
 std::size_t ActiveCut::bytes() const {
   std::size_t sum = 8 * done_.capacity() + map_.bytes() + lists_.bytes() +
                     sizeof(ActiveVertex) * vertices_.capacity() + 4 * free_slots_.capacity();
+  for (const AttributeOrder& order : orders_) sum += order.bytes();
   for (const ActiveTriangles& part : parts_) {
     sum += 4 * (part.ids.capacity() + part.slots.capacity() + part.holes.capacity() +
                 part.materials.capacity() + part.values.capacity()) +

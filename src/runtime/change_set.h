@@ -34,6 +34,12 @@ class ChangeSet {
     has_any_ = true;
   }
 
+  // Without a branch, where nobody can foretell whether.
+  void mark_if(std::size_t i, bool marks) {
+    words_[i / 64] |= std::uint64_t(marks) << (i % 64);
+    has_any_ |= marks;
+  }
+
   // Calls `refresh(i)` for each marked i < active, ascending, and writes the ranges they make up.
   template <typename Refresh>
   void take(std::size_t active, std::vector<Range>& ranges, Refresh refresh) {

@@ -2,13 +2,18 @@
 //
 //   CornerList list;                      // one a vertex
 //   lists.push_back(list, {corner, wedge});
-//   for (CornerAt& at : lists.of(list)) ...
+//   for (const CornerAt at : lists.of(list)) ...
 //
 // A corner comes with its wedge, so that a split reads one run of memory and no triangle to tell
 // which corners go to v_u. Up to 11 stand in the list itself, beside what else a move needs of the
 // vertex; more of them in a block of 16, 32, 64, ... corners in a pool that all lists share.
+//
+// What is in a list is found by comparing all eleven, four at a time, without asking how many there
+// are: how long a list is and where something stands in it nobody can foretell, and a processor
+// that guesses wrong loses more than the whole comparison takes.
 #pragma once
 
+#include "base/four_floats.h"
 #include "crease/mesh_hierarchy.h"
 
 #include <algorithm>
@@ -16,7 +21,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <cstring>
 #include <vector>
 
 namespace crease {
@@ -32,6 +37,7 @@ class CornerRef {
   std::uint32_t corner() const { return bits_ & 3; }
   std::uint32_t index() const { return 3 * triangle() + corner(); }  // in the part's arrays
   std::uint32_t triangle_key() const { return bits_ >> 2; }  // equal iff part and triangle are
+  std::uint32_t bits() const { return bits_; }
   bool operator==(const CornerRef&) const = default;
 
  private:
@@ -47,52 +53,133 @@ struct CornerList {
   static constexpr std::uint32_t kOwn = 11;
 
   std::uint32_t count = 0;
-  std::uint32_t block = kNone;  // in the pool, or kNone: in `own`
-  std::array<CornerAt, kOwn> own;
+  std::uint32_t block = kNone;  // in the pool, or kNone: in the arrays here
+  std::array<CornerRef, kOwn> refs;
+  std::array<WedgeId, kOwn> wedges;
+
+  bool is_own() const { return block == kNone; }
+  CornerAt own(std::uint32_t i) const { return {refs[i], wedges[i]}; }
+  // Of a list that is_own(): a bit for each corner that holds.
+  std::uint32_t all() const { return (1u << count) - 1; }
+  std::uint32_t same(CornerRef corner) const {
+    const FourInts one = FourInts{} + static_cast<std::int32_t>(corner.bits());
+    return all() & lanes(refs, [&](const FourInts& x) -> FourInts { return x == one; });
+  }
+  std::uint32_t of_triangle(CornerRef corner) const {
+    const FourInts one = FourInts{} + static_cast<std::int32_t>(corner.bits());
+    return all() &
+           lanes(refs, [&](const FourInts& x) -> FourInts { return ((x ^ one) & ~3) == 0; });
+  }
+  std::uint32_t of_other_parts(std::uint32_t part) const {
+    const auto bits = static_cast<std::int32_t>(CornerRef(part, 0, 0).bits());
+    const FourInts one = FourInts{} + bits, high = FourInts{} + (std::int32_t(-1) << 30);
+    return all() &
+           lanes(refs, [&](const FourInts& x) -> FourInts { return ((x ^ one) & high) != 0; });
+  }
+  std::uint32_t from_wedge(WedgeId first) const {
+    constexpr std::int32_t kSign = std::int32_t(1u << 31);  // compares as if there were none
+    const FourInts least = FourInts{} + (static_cast<std::int32_t>(first) ^ kSign);
+    return all() &
+           lanes(wedges, [&](const FourInts& x) -> FourInts { return (x ^ kSign) >= least; });
+  }
+  void erase_own(std::uint32_t i) {  // the last one takes its place
+    --count;
+    refs[i] = refs[count];
+    wedges[i] = wedges[count];
+  }
+
+ private:
+  template <typename Id, typename Holds>
+  static std::uint32_t lanes(const std::array<Id, kOwn>& ids, Holds holds) {
+    static_assert(sizeof(ids) == 44);
+    std::uint32_t bits = 0;
+    for (const std::uint32_t first : {0u, 4u, kOwn - 4}) {
+      FourInts four;
+      std::memcpy(&four, ids.data() + first, sizeof(four));
+      bits |= negative_lanes(holds(four)) << first;
+    }
+    return bits;
+  }
 };
 
 class CornerLists {
  public:
-  std::span<CornerAt> of(CornerList& list) {
-    return {list.block == kNone ? list.own.data() : pool_.data() + std::size_t(list.block) * kUnit,
-            list.count};
-  }
-  std::span<const CornerAt> of(const CornerList& list) const {
-    return {list.block == kNone ? list.own.data() : pool_.data() + std::size_t(list.block) * kUnit,
-            list.count};
+  // What is in a list, until it changes.
+  class View {
+   public:
+    View(const CornerRef* refs, const WedgeId* wedges, std::uint32_t count)
+        : refs_(refs), wedges_(wedges), count_(count) {}
+    std::uint32_t size() const { return count_; }
+    CornerAt operator[](std::size_t i) const { return {refs_[i], wedges_[i]}; }
+
+    struct Iterator {
+      const View* view;
+      std::uint32_t i;
+      CornerAt operator*() const { return (*view)[i]; }
+      Iterator& operator++() {
+        ++i;
+        return *this;
+      }
+      bool operator!=(const Iterator& other) const { return i != other.i; }
+    };
+    Iterator begin() const { return {this, 0}; }
+    Iterator end() const { return {this, count_}; }
+
+   private:
+    const CornerRef* refs_;
+    const WedgeId* wedges_;
+    std::uint32_t count_;
+  };
+  View of(const CornerList& list) const {
+    if (list.is_own()) return {list.refs.data(), list.wedges.data(), list.count};
+    return {&refs_[first(list)], &wedges_[first(list)], list.count};
   }
 
-  // New ones at the end are to be written.
-  void resize(CornerList& list, std::size_t count) {
-    if (list.block != kNone || count > CornerList::kOwn) change_block(list, count);
-    list.count = static_cast<std::uint32_t>(count);
-  }
   void push_back(CornerList& list, const CornerAt& at) {
-    if (list.block == kNone && list.count < CornerList::kOwn) {
-      list.own[list.count++] = at;
+    if (list.is_own() && list.count < CornerList::kOwn) {
+      list.refs[list.count] = at.corner;
+      list.wedges[list.count++] = at.wedge;
       return;
     }
     resize(list, list.count + 1);
-    of(list).back() = at;
+    refs_[first(list) + list.count - 1] = at.corner;
+    wedges_[first(list) + list.count - 1] = at.wedge;
   }
   // The order is of no consequence.
   void erase(CornerList& list, CornerRef corner) {
-    const std::span<CornerAt> all = of(list);
-    for (CornerAt& at : all) {
-      if (!(at.corner == corner)) continue;
-      at = all.back();
-      if (list.block == kNone) {
-        --list.count;
-      } else {
-        resize(list, list.count - 1);
-      }
-      return;
+    if (list.is_own()) {
+      list.erase_own(static_cast<std::uint32_t>(std::countr_zero(list.same(corner))));
+    } else {
+      erase_at(list, find(list, corner));
+    }
+  }
+  void replace(CornerList& list, CornerRef from, CornerRef to) {
+    if (list.is_own()) {
+      list.refs[static_cast<std::size_t>(std::countr_zero(list.same(from)))] = to;
+    } else {
+      refs_[first(list) + find(list, from)] = to;
     }
   }
   void clear(CornerList& list) { resize(list, 0); }
 
+  // Moves the corners of the wedges from `middle` on to another list, which is empty, and calls
+  // visit(corner) for each.
+  template <typename Visit>
+  void give(CornerList& from, CornerList& to, WedgeId middle, Visit visit) {
+    if (!from.is_own()) return give_many(from, to, middle, visit);
+    for (std::uint32_t leaving = from.from_wedge(middle); leaving != 0;) {
+      const auto i = static_cast<std::uint32_t>(31 - std::countl_zero(leaving));
+      leaving ^= 1u << i;
+      const CornerAt at = from.own(i);
+      to.refs[to.count] = at.corner;
+      to.wedges[to.count++] = at.wedge;
+      from.erase_own(i);
+      visit(at.corner);
+    }
+  }
+
   std::size_t bytes() const {
-    std::size_t sum = sizeof(CornerAt) * pool_.capacity();
+    std::size_t sum = 8 * refs_.capacity() + log_of_unit_.capacity();
     for (const std::vector<std::uint32_t>& blocks : free_) sum += 4 * blocks.capacity();
     return sum;
   }
@@ -101,51 +188,78 @@ class CornerLists {
   static constexpr std::size_t kUnit = 8;
   static constexpr std::uint32_t kSmallest = 1;  // log: blocks of 16
 
-  // Blocks are kUnit << log. A list keeps its block until a quarter of it would do, so that no move
-  // to and fro copies it each time.
-  static std::uint32_t log_for(std::size_t count) {
-    const auto log = static_cast<std::uint32_t>(std::bit_width((count - 1) / kUnit));
-    return std::max(kSmallest, log);
+  static std::size_t first(const CornerList& list) { return std::size_t(list.block) * kUnit; }
+  std::uint32_t find(const CornerList& list, CornerRef corner) const {
+    std::uint32_t i = 0;
+    while (!(refs_[first(list) + i] == corner)) ++i;
+    return i;
+  }
+  void erase_at(CornerList& list, std::uint32_t i) {
+    refs_[first(list) + i] = refs_[first(list) + list.count - 1];
+    wedges_[first(list) + i] = wedges_[first(list) + list.count - 1];
+    resize(list, list.count - 1);
+  }
+  template <typename Visit>
+  void give_many(CornerList& from, CornerList& to, WedgeId middle, Visit visit) {
+    std::uint32_t staying = 0;
+    for (std::uint32_t i = 0; i < from.count; ++i) {
+      const CornerAt at = of(from)[i];
+      if (at.wedge >= middle) {
+        push_back(to, at);
+        visit(at.corner);
+      } else {
+        refs_[first(from) + staying] = at.corner;
+        wedges_[first(from) + staying++] = at.wedge;
+      }
+    }
+    resize(from, staying);
   }
 
+  // New ones at the end are to be written.
+  void resize(CornerList& list, std::uint32_t count) {
+    if (!list.is_own() || count > CornerList::kOwn) change_block(list, count);
+    list.count = count;
+  }
+  // Blocks are kUnit << log. A list keeps its block until a quarter of it would do, so that no move
+  // to and fro copies it each time.
+  static std::uint32_t log_for(std::uint32_t count) {
+    return std::max(kSmallest, static_cast<std::uint32_t>(std::bit_width((count - 1) / kUnit)));
+  }
   // `list.count` corners are there, `count` must have room.
-  void change_block(CornerList& list, std::size_t count) {
-    if (list.block == kNone) {
-      const std::uint32_t block = take_block(log_for(count));
-      std::copy_n(list.own.begin(), list.count, at(block));
-      list.block = block;
-      return;
-    }
-    const std::uint32_t log = log_of_block(list.block);
-    const std::uint32_t kept = static_cast<std::uint32_t>(std::min<std::size_t>(list.count, count));
-    if (count > (kUnit << log)) {
-      const std::uint32_t block = take_block(log_for(count));
-      std::copy_n(at(list.block), kept, at(block));
-      free_[log].push_back(list.block);
-      list.block = block;
+  void change_block(CornerList& list, std::uint32_t count) {
+    const bool was_own = list.is_own();
+    const std::uint32_t log = was_own ? 0 : log_of_unit_[list.block];
+    const std::uint32_t old = list.block;
+    const std::uint32_t kept = std::min(list.count, count);
+    if (was_own || count > (kUnit << log)) {
+      list.block = take_block(log_for(count));
+      const CornerRef* const refs = was_own ? list.refs.data() : &refs_[old * kUnit];
+      const WedgeId* const wedges = was_own ? list.wedges.data() : &wedges_[old * kUnit];
+      std::copy_n(refs, kept, &refs_[first(list)]);
+      std::copy_n(wedges, kept, &wedges_[first(list)]);
+      if (!was_own) free_[log].push_back(old);
     } else if (count <= CornerList::kOwn / 2) {
-      std::copy_n(at(list.block), kept, list.own.begin());
-      free_[log].push_back(list.block);
+      std::copy_n(&refs_[first(list)], kept, list.refs.begin());
+      std::copy_n(&wedges_[first(list)], kept, list.wedges.begin());
+      free_[log].push_back(old);
       list.block = kNone;
     }
   }
-  std::vector<CornerAt>::iterator at(std::uint32_t block) {
-    return pool_.begin() + static_cast<std::ptrdiff_t>(std::size_t(block) * kUnit);
-  }
-  std::uint32_t log_of_block(std::uint32_t block) const { return log_of_unit_[block]; }
   std::uint32_t take_block(std::uint32_t log) {
     if (!free_[log].empty()) {
       const std::uint32_t block = free_[log].back();
       free_[log].pop_back();
       return block;
     }
-    const auto block = static_cast<std::uint32_t>(pool_.size() / kUnit);
-    pool_.resize(pool_.size() + (kUnit << log));
-    log_of_unit_.resize(pool_.size() / kUnit, static_cast<std::uint8_t>(log));
+    const auto block = static_cast<std::uint32_t>(refs_.size() / kUnit);
+    refs_.resize(refs_.size() + (kUnit << log));
+    wedges_.resize(refs_.size());
+    log_of_unit_.resize(refs_.size() / kUnit, static_cast<std::uint8_t>(log));
     return block;
   }
 
-  std::vector<CornerAt> pool_;
+  std::vector<CornerRef> refs_;  // the pool
+  std::vector<WedgeId> wedges_;
   std::vector<std::uint8_t> log_of_unit_;
   std::array<std::vector<std::uint32_t>, 32> free_;  // by log
 };

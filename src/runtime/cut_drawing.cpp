@@ -12,9 +12,9 @@ namespace {
 constexpr std::size_t kNormalsPerTriangle[] = {0, 1, 3};
 
 // Face normals that come from different ones are shown as three.
-Part shown_kind(const ActiveCut& cut, const Geomorphs& geomorphs, const ActiveTriangles& part,
+Part shown_kind(const ActiveCut& cut, const Geomorphs& geomorphs, ActiveTriangles& part,
                 std::uint32_t triangle) {
-  const Part kind = cut.kind_of(part, triangle);
+  const Part kind = cut.sort(part, triangle);
   if (kind != kFnPart || part.is_derived[triangle] != 0 || geomorphs.moving_count() == 0) {
     return kind;
   }
@@ -42,8 +42,9 @@ void CutDrawing::show_normals(const ActiveCut& cut, const Geomorphs& geomorphs,
   if (part.is_derived[triangle] != 0) {
     Vec3f n = geometric_normal_of(cut, part, triangle);
     const bool is_plain = n != Vec3f{} || cut.normal_layer() == kNone;
-    if (is_plain && std::any_of(slots, slots + 3,
-                                [&](std::uint32_t slot) { return geomorphs.is_moving(slot); })) {
+    if (is_plain && geomorphs.moving_count() > 0 &&
+        std::any_of(slots, slots + 3,
+                    [&](std::uint32_t slot) { return geomorphs.is_moving(slot); })) {
       const Vec3f& a = positions_[slots[0]];
       const Vec3f now = normalized(cross(positions_[slots[1]] - a, positions_[slots[2]] - a));
       if (now != Vec3f{}) n = now;
@@ -52,7 +53,7 @@ void CutDrawing::show_normals(const ActiveCut& cut, const Geomorphs& geomorphs,
     if (is_plain) return;
   }
   for (std::size_t k = 0; k < shown.size(); ++k) {
-    shown[k] = geomorphs.normal(slots[k], cut.normal_index(part, 3 * std::size_t(triangle) + k));
+    shown[k] = geomorphs.normal(slots[k], cut.sorted_normal(part, 3 * std::size_t(triangle) + k));
   }
 }
 

@@ -44,6 +44,7 @@ Vec3f Geomorphs::normal_of(const Moving& m, std::uint32_t index) const {
 }
 
 Vec3f Geomorphs::normal(std::uint32_t slot, std::uint32_t index) const {
+  if (moving_.empty()) return value(index);
   const std::uint32_t i = moving_of(slot);
   return i == kNone ? value(index) : normal_of(moving_[i], index);
 }
@@ -109,6 +110,7 @@ void Geomorphs::advance(double seconds) {
 }
 
 void Geomorphs::before_split(const ActiveCut& cut, std::uint32_t slot) {
+  if (!is_on() && moving_.empty()) return;
   const std::uint32_t i = moving_of(slot);
   if (i == kNone) {
     above_ = going(cut, slot);
@@ -200,12 +202,14 @@ void Geomorphs::stay(const ActiveCut& cut, SplitId s) {
 
 void Geomorphs::merged(SplitId s, const ActiveCut::Children& children) {
   if (is_leaving(s, children)) leaving_triangles_ -= hierarchy_.vertices.triangles_of(s).size();
+  bool moved = false;
   for (const std::uint32_t slot : {children.first, children.second}) {
-    if (slot == kNoSlot) continue;
+    if (slot == kNoSlot || !is_moving(slot)) continue;
     drop(slot);
+    moved = true;
   }
   // Corners of the second one stand at the first one now.
-  if (children.first != kNoSlot) at_rest_.push_back(children.first);
+  if (moved && children.first != kNoSlot) at_rest_.push_back(children.first);
 }
 
 const std::vector<Geomorphs::Leaving>& Geomorphs::all_leaving() {

@@ -111,22 +111,20 @@ bool Refiner::out_of_time() {
   return false;
 }
 
-// Of moves to come.
+// Of moves to come. To follow them further, to third vertices and siblings, took as long as it
+// saved.
 void Refiner::fetch_merges(const ActiveCut& cut) const {
   const std::vector<Wish>& wishes = merges_.wishes;
   const std::size_t i = merges_.next, count = wishes.size();
-  if (i + 12 < count) cut.prefetch_merge(wishes[i + 12].slot, wishes[i + 12].split);
-  if (i + 8 < count) cut.prefetch_merge_further(wishes[i + 8].slot, wishes[i + 8].split);
-  if (i + 5 < count) cut.prefetch_siblings(wishes[i + 5].split);
-  if (i + 2 < count) cut.prefetch_siblings_further(wishes[i + 2].split);
+  if (i + 8 < count) cut.prefetch_merge(wishes[i + 8].slot, wishes[i + 8].split);
+  if (i + 4 < count) cut.prefetch_merge_further(wishes[i + 4].slot, wishes[i + 4].split);
 }
 
 void Refiner::fetch_splits(const ActiveCut& cut) const {
   const std::vector<Wish>& wishes = splits_.wishes;
   const std::size_t i = splits_.next, count = wishes.size();
-  if (i + 12 < count) cut.prefetch_split(wishes[i + 12].slot, wishes[i + 12].split);
-  if (i + 8 < count) cut.prefetch_split_further(wishes[i + 8].slot, wishes[i + 8].split);
-  if (i + 4 < count) cut.prefetch_born(wishes[i + 4].slot, wishes[i + 4].split);
+  if (i + 8 < count) cut.prefetch_split(wishes[i + 8].slot, wishes[i + 8].split);
+  if (i + 4 < count) cut.prefetch_split_further(wishes[i + 4].slot, wishes[i + 4].split);
 }
 
 void Refiner::do_merges(ActiveCut& cut) {
@@ -339,7 +337,7 @@ bool Refiner::is_needed(const ActiveCut& cut, SplitId s) const {
   const ActiveCut::Children children = cut.children(s);
   for (const std::uint32_t slot : {children.first, children.second}) {
     if (slot == kNoSlot) continue;
-    for (const CornerAt& at : cut.corners_of(slot)) {
+    for (const CornerAt at : cut.corners_of(slot)) {
       const TriangleId t = cut.parts()[at.corner.part()].ids[at.corner.triangle()];
       const SplitId by = cut.introducing_split(t);
       if (by == kNoSplit || by == s) continue;

@@ -27,6 +27,42 @@ void check_walks(const HierarchyCase& c, int walk_count, std::uint64_t seed) {
   }
 }
 
+// Of all corners that stand at vertices of the cut with several attributes.
+void check_order(const MeshHierarchy& hierarchy, const ActiveCut& cut, std::size_t& compared) {
+  for (std::size_t l = 0; l < hierarchy.layers.size(); ++l) {
+    const AttributeHierarchy& layer = hierarchy.layers[l];
+    const AttributeOrder order(hierarchy, l);
+    for (std::uint32_t slot = 0; slot < cut.vertices().size(); ++slot) {
+      const NodeId node = cut.vertices()[slot].node;
+      if (node == kNoNode || layer.attribute_count(node) < 2) continue;
+      for (const CornerAt at : cut.corners_of(slot)) {
+        const RelativeAttribute found =
+            order.attribute_at(AttributeOrder::node(layer, node), at.wedge);
+        REQUIRE(found == hierarchy.attribute_at(l, node, at.wedge));
+        ++compared;
+      }
+    }
+  }
+}
+
+TEST_CASE("the order of the attribute forest tells what a walk down and up finds") {
+  std::size_t compared = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    const HierarchyCase c = random_case(random_complex(seed, 10 + seed % 20, 20 + (seed * 7) % 60),
+                                        {.seed = seed, .change_share = double(seed % 3) / 2});
+    CutOracle oracle(c);
+    ActiveCut cut(c.hierarchy);
+    std::mt19937_64 random(seed);
+    for (int i = 0; i < 5; ++i) {
+      oracle.set(random_cut(c, random));
+      walk_to(oracle, cut, random);
+      check_order(c.hierarchy, cut, compared);
+    }
+  }
+  CHECK(compared > 1000);
+}
+
 TEST_CASE("a random walk between cuts of a random complex shows what the plain definition says") {
   for (std::uint64_t seed = 0; seed < (kSanitized ? 20 : 200); ++seed) {
     CAPTURE(seed);

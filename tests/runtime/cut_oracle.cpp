@@ -166,7 +166,7 @@ std::string difference_of_lists(const ActiveCut& cut) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
   for (std::uint32_t slot = 0; slot < cut.vertices().size(); ++slot) {
     if (cut.vertices()[slot].node == kNoNode) continue;
-    for (const CornerAt& at : cut.corners_of(slot)) {
+    for (const CornerAt at : cut.corners_of(slot)) {
       const ActiveTriangles& part = cut.parts()[at.corner.part()];
       if (at.corner.triangle() >= part.size()) return "a corner beyond the triangles";
       const TriangleId t = part.ids[at.corner.triangle()];
