@@ -18,6 +18,7 @@
 
 #include "runtime/view_error.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -114,12 +115,17 @@ class WatchList {
     double travel, turn;
   };
   Slack slack(const Odometer& now) const {
-    Dates first{kNever, kNever};
-    for (std::size_t b = 0; b < (size_ + kLanes - 1) / kLanes; ++b) {
-      first.travel = lesser(first.travel, due_[b].travel);
-      first.turn = lesser(first.turn, due_[b].turn);
+    const std::size_t block_count = (size_ + kLanes - 1) / kLanes, whole = block_count / kLanes;
+    Dates first{FourFloats{} + kNever, FourFloats{} + kNever};
+    for (std::size_t i = 0; i < whole; ++i) {
+      first.travel = lesser(first.travel, due_[i].travel);
+      first.turn = lesser(first.turn, due_[i].turn);
     }
-    return {double(first.travel) - now.travel, double(first.turn) - now.turn};
+    for (std::size_t lane = 0; lane < block_count % kLanes; ++lane) {
+      first.travel[lane] = std::min(first.travel[lane], due_[whole].travel[lane]);
+      first.turn[lane] = std::min(first.turn[lane], due_[whole].turn[lane]);
+    }
+    return {double(least(first.travel)) - now.travel, double(least(first.turn)) - now.turn};
   }
 
   std::size_t bytes() const {

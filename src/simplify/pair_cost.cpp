@@ -251,13 +251,15 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
   const double noise = tie + grid_noise;
   const Vec3d middle = (pa + pb) * 0.5;
   Vec3d x = sum.minimum(middle, steering_.pull);
+  // The pull, and rounding to a coarse grid, make this more than the least there is.
+  const bool is_cheap = sum.at(x) <= 1.5 * bound;
   const Vec3d away = x - middle;
   const double away2 = dot(away, away);
   if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
   x = rounded(x);
   const double cost_x = sum.at(x);
   const double most = steering_.leaves_ends * share * best.cost - noise;
-  if (cost_x < most && cost_x <= bound) {  // or nothing is cheap enough
+  if (is_cheap && cost_x < most) {  // or nothing is cheap enough
     const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
     if (between.cost < most) best = {between.cost, between.position};
     if (cost_x < steering_.leaves_pair * share * best.cost - noise) best = {cost_x, x};
