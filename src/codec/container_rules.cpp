@@ -43,6 +43,9 @@ std::string broken_rule_of_layer(const LayerSchema& layer) {
   if (layer.role > AttributeRole::Other) return "unknown role";
   if (layer.interpolation > Interpolation::Categorical) return "unknown interpolation";
   if (layer.dimension < 1 || layer.dimension > 4) return "its dimension is not 1 to 4";
+  if (layer.role == AttributeRole::Normal && layer.dimension != 3) {
+    return "normals are not of dimension 3";
+  }
   if (layer.coding > AttributeCoding::Sextant) return "unknown coding";
   const CodingRow& row = kCodings[static_cast<std::size_t>(layer.coding)];
   if (layer.bits < row.min_bits || layer.bits > row.max_bits) return "bits out of range";

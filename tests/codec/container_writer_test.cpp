@@ -127,6 +127,8 @@ TEST_CASE("a writer refuses what a reader would") {
   CHECK(with([](WrittenFile& f) { f.content.facts.grid.step = 0; }).starts_with("grid"));
   CHECK(with([](WrittenFile& f) { f.content.facts.layers[1].role = AttributeRole::Normal; }) ==
         "layer 1: a second layer of normals");
+  CHECK(with([](WrittenFile& f) { f.content.facts.layers[0].dimension = 4; }) ==
+        "layer 0: normals are not of dimension 3");
   CHECK(with([](WrittenFile& f) { f.content.facts.layers[1].dimension = 2; }) ==
         "layer 1: a coding of directions for what is none");
   CHECK(with([](WrittenFile& f) { f.content.facts.layers[3].bits = 8; }) ==

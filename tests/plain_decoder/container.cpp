@@ -83,6 +83,7 @@ Layer read_layer(Reader& in) {
   in.reserved(3);
   demand(layer.role <= 3 && layer.interpolation <= 2 && layer.coding <= 3, "an unknown code");
   demand(layer.dimension >= 1 && layer.dimension <= 4, "a layer's dimension");
+  demand(layer.role != 0 || layer.dimension == 3, "normals of another dimension than 3");
   const Rule& rule = kRules[layer.coding];
   demand(layer.bits >= rule.least && layer.bits <= rule.most, "a layer's bits");
   demand(!rule.directions || (layer.dimension == 3 && layer.interpolation == 0),
