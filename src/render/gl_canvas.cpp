@@ -111,6 +111,7 @@ Status GlCanvas::show() {
 }
 
 Result<Image> GlCanvas::read() {
+  if (!target_) return fail(Error::NotFound, "nothing has been drawn yet");
   const GlRenderbuffer storage = GlRenderbuffer::make();
   glBindRenderbuffer(GL_RENDERBUFFER, storage.id());
   glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width_, height_);

@@ -33,7 +33,7 @@ class GlCanvas {
   void fill_columns(int left, int width, const ColorSrgb& color);
   // Into the window's framebuffer. Leaves OpenGL as a program expects that draws over it.
   Status show();
-  // The same picture as an image.
+  // The same picture as an image. Fails before the first begin().
   Result<Image> read();
   // What the window's framebuffer has, with all that was drawn over the picture since show(). Where
   // another window covers ours it may be anything.
