@@ -267,9 +267,9 @@ int compare_granularities(const Options& options) {
   if (!opened.ok()) return failed(opened.failure());
   if (!file.ok()) return failed(file.failure());
   BlockStreamer& streamer = *opened;
-  const Box box = box_of_start(streamer);
   const Result<DecodedModel> model = decode_model(*file);
   if (!model.ok()) return failed(model.failure());
+  const Box box = box_of(model->mesh.positions);  // not of a base that may be two triangles
   Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
   if (!hierarchy.ok()) return failed(hierarchy.failure());
   AdaptiveMesh whole(std::make_shared<const MeshHierarchy>(*std::move(hierarchy)));

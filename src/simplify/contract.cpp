@@ -171,6 +171,8 @@ PatchResult PatchSimplifier::run() {
   }
   write_back();
   result_.triangles_left = live_triangles_;
+  result_.contractions.shrink_to_fit();  // all patches' results wait for the last one
+  result_.changes.shrink_to_fit();
   return std::move(result_);
 }
 
