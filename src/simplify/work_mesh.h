@@ -59,7 +59,11 @@ struct WorkMesh {
   std::vector<WorkLayer> layers;
 };
 
-// What one patch did in one band, in its own numbering of new attribute values.
+// The input, nothing contracted; `mesh` must outlive it. Who owns a vertex and what part it is of
+// are left open.
+WorkMesh make_work(const Mesh& mesh, const Grid& grid);
+
+// What one patch did in one pass, in its own numbering of new attribute values.
 struct PatchContraction {
   double key;  // steering cost; never falls inside a patch
   Contraction contraction;

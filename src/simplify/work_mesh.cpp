@@ -1,0 +1,89 @@
+#include "simplify/work_mesh.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace crease::simplification {
+
+namespace {
+
+void add_layers(const Mesh& mesh, WorkMesh& work) {
+  for (const AttributeLayer& source : mesh.layers) {
+    WorkLayer layer;
+    layer.source = &source;
+    layer.dimension = static_cast<int>(source.dimension);
+    layer.blends = source.interpolation != Interpolation::Categorical;
+    layer.steers = layer.blends && source.role != AttributeRole::Other;
+    layer.is_direction = source.interpolation == Interpolation::Direction;
+    layer.is_normal = source.role == AttributeRole::Normal;
+    layer.of_corner.reserve(source.of_corner.size());
+    for (AttributeId a : source.of_corner) layer.of_corner.push_back(static_cast<std::uint32_t>(a));
+    work.layers.push_back(std::move(layer));
+  }
+}
+
+void find_categories(const Mesh& mesh, WorkMesh& work) {
+  if (mesh.material_of_triangle.empty() && mesh.part_of_triangle.empty()) return;
+  const std::uint32_t materials =
+      std::max<std::uint32_t>(1, static_cast<std::uint32_t>(mesh.materials.size()));
+  work.category_of_triangle.assign(mesh.triangle_count(), 0);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    std::uint32_t& category = work.category_of_triangle[t];
+    if (!mesh.part_of_triangle.empty()) {
+      category = static_cast<std::uint32_t>(mesh.part_of_triangle[t]) * materials;
+    }
+    if (!mesh.material_of_triangle.empty()) {
+      category += static_cast<std::uint32_t>(mesh.material_of_triangle[t]);
+    }
+  }
+}
+
+// Flat triangles remember the input normals that they stand for.
+void find_represented(const Mesh& mesh, WorkMesh& work) {
+  const AttributeLayer* normals = mesh.normals();
+  const auto is_flat = [&](std::size_t t) {
+    const AttributeId* id = &normals->of_corner[3 * t];
+    return id[0] == id[1] && id[1] == id[2];
+  };
+  bool any_flat = false;
+  for (std::size_t t = 0; normals && t < mesh.triangle_count() && !any_flat; ++t) {
+    any_flat = is_flat(t);
+  }
+  if (!any_flat) return;
+  work.represented.resize(mesh.triangle_count());
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const std::uint32_t* v = &work.vertex_of_corner[3 * t];
+    const auto at = [&](int c) {
+      const Vec3i& p = work.positions[v[c]];
+      return Vec3d{double(p.x), double(p.y), double(p.z)};
+    };
+    const double area = 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+    const std::span<const float> n = normals->value(normals->of_corner[3 * t]);
+    const Vec3d sum = Vec3d{double(n[0]), double(n[1]), double(n[2])} * area;
+    work.represented[t] = {
+        {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)},
+        static_cast<float>(area)};
+  }
+}
+
+}  // namespace
+
+WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
+  WorkMesh work;
+  work.positions.reserve(mesh.vertex_count());
+  for (const Vec3d& p : mesh.positions) work.positions.push_back(grid.nearest(p));
+  work.error_of_vertex.resize(mesh.vertex_count());
+  work.vertex_of_corner.reserve(3 * mesh.triangle_count());
+  for (const Triangle& triangle : mesh.triangles) {
+    for (VertexId v : triangle) work.vertex_of_corner.push_back(static_cast<std::uint32_t>(v));
+  }
+  work.live.resize(mesh.triangle_count());
+  std::iota(work.live.begin(), work.live.end(), 0u);
+  work.derived.assign(mesh.triangle_count(), 0);
+  add_layers(mesh, work);
+  find_categories(mesh, work);
+  find_represented(mesh, work);
+  return work;
+}
+
+}  // namespace crease::simplification
