@@ -103,8 +103,8 @@ Result<DecodedModel> open_model(const ModelEntry& entry) {
   return std::move(opened->model);
 }
 
-// The error on the screen at which the cut has about so many triangles on the way: halves of a factor
-// until it is within 2 %.
+// The error on the screen at which the cut has about so many triangles on the way: halves of a
+// factor until it is within 2 %.
 double pixels_for(const std::shared_ptr<const MeshHierarchy>& hierarchy, const Box& box,
                   bool is_city, std::size_t triangles) {
   constexpr int kFrames = 16, kMostSteps = 24;
@@ -122,7 +122,7 @@ double pixels_for(const std::shared_ptr<const MeshHierarchy>& hierarchy, const B
 }
 
 bool measure(const ModelEntry& entry, int frames, int rounds, double pixels,
-             std::size_t triangles_wanted) {
+             std::size_t triangles_wanted, bool one_root) {
   Result<DecodedModel> opened = open_model(entry);
   if (!opened.ok()) {
     std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), opened.failure().message.c_str());
@@ -131,7 +131,7 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels,
   const Mesh& decoded = opened->mesh;
   const Box box = box_of(decoded.positions);
   const std::size_t vertices = decoded.vertex_count(), triangles = decoded.triangle_count();
-  Result<MeshHierarchy> built = build_hierarchy(decoded, opened->sequence, {});
+  Result<MeshHierarchy> built = build_hierarchy(decoded, opened->sequence, {.one_root = one_root});
   if (!built.ok()) {
     std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), built.failure().message.c_str());
     return false;
@@ -163,18 +163,20 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels,
 
   std::printf(
       "%-12s %8zu tris  hierarchy %5.1f bytes/vertex  active %6.1f bytes/active vertex\n"
-      "  flight: %.3g pixels  %7.0f active tris  %7.1f moves/frame (most %zu)  %7.1f evaluated/frame  "
+      "  flight: %.3g pixels  %7.0f active tris  %7.1f moves/frame (most %zu)  %7.1f "
+      "evaluated/frame  "
       "%.2f M moves/s  %.0f ns/move  frame %.3f ms (worst %.3f)\n"
       "  still:  %.2f us/frame, %zu evaluated\n"
-      "  last view: %zu triangles, uniform level of the same error %zu (%.1f times)\n",
+      "  last view: %zu triangles, %zu vertices, uniform level of the same error %zu (%.1f "
+      "times)\n",
       entry.name.c_str(), triangles, double(hierarchy_bytes(*hierarchy).total()) / double(vertices),
       double(mesh.active_bytes()) / double(mesh.vertex_count()), pixels,
       double(flight.triangles) / double(flight.frames),
       double(flight.moves) / double(flight.frames), flight.most_moves,
       double(flight.evaluated) / double(flight.frames), moves / flight.seconds() / 1e6,
       flight.seconds() / moves * 1e9, flight.seconds() / double(flight.frames) * 1e3,
-      worst_frame * 1e3, still * 1e6, evaluated, mesh.triangle_count(), uniform,
-      double(uniform) / double(mesh.triangle_count()));
+      worst_frame * 1e3, still * 1e6, evaluated, mesh.triangle_count(), mesh.vertex_count(),
+      uniform, double(uniform) / double(mesh.triangle_count()));
   std::fflush(stdout);
   return true;
 }
@@ -185,9 +187,11 @@ int run(int argc, char** argv) {
   int frames = 600, rounds = 3;
   double pixels = 1;
   std::size_t cut_triangles = 0;
-  bool is_city = false;
+  bool is_city = false, one_root = false;
   CLI::App app("Flights over adaptive meshes");
-  app.add_option("--models", models, "names of models.txt, generate:N, or .crease files")->delimiter(',');
+  app.add_option("--models", models, "names of models.txt, generate:N, or .crease files")
+      ->delimiter(',');
+  app.add_flag("--one-root", one_root, "what the simplifier leaves is joined under one root");
   app.add_flag("--city", is_city, ".crease files are flown over, not around");
   app.add_option("--list", list, "instead of models.txt");
   app.add_option("--frames", frames, "of a flight");
@@ -204,13 +208,18 @@ int run(int argc, char** argv) {
   bool good = true;
   for (const std::string& name : models) {
     if (name.starts_with("generate:")) {
-      good = measure({name, "city", "keep", name}, frames, rounds, pixels, cut_triangles) && good;
+      good =
+          measure({name, "city", "keep", name}, frames, rounds, pixels, cut_triangles, one_root) &&
+          good;
     } else if (name.ends_with(".crease")) {
       const std::string stem = std::filesystem::path(name).stem().string();
-      good = measure({stem, is_city ? "city" : "scan", "keep", name}, frames, rounds, pixels, cut_triangles) && good;
+      good = measure({stem, is_city ? "city" : "scan", "keep", name}, frames, rounds, pixels,
+                     cut_triangles, one_root) &&
+             good;
     }
     for (const ModelEntry& entry : *entries) {
-      if (entry.name == name) good = measure(entry, frames, rounds, pixels, cut_triangles) && good;
+      if (entry.name == name)
+        good = measure(entry, frames, rounds, pixels, cut_triangles, one_root) && good;
     }
   }
   return good ? 0 : 2;
