@@ -9,6 +9,7 @@
 // view.
 #include "crease/adaptive_mesh.h"
 #include "crease/build_hierarchy.h"
+#include "crease/file.h"
 #include "flight.h"
 #include "models.h"
 #include "opened.h"
@@ -50,6 +51,7 @@ Flight fly(AdaptiveMesh& mesh, const ViewParameters& start, const Box& box, bool
   for (int f = 0; f < frames; ++f) {
     ViewParameters view = start;
     view.camera = camera_at(box, is_city, double(f) / frames);
+    view.camera.pixels = start.camera.pixels;
     const double began = processor_seconds();
     const UpdateReport report = mesh.update(view);
     double seconds = processor_seconds() - began;
@@ -87,21 +89,49 @@ std::size_t uniform_triangles(const std::shared_ptr<const MeshHierarchy>& hierar
   return uniform.triangle_count();
 }
 
-bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
-  Result<Mesh> source = load_mesh(entry, data_folder());
-  if (!source.ok()) {
-    std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), source.failure().message.c_str());
-    return false;
+// Of a .crease file, or built.
+Result<DecodedModel> open_model(const ModelEntry& entry) {
+  if (entry.where.ends_with(".crease")) {
+    const Result<BlockFile> file = open_crease(entry.where);
+    if (!file.ok()) return file.failure();
+    return decode_model(*file);
   }
+  Result<Mesh> source = load_mesh(entry, data_folder());
+  if (!source.ok()) return source.failure();
   Result<Opened> opened = open_built(*std::move(source));
+  if (!opened.ok()) return opened.failure();
+  return std::move(opened->model);
+}
+
+// The error on the screen at which the cut has about so many triangles on the way: halves of a
+// factor until it is within 2 %.
+double pixels_for(const std::shared_ptr<const MeshHierarchy>& hierarchy, const Box& box,
+                  bool is_city, std::size_t triangles) {
+  constexpr int kFrames = 16, kMostSteps = 24;
+  AdaptiveMesh mesh(hierarchy);
+  ViewParameters view;
+  double factor = 4096;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Flight flight = fly(mesh, view, box, is_city, kFrames, nullptr);
+    const double share = double(flight.triangles) / double(flight.frames) / double(triangles);
+    if (std::abs(share - 1) < 0.02) break;
+    view.camera.pixels *= share > 1 ? factor : 1 / factor;
+    factor = std::sqrt(factor);
+  }
+  return view.camera.pixels;
+}
+
+bool measure(const ModelEntry& entry, int frames, int rounds, double pixels,
+             std::size_t triangles_wanted, bool one_root) {
+  Result<DecodedModel> opened = open_model(entry);
   if (!opened.ok()) {
     std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), opened.failure().message.c_str());
     return false;
   }
-  const Mesh& decoded = opened->model.mesh;
+  const Mesh& decoded = opened->mesh;
   const Box box = box_of(decoded.positions);
   const std::size_t vertices = decoded.vertex_count(), triangles = decoded.triangle_count();
-  Result<MeshHierarchy> built = build_hierarchy(decoded, opened->model.sequence, {});
+  Result<MeshHierarchy> built = build_hierarchy(decoded, opened->sequence, {.one_root = one_root});
   if (!built.ok()) {
     std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), built.failure().message.c_str());
     return false;
@@ -109,6 +139,7 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
   *opened = {};
   const auto hierarchy = std::make_shared<const MeshHierarchy>(*std::move(built));
   const bool is_city = entry.kind == "city";
+  if (triangles_wanted > 0) pixels = pixels_for(hierarchy, box, is_city, triangles_wanted);
   ViewParameters view;
   view.camera.pixels = pixels;
 
@@ -122,6 +153,7 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
   const double worst_frame = *std::ranges::max_element(flight.seconds_of_frame);
   const double moves = double(std::max<std::size_t>(1, flight.moves));
   view.camera = camera_at(box, is_city, double(frames - 1) / frames);
+  view.camera.pixels = pixels;
   mesh.update(view);
   const double before = processor_seconds();
   std::size_t evaluated = 0;
@@ -131,18 +163,20 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels) {
 
   std::printf(
       "%-12s %8zu tris  hierarchy %5.1f bytes/vertex  active %6.1f bytes/active vertex\n"
-      "  flight: %7.0f active tris  %7.1f moves/frame (most %zu)  %7.1f evaluated/frame  "
+      "  flight: %.3g pixels  %7.0f active tris  %7.1f moves/frame (most %zu)  %7.1f "
+      "evaluated/frame  "
       "%.2f M moves/s  %.0f ns/move  frame %.3f ms (worst %.3f)\n"
       "  still:  %.2f us/frame, %zu evaluated\n"
-      "  last view: %zu triangles, uniform level of the same error %zu (%.1f times)\n",
+      "  last view: %zu triangles, %zu vertices, uniform level of the same error %zu (%.1f "
+      "times)\n",
       entry.name.c_str(), triangles, double(hierarchy_bytes(*hierarchy).total()) / double(vertices),
-      double(mesh.active_bytes()) / double(mesh.vertex_count()),
+      double(mesh.active_bytes()) / double(mesh.vertex_count()), pixels,
       double(flight.triangles) / double(flight.frames),
       double(flight.moves) / double(flight.frames), flight.most_moves,
       double(flight.evaluated) / double(flight.frames), moves / flight.seconds() / 1e6,
       flight.seconds() / moves * 1e9, flight.seconds() / double(flight.frames) * 1e3,
-      worst_frame * 1e3, still * 1e6, evaluated, mesh.triangle_count(), uniform,
-      double(uniform) / double(mesh.triangle_count()));
+      worst_frame * 1e3, still * 1e6, evaluated, mesh.triangle_count(), mesh.vertex_count(),
+      uniform, double(uniform) / double(mesh.triangle_count()));
   std::fflush(stdout);
   return true;
 }
@@ -152,13 +186,19 @@ int run(int argc, char** argv) {
   std::filesystem::path list = std::filesystem::path(CREASE_BENCH_SOURCE) / "models.txt";
   int frames = 600, rounds = 3;
   double pixels = 1;
+  std::size_t cut_triangles = 0;
+  bool is_city = false, one_root = false;
   CLI::App app("Flights over adaptive meshes");
-  app.add_option("--models", models, "names of models.txt, or generate:N")->delimiter(',');
+  app.add_option("--models", models, "names of models.txt, generate:N, or .crease files")
+      ->delimiter(',');
+  app.add_flag("--one-root", one_root, "what the simplifier leaves is joined under one root");
+  app.add_flag("--city", is_city, ".crease files are flown over, not around");
   app.add_option("--list", list, "instead of models.txt");
   app.add_option("--frames", frames, "of a flight");
   app.add_option("--rounds", rounds, "flights; of each frame the fastest counts")
       ->check(CLI::PositiveNumber);
   app.add_option("--pixels", pixels, "error allowed on the screen");
+  app.add_option("--cut", cut_triangles, "as many pixels as give a cut of so many triangles");
   CLI11_PARSE(app, argc, argv);
   Result<std::vector<ModelEntry>> entries = read_models(list);
   if (!entries.ok()) {
@@ -168,10 +208,18 @@ int run(int argc, char** argv) {
   bool good = true;
   for (const std::string& name : models) {
     if (name.starts_with("generate:")) {
-      good = measure({name, "city", "keep", name}, frames, rounds, pixels) && good;
+      good =
+          measure({name, "city", "keep", name}, frames, rounds, pixels, cut_triangles, one_root) &&
+          good;
+    } else if (name.ends_with(".crease")) {
+      const std::string stem = std::filesystem::path(name).stem().string();
+      good = measure({stem, is_city ? "city" : "scan", "keep", name}, frames, rounds, pixels,
+                     cut_triangles, one_root) &&
+             good;
     }
     for (const ModelEntry& entry : *entries) {
-      if (entry.name == name) good = measure(entry, frames, rounds, pixels) && good;
+      if (entry.name == name)
+        good = measure(entry, frames, rounds, pixels, cut_triangles, one_root) && good;
     }
   }
   return good ? 0 : 2;
