@@ -294,8 +294,8 @@ DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t
   Neighbour a, b;
   for (const std::uint32_t t : around_[v].first(triangles)) {
     const Corners& corners = mesh_.triangles[t];
-    const std::size_t c = std::size_t(corner_of(corners, v));
-    const std::uint32_t after = corners[c < 2 ? c + 1 : 0], before = corners[c > 0 ? c - 1 : 2];
+    const std::size_t c = corner_of(corners, v);
+    const std::uint32_t after = corners[kCornerAfter[c]], before = corners[kCornerBefore[c]];
     a = b;  // mostly they follow each other
     if (after != b.vertex) a = seen(after);
     b = seen(before);

@@ -13,8 +13,6 @@ Vec3d to_double(const Vec3i& p) {
   return {double(p.x), double(p.y), double(p.z)};
 }
 
-constexpr std::size_t kAfter[] = {1, 2, 0}, kBefore[] = {2, 0, 1};
-
 // From the parent's place.
 struct Neighbour {
   std::uint32_t vertex = kNone;
@@ -46,7 +44,7 @@ Surroundings surroundings(const PatchMesh& mesh, std::span<const std::uint32_t> 
     for (const std::uint32_t triangle : second ? around_u : around_t) {
       const Corners& corners = mesh.triangles[triangle];
       const std::size_t c = corner_of(corners, own);
-      const std::uint32_t after = corners[kAfter[c]], before = corners[kBefore[c]];
+      const std::uint32_t after = corners[kCornerAfter[c]], before = corners[kCornerBefore[c]];
       a = b;  // mostly they follow each other
       if (after != b.vertex) a = seen(after);
       b = seen(before);

@@ -58,13 +58,12 @@ bool find_ring(std::span<const Corners> triangles, std::span<const std::uint32_t
                std::uint32_t center, Ring& ring) {
   const std::size_t n = around.size();
   if (n == 0 || n > kLargestRing) return false;
-  constexpr std::size_t kAfter[] = {1, 2, 0}, kBefore[] = {2, 0, 1};
   std::uint32_t apart = 0, last = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Corners& t = triangles[around[i]];
-    const std::size_t c = std::size_t(t[1] == center) + 2 * std::size_t(t[2] == center);
-    ring.from[i] = t[kAfter[c]];
-    ring.next[i] = t[kBefore[c]];
+    const std::size_t c = corner_of(t, center);
+    ring.from[i] = t[kCornerAfter[c]];
+    ring.next[i] = t[kCornerBefore[c]];
     apart |= i > 0 ? last ^ ring.from[i] : 0;
     last = ring.next[i];
   }
