@@ -25,11 +25,12 @@ class Shares {
                                 std::size_t count) {
     constexpr float kFree = static_cast<float>(kAll - kLeast * N);
     const float whole = up_to[count - 1] - before;
+    if constexpr (N > 8) end_ = count + 1;
     std::uint32_t first = 1;
     if (whole > 0) {
       const float unit = kFree / whole;
       FourFloats most{};
-      for (; first < N; first += 4) {
+      for (; first < end_; first += 4) {
         FourFloats part;
         std::memcpy(&part, up_to.data() + first - 1, sizeof part);
         most = greater(growing(greater((part - before) * unit, FourFloats{})),
@@ -40,7 +41,7 @@ class Shares {
       }
     } else {
       const std::int32_t share = kAll / static_cast<std::int32_t>(count);
-      for (; first < N; first += 4) {
+      for (; first < end_; first += 4) {
         const std::int32_t i = static_cast<std::int32_t>(first);
         place(first, count,
               FourInts{i, i + 1, i + 2, i + 3} * share - FourInts{0, 1, 2, 3} * kLeast);
@@ -55,7 +56,7 @@ class Shares {
   std::uint32_t find(std::uint32_t at) const {
     std::uint32_t before = 0;  // a bit for each that begins up to there: the first ones
     const std::int32_t most = static_cast<std::int32_t>(at);
-    for (std::size_t i = 1; i < N; i += 4) {
+    for (std::size_t i = 1; i < end_; i += 4) {
       FourInts begin;
       std::memcpy(&begin, begin_.data() + i, sizeof begin);
       before |= negative_lanes(begin <= most) << (i - 1);
@@ -80,6 +81,7 @@ class Shares {
     std::memcpy(begin_.data() + first, &begin, sizeof begin);
   }
 
+  std::size_t end_ = N;  // of those that matter; few of many, mostly
   std::array<std::uint32_t, N + 1> begin_;
 };
 
