@@ -31,32 +31,31 @@ std::array<std::uint32_t, 3> BlockCoder<Coder, Guide>::neighbours_before(std::ui
 
 // A triangle's normal, twice its area long.
 template <class Coder, class Guide>
-Vec3d BlockCoder<Coder, Guide>::twice_area(std::uint32_t t) const {
+Spot BlockCoder<Coder, Guide>::twice_area(std::uint32_t t) const {
   const Corners& corners = mesh_.triangles[t];
-  const auto step = [&](std::size_t c) {
-    const Vec3i &p = mesh_.positions[corners[c]], &from = mesh_.positions[corners[0]];
-    return Vec3d{double(p.x) - from.x, double(p.y) - from.y, double(p.z) - from.z};
-  };
-  return cross(step(1), step(2));
+  const Vec3i& from = mesh_.positions[corners[0]];
+  return turned(cross_before_turn(seen_from(from, mesh_.positions[corners[1]]),
+                                  seen_from(from, mesh_.positions[corners[2]])));
 }
 
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::find_areas() {
   areas_.resize(mesh_.triangles.size());
-  for (std::uint32_t t = 0; t < areas_.size(); ++t) areas_[t] = twice_area(t);
+  for (std::uint32_t t = 0; t < areas_.size(); ++t) {
+    const Spot twice = twice_area(t);
+    areas_[t] = {twice, normalized(twice)};
+    areas_[t].unit[3] = is_zero(twice) ? 0.0f : 1.0f;
+  }
 }
 
 // By how much two triangles are turned against each other: not, a little, much, very much.
 template <class Coder, class Guide>
 std::size_t BlockCoder<Coder, Guide>::bend(std::uint32_t t, std::uint32_t other) const {
-  constexpr double kCosine2[] = {0.9999, 0.95, 0.5};
-  const Vec3d &a = areas_[t], &b = areas_[other];
-  const double cosine = dot(a, b), lengths2 = dot(a, a) * dot(b, b);
-  if (cosine < 0) return 3;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (cosine * cosine >= kCosine2[i] * lengths2) return i;
-  }
-  return 3;
+  constexpr FourFloats kCosines{0.99995f, 0.97468f, 0.70711f, -2};
+  const Spot products = areas_[t].unit * areas_[other].unit;
+  const float cosine = sum_of_three(products) + (2 - 2 * products[3]);  // 2 where one has none
+  const FourInts below = FourFloats{} + cosine < kCosines;
+  return static_cast<std::size_t>(-(below[0] + below[1] + below[2]));
 }
 
 template <class Coder, class Guide>
@@ -141,6 +140,11 @@ typename BlockCoder<Coder, Guide>::LabelBox* BlockCoder<Coder, Guide>::nearest_b
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_labels() {
   labels_.assign(mesh_.triangles.size(), 0);
+  bool any = false;
+  if constexpr (Coder::kEncodes) {
+    for (std::uint32_t t = 0; t < labels_.size(); ++t) any = any || guide_.label(t) != 0;
+  }
+  if (!coder_.bit(any_label_, any)) return;
   boxes_.clear();
   std::vector<std::uint32_t> last_at(mesh_.positions.size(), kNone);  // per vertex: what came there
   for (std::uint32_t t = 0; t < labels_.size(); ++t) {

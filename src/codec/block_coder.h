@@ -24,6 +24,7 @@
 #include "codec/place_model.h"
 #include "codec/predict_position.h"
 #include "codec/ring.h"
+#include "codec/spot.h"
 #include "codec/stream.h"
 #include "codec/triangle_lists.h"
 #include "crease/ids.h"
@@ -140,19 +141,25 @@ class BlockCoder {
   };
   bool code_splits();
   bool code_flag(std::uint32_t v, bool fan, bool splits);
+  struct Beside {  // the vertices beside one
+    Spot sizes{};
+    std::uint32_t split = 0, count = 0;
+  };
+  Beside look_beside(std::uint32_t v, bool fan);
   bool split(std::uint32_t v, bool fan);
   void code_shape(std::uint32_t v, bool fan);
   void ask_shape(std::uint32_t v);
   bool find_fan(Fan& fan);
   void make_fan(const Fan& fan);
-  void code_fan(Fan fan, std::uint32_t v);
-  Fan code_likely_fan(Fan fan, std::uint32_t v);
+  void code_fan(Fan fan);
+  Fan code_likely_fan(Fan fan);
   void code_general(std::uint32_t v);
   void apply(std::uint32_t v, std::uint32_t u);
   void apply_fan(std::uint32_t v, std::uint32_t u);
   void add_beside(std::uint32_t v, std::uint32_t neighbour, std::size_t after,
                   std::uint32_t triangle);
   void code_positions(std::uint32_t t, std::uint32_t u, const Vec3i& s);
+  Surroundings surroundings_of_split(std::uint32_t t, std::uint32_t u, const Vec3i& s);
   struct StaysContext {
     std::size_t share = 0, first = 0, second = 0, which_has_more = 0;
   };
@@ -160,7 +167,7 @@ class BlockCoder {
                                     std::size_t triangles_u);
   bool code_stays(std::size_t question, const StaysContext& context, bool stays);
   Miss expected_miss(std::uint32_t v, const Surroundings& around) const;
-  ChildRing child_ring(bool second, const Vec3i& s, const Vec3i& sibling);
+  ChildRing child_ring(bool second, const Vec3i& s, const Vec3i& sibling) const;
   Vec3i code_position(std::uint32_t v, bool second, const Vec3i& position,
                       const Surroundings& around, Leaving leaving, const ChildRing& ring);
   void note_miss(std::uint32_t v, const PlaceMixture& mixture, const Step& place);
@@ -179,12 +186,12 @@ class BlockCoder {
     DirectionModel direction{false}, corner_direction{true};
   };
   struct Directions {  // at a layer of directions, per vertex; zero where there is none
-    std::vector<Vec3d> geometric, stored;
+    std::vector<Spot> geometric, stored;
   };
   void keep_coarse_normals();
   void start_directions(const std::vector<CodedValue>& values, const OctahedralCoding& coding);
-  DirectionCandidates direction_candidates(std::uint32_t v, const Vec3d& had, Sizes& sizes) const;
-  Vec3d twice_area(std::uint32_t t) const;
+  DirectionCandidates direction_candidates(std::uint32_t v, const Spot& had, Sizes& sizes) const;
+  Spot twice_area(std::uint32_t t) const;
   void find_areas();
   std::size_t bend(std::uint32_t t, std::uint32_t other) const;
   void code_categories();
@@ -199,7 +206,7 @@ class BlockCoder {
                                    LayerModels& models, std::size_t i, bool fan,
                                    const CodedValue& value);
   bool had_at_coarse_end(const BlockLayer& layer, std::uint32_t corner) const;
-  static Vec3d direction_of(const BlockLayer& layer, const CodedValue& value);
+  static Spot direction_of(const BlockLayer& layer, const CodedValue& value);
   CodedValue code_shared_value(const BlockLayer& layer, const std::vector<CodedValue>& values,
                                LayerModels& models, std::uint32_t v);
   void code_labels();
@@ -223,25 +230,29 @@ class BlockCoder {
   TriangleLists around_;                  // per vertex
   std::vector<std::uint8_t> generation_;  // splits above, per vertex
   std::vector<FourFloats> miss_;  // per vertex: tangent, normal, and 1 where it was looked for
-  double mean_size_ = 0;          // of an edge at the coarse end
+  float mean_size_ = 0;           // of an edge at the coarse end
   std::vector<Split> splits_;
   std::vector<std::uint32_t> labels_;
   std::vector<std::uint32_t> origin_;  // per vertex: the one at the coarse end it comes from
   std::vector<char> has_moved_;        // per vertex, from there
-  std::vector<Vec3d> coarse_normals_;  // per vertex of the coarse end, if a layer has directions
+  std::vector<Spot> coarse_normals_;   // per vertex of the coarse end, if a layer has directions
   Directions directions_;
 
   Ring ring_;
   Shape shape_, wanted_shape_;
   Fan fan_;  // the shape, if the present split is one of the fan
   bool is_one_of_fan_ = false, is_closed_fan_ = false;
-  std::vector<Vec3f> arc_;
-  std::vector<std::uint32_t> ring_vertices_;  // scratch
-  std::vector<char> was_derived_;             // per coarse triangle
-  std::vector<Vec3d> areas_;                  // per triangle of the fine end, twice
-  std::vector<char> is_known_;                // per corner, of the present layer
-  std::vector<CodedValue> wanted_;            // likewise; of an encoder
-  std::vector<std::uint32_t> corners_;        // of the present vertex
+  std::array<Spot, 2 * kLargestRing + 2> places_;  // of ring_.vertices, from the present vertex
+  std::vector<std::uint32_t> ring_vertices_;       // scratch
+  std::vector<char> was_derived_;                  // per coarse triangle
+  struct Area {
+    // A triangle's normal, twice its area long; and one, with 1 as fourth, or all 0.
+    Spot twice{}, unit{};
+  };
+  std::vector<Area> areas_;             // per triangle of the fine end
+  std::vector<char> is_known_;          // per corner, of the present layer
+  std::vector<CodedValue> wanted_;      // likewise; of an encoder
+  std::vector<std::uint32_t> corners_;  // of the present vertex
   std::vector<CodedValue> tried_;
   std::vector<RingVertex> ranked_;
   std::vector<LabelBox> boxes_;
@@ -286,6 +297,7 @@ class BlockCoder {
   TreeModel<6> other_material_;
   AdaptiveBit any_derived_;
   std::array<AdaptiveBit, 2> is_derived_;
+  AdaptiveBit any_label_;
   std::array<std::array<AdaptiveBit, 3>, 2> same_label_;
   AdaptiveBit other_label_;
   MagnitudeModel label_;

@@ -16,7 +16,7 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
     at_t = guide_.position(t, false);
     at_u = guide_.position(t, true);
   }
-  const Surroundings around = surroundings(mesh_, around_[t], around_[u], t, u, s);
+  const Surroundings around = surroundings_of_split(t, u, s);
   const StaysContext context = stays_context(around, around_[t].size(), around_[u].size());
   const bool t_stays = code_stays(0, context, at_t == s);
   const bool u_stays = code_stays(1 + t_stays, context, at_u == s);
@@ -39,6 +39,21 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
   mesh_.positions[t] = at_t;
   has_moved_[u] = has_moved_[u] || !u_stays;
   has_moved_[t] = has_moved_[t] || !t_stays;
+}
+
+// In a fan the vertices' places are known already.
+template <class Coder, class Guide>
+Surroundings BlockCoder<Coder, Guide>::surroundings_of_split(std::uint32_t t, std::uint32_t u,
+                                                             const Vec3i& s) {
+  if (!is_one_of_fan_) return surroundings(mesh_, around_[t], around_[u], t, u, s);
+  std::size_t count = ring_.vertices.size();
+  if (is_closed_fan_) {  // goes round once more
+    std::copy_n(places_.begin(), count, places_.begin() + static_cast<std::ptrdiff_t>(count));
+    places_[2 * count] = places_[0];
+    ++count;
+  }
+  return surroundings_in_fan(std::span(places_).first(count), fan_.first, fan_.last, fan_.single,
+                             s);
 }
 
 template <class Coder, class Guide>
@@ -76,23 +91,16 @@ Miss BlockCoder<Coder, Guide>::expected_miss(std::uint32_t v, const Surroundings
 
 // The neighbours of a child of the present split, if both have closed fans.
 template <class Coder, class Guide>
-ChildRing BlockCoder<Coder, Guide>::child_ring(bool second, const Vec3i& s, const Vec3i& sibling) {
+ChildRing BlockCoder<Coder, Guide>::child_ring(bool second, const Vec3i& s,
+                                               const Vec3i& sibling) const {
   ChildRing result;
-  const auto from_parent = [&](const Vec3i& p) {
-    return rounded_to_float({double(p.x) - s.x, double(p.y) - s.y, double(p.z) - s.z});
-  };
-  result.sibling = from_parent(sibling);
+  result.sibling = seen_from(s, sibling);
   if (!is_closed_fan_) return result;
-  const std::uint32_t n = static_cast<std::uint32_t>(ring_.vertices.size());
-  const auto at = [&](std::uint32_t i) {
-    return from_parent(mesh_.positions[ring_.vertices[i % n]]);
-  };
-  const std::uint32_t first = second ? fan_.first : fan_.last;
-  const std::uint32_t last = second ? fan_.last : fan_.first + n;
-  arc_.clear();
-  for (std::uint32_t i = first; i <= last; ++i) arc_.push_back(at(i));
-  result.arc = arc_;
-  result.beyond = {at(first + n - 1), at(last + 1)};
+  const std::size_t n = ring_.vertices.size();
+  const std::size_t first = second ? fan_.first : fan_.last;
+  const std::size_t last = second ? fan_.last : fan_.first + n;
+  result.arc = std::span(places_).subspan(first, last + 1 - first);
+  result.beyond = {places_[first + n - 1], places_[last + 1]};
   return result;
 }
 

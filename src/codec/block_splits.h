@@ -5,6 +5,7 @@
 #include "codec/mixed_bit.h"
 
 #include <cmath>
+#include <limits>
 
 namespace crease::codec {
 
@@ -69,7 +70,8 @@ bool BlockCoder<Coder, Guide>::code_splits() {
           std::abs(double(p.x) - q.x) + std::abs(double(p.y) - q.y) + std::abs(double(p.z) - q.z);
     }
   }
-  mean_size_ = mesh_.triangles.empty() ? 0 : sum / (3 * double(mesh_.triangles.size()));
+  mean_size_ =
+      mesh_.triangles.empty() ? 0 : static_cast<float>(sum / (3 * double(mesh_.triangles.size())));
   std::vector<std::uint32_t> queue(mesh_.positions.size());
   for (std::uint32_t v = 0; v < queue.size(); ++v) queue[v] = v;
   for (std::size_t i = 0; i < queue.size(); ++i) {
@@ -90,47 +92,54 @@ bool BlockCoder<Coder, Guide>::code_splits() {
   return true;
 }
 
+// Leaves in places_ where the vertices of a fan are.
+template <class Coder, class Guide>
+typename BlockCoder<Coder, Guide>::Beside BlockCoder<Coder, Guide>::look_beside(std::uint32_t v,
+                                                                                bool fan) {
+  Beside beside;
+  const Vec3i center = mesh_.positions[v];
+  if (fan) {
+    beside.count = static_cast<std::uint32_t>(ring_.vertices.size());
+    for (std::size_t i = 0; i < ring_.vertices.size(); ++i) {
+      const std::uint32_t w = ring_.vertices[i];
+      places_[i] = seen_from(center, mesh_.positions[w]);
+      beside.sizes += size_of_each(places_[i]);
+      beside.split += generation_[w] > 0;
+    }
+    return beside;
+  }
+  const std::size_t count = std::min(around_[v].size(), kLargestRing);
+  for (const std::uint32_t t : around_[v].first(count)) {
+    for (const std::uint32_t w : mesh_.triangles[t]) {
+      if (w == v) continue;
+      beside.sizes += size_of_each(seen_from(center, mesh_.positions[w]));
+      beside.split += generation_[w] > 0;
+      ++beside.count;
+    }
+  }
+  return beside;
+}
+
 // Whether v is split. What tells: how often those above it were, how large its triangles are beside
 // those of the coarse end, how many they are, and whether those around it are split already.
 template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::code_flag(std::uint32_t v, bool fan, bool splits) {
   const std::size_t kind = !fan ? 0 : ring_.closed ? 1 : 2;
   const std::size_t generation = std::min<std::size_t>(generation_[v], kGenerations - 1);
-  // Whole numbers below 2^53, so that the order of sums does not matter.
-  std::int64_t whole_size = 0, split_corners = 0, corner_count = 0;
-  const Vec3i& center = mesh_.positions[v];
-  const auto count_corner = [&](std::uint32_t w, std::int64_t times) {
-    const Vec3i& p = mesh_.positions[w];
-    whole_size +=
-        times * (std::abs(std::int64_t(p.x) - center.x) + std::abs(std::int64_t(p.y) - center.y) +
-                 std::abs(std::int64_t(p.z) - center.z));
-    split_corners += generation_[w] > 0 ? times : 0;
-    corner_count += times;
-  };
-  if (fan) {  // all but the ends of an open one are corners of two triangles
-    for (const std::uint32_t w : ring_.vertices) count_corner(w, 2);
-    if (!ring_.closed) {
-      count_corner(ring_.vertices.front(), -1);
-      count_corner(ring_.vertices.back(), -1);
-    }
-  } else {
-    const std::size_t count = std::min(around_[v].size(), kLargestRing);
-    for (const std::uint32_t t : around_[v].first(count)) {
-      for (const std::uint32_t w : mesh_.triangles[t]) {
-        if (w != v) count_corner(w, 1);
-      }
-    }
-  }
-  const double size = static_cast<double>(whole_size), corners = static_cast<double>(corner_count);
+  const Beside beside = look_beside(v, fan);
   std::size_t size_class = 0, around_class = 0;
-  if (corners > 0) {
-    double limit = mean_size_ * corners * 0.35;
-    while (size_class + 1 < kSizes && size > limit) {
-      ++size_class;
-      limit *= 1.25;
-    }
-    around_class =
-        1 + static_cast<std::size_t>(3.99 * static_cast<double>(split_corners) / corners);
+  if (beside.count > 0) {
+    // Each 1.25 times the one before; what is infinite, or 0 times that, is not exceeded.
+    constexpr float kNoLimit = std::numeric_limits<float>::infinity();
+    constexpr FourFloats kLimits[] = {{0.35f, 0.4375f, 0.546875f, 0.68359375f},
+                                      {0.8544921875f, 1.068115234375f, 1.33514404f, 1.66893005f},
+                                      {2.08616257f, 2.60770321f, 3.25962901f, kNoLimit}};
+    const float count = static_cast<float>(beside.count), size = sum_of_three(beside.sizes);
+    const float mean = mean_size_ * count;
+    FourInts above{};
+    for (const FourFloats& limits : kLimits) above -= FourFloats{} + size > limits * mean;
+    size_class = static_cast<std::size_t>((above[0] + above[1]) + (above[2] + above[3]));
+    around_class = 1 + static_cast<std::size_t>(3.99f * static_cast<float>(beside.split) / count);
   }
   const std::size_t valence = std::min<std::size_t>(around_[v].size(), kValences - 1);
   MixedBit<4> bit({&flag_models_.by_size[generation][kind][size_class],
@@ -188,7 +197,7 @@ void BlockCoder<Coder, Guide>::code_shape(std::uint32_t v, bool fan) {
       }
     }
     if (coder_.bit(is_fan_[ring_.closed], is_fan)) {
-      code_fan(found, v);
+      code_fan(found);
       is_one_of_fan_ = true;
       is_closed_fan_ = ring_.closed;
       return;
@@ -246,11 +255,11 @@ void BlockCoder<Coder, Guide>::make_fan(const Fan& fan) {
 }
 
 template <class Coder, class Guide>
-void BlockCoder<Coder, Guide>::code_fan(Fan fan, std::uint32_t v) {
+void BlockCoder<Coder, Guide>::code_fan(Fan fan) {
   const std::uint32_t vertices = static_cast<std::uint32_t>(ring_.vertices.size());
   fan.single = !ring_.closed && coder_.bit(is_single_, fan.single);
   if (ring_.closed && vertices <= PairOdds::kMost) {
-    fan = code_likely_fan(fan, v);
+    fan = code_likely_fan(fan);
   } else if (fan.single) {
     fan.first = 0;
     fan.last = code_below(vertices, fan.last);
@@ -263,17 +272,14 @@ void BlockCoder<Coder, Guide>::code_fan(Fan fan, std::uint32_t v) {
 }
 
 template <class Coder, class Guide>
-typename BlockCoder<Coder, Guide>::Fan BlockCoder<Coder, Guide>::code_likely_fan(Fan fan,
-                                                                                 std::uint32_t v) {
-  ranked_.clear();
-  const Vec3i& center = mesh_.positions[v];
-  for (const std::uint32_t w : ring_.vertices) {
-    const Vec3i& p = mesh_.positions[w];
-    ranked_.push_back(
-        {rounded_to_float({double(p.x) - center.x, double(p.y) - center.y, double(p.z) - center.z}),
-         around_[w].size(), generation_[w] > 0});
+typename BlockCoder<Coder, Guide>::Fan BlockCoder<Coder, Guide>::code_likely_fan(Fan fan) {
+  const std::size_t count = ring_.vertices.size();
+  ranked_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t w = ring_.vertices[i];
+    ranked_[i] = {around_[w].size(), generation_[w] > 0};
   }
-  pair_odds_.rate(ranked_);
+  pair_odds_.rate(std::span(places_).first(count), ranked_);
   const PairOdds::Pair pair = pair_odds_.code(coder_, {fan.first, fan.last});
   pair_odds_.learn(pair);
   return {pair.first, pair.last};

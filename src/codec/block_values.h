@@ -1,9 +1,11 @@
 // The values of attributes at the fine end of a block; included by block_coder.h.
 #pragma once
 
-#include <cmath>
 #include "codec/block_coder.h"
 #include "codec/deterministic_math.h"
+
+#include <bit>
+#include <cmath>
 
 namespace crease::codec {
 
@@ -145,9 +147,9 @@ bool BlockCoder<Coder, Guide>::had_at_coarse_end(const BlockLayer& layer,
 }
 
 template <class Coder, class Guide>
-Vec3d BlockCoder<Coder, Guide>::direction_of(const BlockLayer& layer, const CodedValue& value) {
+Spot BlockCoder<Coder, Guide>::direction_of(const BlockLayer& layer, const CodedValue& value) {
   const Vec3f d = OctahedralCoding(layer.octahedral_bits).decode(octahedral_code(value));
-  return {double(d.x), double(d.y), double(d.z)};
+  return Spot{d.x, d.y, d.z, 0};
 }
 
 // One value for all corners_ of v, none of which is known. A vertex that stays mostly keeps the
@@ -170,7 +172,7 @@ CodedValue BlockCoder<Coder, Guide>::code_shared_value(const BlockLayer& layer,
   if (layer.octahedral_bits == 0) return code_value(layer, models, value, had);
   Sizes sizes;
   const DirectionCandidates candidates =
-      direction_candidates(v, has_had ? direction_of(layer, had) : Vec3d{}, sizes);
+      direction_candidates(v, has_had ? direction_of(layer, had) : Spot{}, sizes);
   const OctahedralCoding coding(layer.octahedral_bits);
   DirectionMixture mixture = models.direction.mixture(coding, candidates, sizes);
   const CodedValue result = coded(code_direction(coder_, coding, mixture, octahedral_code(value)));
@@ -186,8 +188,8 @@ CodedValue BlockCoder<Coder, Guide>::code_corner_direction(const BlockLayer& lay
                                                            LayerModels& models, std::size_t i,
                                                            bool fan, const CodedValue& value) {
   const std::uint32_t corner = corners_[i], t = corner / 3;
-  const Vec3d own = areas_[t];
-  Vec3d smooth = own, bent = own;
+  const Spot own = areas_[t].twice;
+  Spot smooth = own, bent = own;
   const std::size_t count = corners_.size();
   for (const bool back : {false, true}) {
     if (!fan) break;
@@ -199,33 +201,33 @@ CodedValue BlockCoder<Coder, Guide>::code_corner_direction(const BlockLayer& lay
       const std::size_t turned = bend(last, next);
       is_smooth = is_smooth && turned < 2;
       if (turned > 2) break;
-      if (is_smooth) smooth += areas_[next];
-      bent += areas_[next];
+      if (is_smooth) smooth += areas_[next].twice;
+      bent += areas_[next].twice;
       last = next;
     }
   }
   DirectionCandidates candidates;
-  Vec3d beside{};
+  Spot beside{};
   for (std::uint32_t c = 0; c < 3; ++c) {
     if (3 * t + c != corner && is_known_[3 * t + c])
       beside += direction_of(layer, values[3 * t + c]);
   }
-  const Vec3d had =
-      had_at_coarse_end(layer, corner) ? direction_of(layer, values[corner]) : Vec3d{};
-  const Vec3d first = tried_.empty() ? Vec3d{} : direction_of(layer, tried_.front());
-  const Vec3d one = normalized(own);
+  const Spot had = had_at_coarse_end(layer, corner) ? direction_of(layer, values[corner]) : Spot{};
+  const Spot first = tried_.empty() ? Spot{} : direction_of(layer, tried_.front());
+  const Spot one = areas_[t].unit;
+  beside = normalized(beside);
+  smooth = normalized(smooth);
   candidates.of = {one,
-                   normalized(smooth),
+                   smooth,
                    had,
                    normalized(bent),
                    first,
-                   normalized(beside),
+                   beside,
                    directions_.geometric[mesh_.triangles[t][corner % 3]],
                    one};
-  const double turned = length(normalized(smooth) - one);
-  const auto size = [](double x) { return rough_log2(static_cast<float>(x)); };
-  const Sizes sizes{size(turned + 0.002), size(length(had - one) + 0.002), size(length(own) + 1),
-                    size(length(normalized(beside) - one) + 0.002)};
+  const Sizes sizes = std::bit_cast<Sizes>(rough_log2_of_each(
+      FourFloats{length(smooth - one), length(had - one), length(own), length(beside - one)} +
+      FourFloats{0.002f, 0.002f, 1, 0.002f}));
   const OctahedralCoding coding(layer.octahedral_bits);
   DirectionMixture mixture = models.corner_direction.mixture(coding, candidates, sizes);
   const CodedValue result = coded(code_direction(coder_, coding, mixture, octahedral_code(value)));
@@ -238,96 +240,97 @@ void BlockCoder<Coder, Guide>::keep_coarse_normals() {
   bool any = false;
   for (const BlockLayer& layer : coding_.layers) any = any || layer.octahedral_bits > 0;
   if (!any) return;
-  coarse_normals_.assign(coarse_vertices_, {});
+  coarse_normals_.assign(coarse_vertices_, Spot{});
   for (std::uint32_t t = 0; t < coarse_triangles_; ++t) {
-    const Vec3d twice = twice_area(t);
+    const Spot twice = twice_area(t);
     for (const std::uint32_t v : mesh_.triangles[t]) coarse_normals_[v] += twice;
   }
-  for (Vec3d& n : coarse_normals_) n = normalized(n);
+  for (Spot& n : coarse_normals_) n = normalized(n);
 }
 
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::start_directions(const std::vector<CodedValue>& values,
                                                 const OctahedralCoding& coding) {
   const std::size_t vertices = mesh_.positions.size();
-  directions_.geometric.assign(vertices, {});
-  directions_.stored.assign(vertices, {});
+  directions_.geometric.assign(vertices, Spot{});
+  directions_.stored.assign(vertices, Spot{});
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-    const Vec3d& twice = areas_[t];
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t v = mesh_.triangles[t][c];
-      directions_.geometric[v] += twice;
-      if (!is_known_[3 * t + c] || directions_.stored[v] != Vec3d{}) continue;
+      directions_.geometric[v] += areas_[t].twice;
+      if (!is_known_[3 * t + c] || !is_zero(directions_.stored[v])) continue;
       const Vec3f d = coding.decode(octahedral_code(values[3 * t + c]));
-      directions_.stored[v] = {double(d.x), double(d.y), double(d.z)};
+      directions_.stored[v] = Spot{d.x, d.y, d.z, 0};
     }
   }
-  for (Vec3d& n : directions_.geometric) n = normalized(n);
+  for (Spot& n : directions_.geometric) n = normalized(n);
 }
 
 template <class Coder, class Guide>
-DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t v,
-                                                                   const Vec3d& had,
+DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t v, const Spot& had,
                                                                    Sizes& sizes) const {
-  const Vec3d& geometric = directions_.geometric[v];
-  Vec3d even{}, angles{}, off{}, beside{};
-  double known = 0, spread = 0, count = 0;
-  struct Neighbour {
-    std::uint32_t vertex = kNone;
-    Vec3d step;
-    double square = 0;
-  };
-  const Vec3i& q = mesh_.positions[v];
-  const auto seen = [&](std::uint32_t w) {
-    const Vec3i& p = mesh_.positions[w];
-    const Vec3d step{double(p.x) - q.x, double(p.y) - q.y, double(p.z) - q.z};
-    return Neighbour{w, step, dot(step, step)};
-  };
-  const auto hear = [&](std::uint32_t w) {
-    const Vec3d& stored = directions_.stored[w];
-    if (stored == Vec3d{}) return;
-    off += stored - directions_.geometric[w];
-    beside += stored;
-    known += 1;
-  };
-  const std::size_t triangles = std::min(around_[v].size(), kLargestRing);
-  Neighbour a, b;
-  for (const std::uint32_t t : around_[v].first(triangles)) {
-    const Corners& corners = mesh_.triangles[t];
-    const std::size_t c = std::size_t(corner_of(corners, v));
-    const std::uint32_t after = corners[c < 2 ? c + 1 : 0], before = corners[c > 0 ? c - 1 : 2];
-    a = b;  // mostly they follow each other
-    if (after != b.vertex) a = seen(after);
-    b = seen(before);
-    const double lengths = a.square * b.square;
-    if (lengths > 0) {
-      const Vec3d n = cross(a.step, b.step);
-      const double size = length(n), angle = rough_angle(size, dot(a.step, b.step));
-      even += n * (1 / std::sqrt(lengths));
-      angles += (size > 0 ? n * (1 / size) : n) * angle;
+  const Spot geometric = directions_.geometric[v];
+  Spot even{}, angles{}, off{}, beside{};
+  FourFloats spread{};  // by component
+  float known = 0;
+  const Vec3i q = mesh_.positions[v];
+  const std::span<const std::uint32_t> list =
+      around_[v].first(std::min(around_[v].size(), kLargestRing));
+  std::uint32_t last = kNone;  // mostly the next triangle begins there
+  Spot at_last{};
+  for (std::size_t first = 0; first < list.size(); first += 4) {
+    std::array<Spot, 4> normal;
+    FourFloats cosine{}, squares{}, sine2{};  // of four triangles, times lengths
+    const std::size_t count = std::min<std::size_t>(list.size() - first, 4);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Corners& corners = mesh_.triangles[list[first + i]];
+      const std::size_t c = corner_of(corners, v);
+      const std::uint32_t after = corners[kCornerAfter[c]], before = corners[kCornerBefore[c]];
+      const Spot a = after == last ? at_last : seen_from(q, mesh_.positions[after]);
+      const Spot b = seen_from(q, mesh_.positions[before]);
+      last = before;
+      at_last = b;
+      normal[i] = cross_before_turn(a, b);
+      cosine[i] = dot(a, b);
+      squares[i] = dot(a, a) * dot(b, b);
+      const Spot areas = normal[i] * normal[i];
+      sine2[i] = areas[1] + areas[2] + areas[0];  // x, y, z after the turn
+      const Spot &stored = directions_.stored[after], &shape = directions_.geometric[after];
+      spread += shape * geometric;
+      if (is_zero(stored)) continue;
+      off += stored - shape;
+      beside += stored;
+      known += 1;
     }
-    count += 1;
-    spread += dot(directions_.geometric[after], geometric);
-    hear(after);
-    hear(before);
+    const FourFloats sine = root(sine2);
+    const FourFloats by_size = 1.0f / root(squares), by_area = rough_angle(sine, cosine) / sine;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(sine[i] > 0)) continue;
+      even += normal[i] * by_size[i];
+      angles += normal[i] * by_area[i];
+    }
   }
   DirectionCandidates result;
-  const Vec3d mean_off = known > 0 ? off * (1 / known) : Vec3d{};
+  const Spot mean_off = known > 0 ? off * (1 / known) : Spot{};
   const std::uint32_t origin = origin_[v];
+  const bool has_had = !is_zero(had);
   result.of = {geometric,
-               normalized(even),
+               normalized(turned(even)),
                had,
-               had == Vec3d{} || origin >= coarse_normals_.size()
-                   ? Vec3d{}
-                   : geometric + had - coarse_normals_[origin],
-               known > 0 ? geometric + mean_off : Vec3d{},
+               has_had && origin < coarse_normals_.size()
+                   ? geometric + had - coarse_normals_[origin]
+                   : Spot{},
+               known > 0 ? geometric + mean_off : Spot{},
                normalized(beside),
-               normalized(angles),
-               had == Vec3d{} ? Vec3d{} : had + geometric};
-  const auto size = [](double x) { return rough_log2(static_cast<float>(x)); };
-  sizes = {size(length(mean_off) + 0.002),
-           size(std::sqrt(std::max(0.0, 1 - (count > 0 ? spread / count : 1))) + 0.002),
-           size(length(had - geometric) + 0.002), known > 0 ? 1.0f : 0.0f};
+               normalized(turned(angles)),
+               has_had ? had + geometric : Spot{}};
+  const float mean_spread =
+      list.empty() ? 1 : sum_of_three(spread) / static_cast<float>(list.size());
+  const FourFloats logarithms =
+      rough_log2_of_each(FourFloats{length(mean_off), std::sqrt(std::max(0.0f, 1 - mean_spread)),
+                                    length(had - geometric), 0} +
+                         0.002f);
+  sizes = {logarithms[0], logarithms[1], logarithms[2], known > 0 ? 1.0f : 0.0f};
   return result;
 }
 

@@ -25,25 +25,30 @@ class ContractingPatch {
   // Replaces `second` by `first`. Those that have both vanish; they are what is returned, with
   // their corners as they were, until the next call.
   std::span<const std::uint32_t> contract(std::uint32_t first, std::uint32_t second) {
-    vanished_.clear();
+    const std::span<const std::uint32_t> around = around_[second];
+    vanished_.resize(around.size());
+    moved_.resize(around.size());
+    std::size_t gone = 0;
     moved_count_ = 0;
-    for (std::size_t i = 0; i < around_[second].size(); ++i) {
-      const std::uint32_t t = around_[second][i];
-      Corners& corners = corners_[t];
-      if (corners[0] == first || corners[1] == first || corners[2] == first) {
-        vanished_.push_back(t);
-      } else {
-        corners[corner_of(corners, second)] = first;
-        around_.add(first, t);
-        ++moved_count_;
-      }
+    for (const std::uint32_t t : around) {  // without a branch, since nobody can tell which vanish
+      const Corners& corners = corners_[t];
+      const bool vanishes = (corners[0] == first) | (corners[1] == first) | (corners[2] == first);
+      vanished_[gone] = moved_[moved_count_] = t;
+      gone += vanishes;
+      moved_count_ += !vanishes;
+    }
+    vanished_.resize(gone);
+    for (std::size_t i = 0; i < moved_count_; ++i) {
+      Corners& corners = corners_[moved_[i]];
+      corners[corner_of(corners, second)] = first;
     }
     around_.clear(second);
     for (const std::uint32_t t : vanished_) {
       for (const std::uint32_t v : corners_[t]) {
-        if (v != second) around_.remove_if(v, [t](std::uint32_t other) { return other == t; });
+        if (v != second) around_.remove(v, t);
       }
     }
+    around_.add(first, std::span(moved_).first(moved_count_));
     return vanished_;
   }
 
@@ -53,7 +58,7 @@ class ContractingPatch {
  private:
   std::vector<Corners> corners_;
   TriangleLists around_;
-  std::vector<std::uint32_t> vanished_;
+  std::vector<std::uint32_t> vanished_, moved_;
   std::size_t moved_count_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "codec/direction_mixture.h"
 
+#include "base/wide.h"
+
 namespace crease::codec {
 
 namespace {
@@ -18,6 +20,30 @@ constexpr DirectionStart kOfCorners = {
     {6.823f, 5.426f, 2.401f, 4.111f, 2.441f, 1.739f, 2.336f, 2.020f},
     {{{0.381f, 0.305f, -0.288f, 0.123f}, {0.370f, 0.253f, -0.118f, 0.031f}}}};
 
+// Where directions lie on the square, on the half that is inside and on the one outside.
+struct OnSquare {
+  std::array<EightFloats, 2> inner, outer;
+  EightInts is_below, is_any;  // z < 0; no zero vector
+};
+
+[[gnu::always_inline]] inline OnSquare on_square(const std::array<PerComponent, 3>& along,
+                                                 float m) {
+  const EightFloats x(along[0]), y(along[1]), z(along[2]);
+  const EightFloats sum = size_of(x) + size_of(y) + size_of(z), unit = EightFloats(m) / sum;
+  const EightFloats px = x * unit, py = y * unit;
+  return {{px, py},
+          {with_sign_of(m - size_of(py), px), with_sign_of(m - size_of(px), py)},
+          EightFloats(0.0f) > z,
+          sum > EightFloats(0.0f)};
+}
+
+// Of the first of them.
+OctahedralCode code_near_first(const OctahedralCoding& coding, const OnSquare& of) {
+  if (of.is_any.low[0] == 0) return OctahedralCoding::kZero;
+  const std::array<EightFloats, 2>& p = of.is_below.low[0] != 0 ? of.outer : of.inner;
+  return coding.near(p[0].low[0], p[1].low[0]);
+}
+
 }  // namespace
 
 DirectionModel::DirectionModel(bool of_corners) {
@@ -26,22 +52,34 @@ DirectionModel::DirectionModel(bool of_corners) {
   scales_ = {start.scale, start.slope};
 }
 
-DirectionMixture DirectionModel::mixture(const OctahedralCoding& coding,
-                                         const DirectionCandidates& candidates,
-                                         const Sizes& sizes) const {
+CREASE_WIDE DirectionMixture DirectionModel::mixture(const OctahedralCoding& coding,
+                                                     const DirectionCandidates& candidates,
+                                                     const Sizes& sizes) const {
   DirectionMixture result;
-  result.weight = weights_.of;
-  result.scale = scales_.at(sizes);
-  result.start = coding.frame_of(coding.near(candidates.of[0]));
-  for (std::size_t k = 0; k < kComponents; ++k) {
-    if (candidates.of[k] == Vec3d{}) {
-      result.weight[k] = 0;
-      continue;
-    }
-    const std::array<float, 2> off = coding.residual_of(candidates.of[k], result.start);
-    result.center[0][k] = off[0];
-    result.center[1][k] = off[1];
+  std::array<PerComponent, 3> along;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < kComponents; ++k) along[i][k] = candidates.of[k][i];
   }
+  const float m = static_cast<float>(coding.max_component() / 2);
+  const OnSquare of = on_square(along, m);
+  result.start = coding.frame_of(code_near_first(coding, of));
+  const auto& start = result.start;
+  const EightInts is_over = of.is_below ^ (start.flip ? -1 : 0);
+  EightFloats x = chosen(is_over, of.outer[0], of.inner[0]);
+  EightFloats y = chosen(is_over, of.outer[1], of.inner[1]);
+  if (start.turns & 1) {
+    const EightFloats was = x;
+    x = 0.0f - y;
+    y = was;
+  }
+  if (start.turns & 2) {
+    x = 0.0f - x;
+    y = 0.0f - y;
+  }
+  (of.is_any & (x - static_cast<float>(start.predicted.x))).store(result.center[0]);
+  (of.is_any & (y - static_cast<float>(start.predicted.y))).store(result.center[1]);
+  (of.is_any & EightFloats(weights_.of)).store(result.weight);
+  result.scale = scales_.at(sizes);
   return result;
 }
 

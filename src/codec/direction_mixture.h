@@ -9,6 +9,7 @@
 
 #include "codec/mixture_model.h"
 #include "codec/place_mixture.h"
+#include "codec/spot.h"
 #include "mesh/octahedral.h"
 
 #include <array>
@@ -24,7 +25,7 @@ struct DirectionMixture {
 
 // Where a direction may be; zero vectors are left out.
 struct DirectionCandidates {
-  std::array<Vec3d, kComponents> of{};
+  std::array<Spot, kComponents> of{};
 };
 
 // Leaves in `mixture.weight` how likely each component was right.

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace crease::codec {
 
@@ -79,6 +80,30 @@ struct EightInts {
 inline EightInts operator>(const EightFloats& a, const EightFloats& b) {
   return {a.low > b.low, a.high > b.high};
 }
+inline EightInts operator^(const EightInts& is, std::int32_t other) {
+  return {is.low ^ other, is.high ^ other};
+}
+inline EightFloats size_of(const EightFloats& x) {
+  return {std::bit_cast<FourFloats>(std::bit_cast<FourInts>(x.low) & 0x7fffffff),
+          std::bit_cast<FourFloats>(std::bit_cast<FourInts>(x.high) & 0x7fffffff)};
+}
+// Of `size`, whose own sign does not count.
+inline FourFloats with_sign_of(const FourFloats& size, const FourFloats& sign) {
+  constexpr std::int32_t kSign = std::numeric_limits<std::int32_t>::min();
+  return std::bit_cast<FourFloats>((std::bit_cast<FourInts>(size) & 0x7fffffff) |
+                                   (std::bit_cast<FourInts>(sign) & kSign));
+}
+inline EightFloats with_sign_of(const EightFloats& size, const EightFloats& sign) {
+  return {with_sign_of(size.low, sign.low), with_sign_of(size.high, sign.high)};
+}
+// a where something holds, else b.
+inline EightFloats chosen(const EightInts& is, const EightFloats& a, const EightFloats& b) {
+  const auto of = [](const FourInts& i, const FourFloats& x, const FourFloats& y) {
+    return std::bit_cast<FourFloats>((std::bit_cast<FourInts>(x) & i) |
+                                     (std::bit_cast<FourInts>(y) & ~i));
+  };
+  return {of(is.low, a.low, b.low), of(is.high, a.high, b.high)};
+}
 // 0 where it does not hold.
 inline EightFloats operator&(const EightInts& is, const EightFloats& x) {
   return {std::bit_cast<FourFloats>(is.low & std::bit_cast<FourInts>(x.low)),
@@ -89,6 +114,24 @@ inline EightFloats operator&(const EightInts& is, const EightFloats& x) {
 inline float sum_of(const EightFloats& x) {
   const FourFloats s = x.low + x.high;
   return (s[0] + s[1]) + (s[2] + s[3]);
+}
+
+// About log2(x), each as rough_log2().
+inline FourFloats rough_log2_of_each(const FourFloats& x) {
+  const FourInts bits = std::bit_cast<FourInts>(x);
+  const FourFloats exponent = __builtin_convertvector((bits >> 23) - 127, FourFloats);
+  const FourFloats t = std::bit_cast<FourFloats>((bits & ((1 << 23) - 1)) | 127 << 23) - 1.0f;
+  return exponent + t + 0.34f * t * (1.0f - t);
+}
+
+// The angle whose sine and cosine are as y, not below zero, to x: in radians, within 0.00002.
+inline FourFloats rough_angle(const FourFloats& y, const FourFloats& x) {
+  const FourFloats width = greater(x, -x), most = greater(y, width);
+  const FourFloats t = lesser(y, width) / most, s = t * t;
+  const FourFloats low =
+      t * (0.999866f + s * (-0.3302995f + s * (0.180141f + s * (-0.085133f + s * 0.0208351f))));
+  const FourFloats acute = y > width ? 1.57079633f - low : low;
+  return x < FourFloats{} ? 3.14159265f - acute : acute;
 }
 
 // About 2^x, each as rough_exp2().

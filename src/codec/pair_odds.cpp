@@ -4,6 +4,7 @@
 #include "codec/eight_floats.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace crease::codec {
@@ -72,21 +73,31 @@ PairOdds::PerVertex PairOdds::rate_vertices(std::span<const RingVertex> ring, fl
   return rated;
 }
 
-CREASE_WIDE void PairOdds::rate(std::span<const RingVertex> ring) {
+CREASE_WIDE void PairOdds::rate(std::span<const Spot> places, std::span<const RingVertex> ring) {
   const std::size_t n = ring.size();
   count_ = static_cast<std::uint32_t>(n);
   PerVertex x{}, y{}, z{}, sum_x{}, sum_y{}, sum_z{}, inverse_length{}, of_arc{};
-  Vec3f all{};
+  Spot to_there{};
+  for (std::size_t i = 0; i < n; ++i) {
+    const Spot& p = places[i];
+    to_there += p;
+    x[i] = p[0], y[i] = p[1], z[i] = p[2];
+    sum_x[i] = to_there[0], sum_y[i] = to_there[1], sum_z[i] = to_there[2];
+  }
+  PerVertex lengths;
+  for (std::size_t i = 0; i < n; i += 4) {
+    const FourFloats px = four_at(&x[i]), py = four_at(&y[i]), pz = four_at(&z[i]);
+    const FourFloats l = root(px * px + py * py + pz * pz), inverse = 1.0f / l;
+    const FourFloats known =
+        std::bit_cast<FourFloats>(std::bit_cast<FourInts>(inverse) & (l > FourFloats{}));
+    std::memcpy(&lengths[i], &l, sizeof l);
+    std::memcpy(&inverse_length[i], &known, sizeof known);
+  }
+  const Vec3f all{to_there[0], to_there[1], to_there[2]};
   float mean = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3f& p = ring[i].position;
-    const float l = length(p);
-    x[i] = p.x, y[i] = p.y, z[i] = p.z;
-    inverse_length[i] = l > 0 ? 1 / l : 0;
-    vertex_features_[i][0] = l;
-    mean += l;
-    all += p;
-    sum_x[i] = all.x, sum_y[i] = all.y, sum_z[i] = all.z;
+    vertex_features_[i][0] = lengths[i];
+    mean += lengths[i];
   }
   mean = mean > 0 ? mean / static_cast<float>(n) : 1;
   const float inverse = 1 / mean;
@@ -101,7 +112,7 @@ CREASE_WIDE void PairOdds::rate(std::span<const RingVertex> ring) {
   Vec3f before{};  // the sum of those before i
   for (std::size_t i = 0; i + 1 < n; ++i) {
     row_[i] = four;
-    const Vec3f p = ring[i].position, outside = all + before;
+    const Vec3f p{x[i], y[i], z[i]}, outside = all + before;
     for (std::size_t j = i + 1; j < n; j += 4, ++four) {
       const FourFloats qx = four_at(&x[j]), qy = four_at(&y[j]), qz = four_at(&z[j]);
       const FourFloats ex = qx + p.x, ey = qy + p.y, ez = qz + p.z;

@@ -2,13 +2,13 @@
 // a score that learns, within a block, from the splits before. Floats without fused products, as
 // in predict_position.h.
 //
-//   odds.rate(ring);
+//   odds.rate(places, ring);
 //   const PairOdds::Pair pair = odds.code(coder, known_pair);
 //   odds.learn(pair);
 #pragma once
 
 #include "codec/shares.h"
-#include "crease/vec.h"
+#include "codec/spot.h"
 
 #include <array>
 #include <cstddef>
@@ -18,7 +18,6 @@
 namespace crease::codec {
 
 struct RingVertex {
-  Vec3f position{};           // from the centre, grid units
   std::size_t triangles = 0;  // at the vertex
   bool was_split = false;     // in this block
 };
@@ -30,8 +29,9 @@ class PairOdds {
     std::uint32_t first = 0, last = 1;  // places in the ring, first < last
   };
 
-  // Of a closed ring of 2 to kMost vertices. Time O(n^2).
-  void rate(std::span<const RingVertex> ring);
+  // Of a closed ring of 2 to kMost vertices, whose places are seen from the centre, grid units.
+  // Time O(n^2).
+  void rate(std::span<const Spot> places, std::span<const RingVertex> ring);
 
   // The first, then the last of those after it.
   template <class Coder>

@@ -83,7 +83,7 @@ class LineFinder {
     for (const std::uint32_t t : around) {
       const Corners& corners = mesh_.triangles[t];
       const std::size_t c = corner_of(corners, v);
-      const std::uint32_t next = corners[c < 2 ? c + 1 : 0], last = corners[c > 0 ? c - 1 : 2];
+      const std::uint32_t next = corners[kCornerAfter[c]], last = corners[kCornerBefore[c]];
       const std::uint64_t bit = std::uint64_t(1) << (next & 63);
       std::uint64_t& word = seen[next >> 6 & 3];
       again |= word & bit;

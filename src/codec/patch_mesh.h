@@ -5,6 +5,7 @@
 #include "mesh/octahedral.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -32,10 +33,13 @@ inline OctahedralCode octahedral_code(const CodedValue& value) {
 
 using Corners = std::array<std::uint32_t, 3>;  // vertices of a triangle
 
-// Which of the corners v is; it must be one.
+// Which of the corners v is; it must be one. No branch, since nobody can tell which.
 constexpr std::uint32_t corner_of(const Corners& corners, std::uint32_t v) {
-  return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
+  const std::uint32_t is_later = corners[0] != v;
+  return is_later + (is_later & std::uint32_t(corners[1] != v));
 }
+// The corners after and before each.
+inline constexpr std::size_t kCornerAfter[] = {1, 2, 0}, kCornerBefore[] = {2, 0, 1};
 
 struct PatchMesh {
   std::vector<Vec3i> positions;                 // per vertex, grid units

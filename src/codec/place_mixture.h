@@ -26,6 +26,10 @@ struct PlaceMixture {
 inline float rise(const std::array<float, 3>& normal, float first, float second) {
   return -(normal[0] * first + normal[1] * second) / normal[2];
 }
+inline EightFloats rise(const std::array<float, 3>& normal, const EightFloats& first,
+                        const EightFloats& second) {
+  return 0.0f - (normal[0] * first + normal[1] * second) / normal[2];
+}
 inline std::int32_t rounded(float x) {
   constexpr float kLimit = 1 << 30;
   if (!(x > -kLimit)) x = -kLimit;  // or not a number

@@ -4,6 +4,7 @@
 #include "codec/deterministic_math.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace crease::codec {
@@ -87,11 +88,28 @@ const Scales& scales_of(Leaving leaving) {
   return is_second ? kSecond : kFirst;
 }
 
+// Places along the axes of the surroundings; along the third, above the tangent plane.
+[[gnu::always_inline]] inline void expect(const std::array<Spot, kComponents>& places,
+                                          const Surroundings& around, PlaceMixture& result) {
+  std::array<PerComponent, 3> along;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < kComponents; ++k) along[i][k] = places[k][i];
+  }
+  const std::array<int, 3>& axis = around.axis;
+  const Spot& n = around.normal;
+  if (n[axis[2]] != 0) result.direction = {n[axis[0]], n[axis[1]], n[axis[2]]};
+  result.center[0] = along[std::size_t(axis[0])];
+  result.center[1] = along[std::size_t(axis[1])];
+  const EightFloats first(result.center[0]), second(result.center[1]);
+  const EightFloats third(along[std::size_t(axis[2])]);
+  (third - rise(result.direction, first, second)).store(result.center[2]);
+}
+
 }  // namespace
 
 Sizes sizes(const Surroundings& around, const Miss& miss) {
-  return {rough_log2(miss.tangent + 0.25f), rough_log2(miss.normal + 0.25f),
-          rough_log2(around.mean_edge + 1), rough_log2(around.bend + 1)};
+  return std::bit_cast<Sizes>(rough_log2_of_each(FourFloats{
+      miss.tangent + 0.25f, miss.normal + 0.25f, around.mean_edge + 1, around.bend + 1}));
 }
 
 PlaceModel::PlaceModel(Leaving leaving) : leaving_(leaving) {
@@ -111,13 +129,13 @@ CREASE_WIDE PlaceMixture PlaceModel::mixture(const Surroundings& around, bool se
                                              std::size_t triangles, const ChildRing& ring,
                                              const Sizes& sizes) const {
   const Weights& w = kWeights[std::size_t(leaving_)];
-  const Vec3f &own = around.middle[second], &other = around.middle[!second], &n = around.normal;
+  const Spot &own = around.middle[second], &other = around.middle[!second], &n = around.normal;
   const float along = w.normal_own * dot(own, n) + w.normal_other * dot(other, n) +
                       w.normal_thirds * dot(around.thirds, n) +
                       w.normal_sibling * dot(ring.sibling, n);
-  Vec3f mean = own * w.own + other * w.other + around.thirds * w.thirds + ring.sibling * w.sibling +
-               n * along;
-  Vec3f sibling = ring.sibling, second_guess = own * 0.6f;
+  Spot mean = own * w.own + other * w.other + around.thirds * w.thirds + ring.sibling * w.sibling +
+              n * along;
+  Spot sibling = ring.sibling, second_guess = own * 0.6f;
   const float away = 1 - ring.share;  // of the way between the two: to this one
   if (leaving_ == Leaving::SecondBetween) {
     mean = mean * away;
@@ -129,38 +147,30 @@ CREASE_WIDE PlaceMixture PlaceModel::mixture(const Surroundings& around, bool se
 
   PlaceMixture result;
   result.weight = weights_[triangles_class(triangles)].of;
-  const std::array<int, 3>& axis = around.axis;
-  if (n[axis[2]] != 0) result.direction = {n[axis[0]], n[axis[1]], n[axis[2]]};
-  const auto expect = [&](std::size_t k, const Vec3f& place) {
-    result.center[0][k] = place[axis[0]];
-    result.center[1][k] = place[axis[1]];
-    result.center[2][k] = place[axis[2]] - rise(result.direction, place[axis[0]], place[axis[1]]);
-  };
-  expect(0, mean);
-  expect(1, second_guess);
-  expect(7, {});
+  std::array<Spot, kComponents> expected{mean, second_guess};
   const std::size_t arc = ring.arc.size(), all = arc + 1;
   if (arc > 0) {
     // Round the ring from the sibling on: halfway between vertices that are opposite, and
     // parallelograms over the triangles at the sibling.
     const auto at = [&](std::size_t i) { return i == 0 ? sibling : ring.arc[i - 1]; };
-    expect(2, (at(0) + at(all / 2)) * 0.5f);
-    expect(3, ring.arc[arc - 1] + sibling - ring.beyond[1]);
-    expect(4, ring.arc[0] + sibling - ring.beyond[0]);
-    expect(5, (at(1) + at((1 + all / 2) % all)) * 0.5f);
-    expect(6, (at(all - 1) + at(all - 1 - all / 2)) * 0.5f);
+    const std::size_t half = all / 2, over = 1 + half;
+    expected[2] = (sibling + at(half)) * 0.5f;
+    expected[3] = ring.arc[arc - 1] + sibling - ring.beyond[1];
+    expected[4] = ring.arc[0] + sibling - ring.beyond[0];
+    expected[5] = (ring.arc[0] + at(over < all ? over : over - all)) * 0.5f;
+    expected[6] = (at(all - 1) + at(all - 1 - half)) * 0.5f;
   } else {
     for (std::size_t k = 2; k < 7; ++k) result.weight[k] = 0;
   }
+  expect(expected, around, result);
 
-  result.tangent = tangent_.at(sizes);
-  result.normal = normal_.at(sizes);
+  EightFloats tangent(tangent_.at(sizes)), normal(normal_.at(sizes));
   if (leaving_ == Leaving::SecondBetween) {
-    for (std::size_t k = 0; k < kComponents; ++k) {
-      result.tangent[k] *= 2 * away;
-      result.normal[k] *= 2 * away;
-    }
+    tangent = tangent * (2 * away);
+    normal = normal * (2 * away);
   }
+  tangent.store(result.tangent);
+  normal.store(result.normal);
   return result;
 }
 

@@ -28,9 +28,9 @@ enum class Leaving : std::uint8_t { One, SecondOfBoth, FirstOfBoth, SecondBetwee
 
 // A child's neighbours, where they are one closed fan, from the parent's place.
 struct ChildRing {
-  std::span<const Vec3f> arc;     // without the sibling, in order; empty: they are no such fan
-  std::array<Vec3f, 2> beyond{};  // what precedes and follows them at the sibling
-  Vec3f sibling{};                // or zero where its place is not known
+  std::span<const Spot> arc;     // without the sibling, in order; empty: they are no such fan
+  std::array<Spot, 2> beyond{};  // what precedes and follows them at the sibling
+  Spot sibling{};                // or zero where its place is not known
   float share = 0.5f;  // of the way between the two from the sibling to the parent, if it is known
 };
 

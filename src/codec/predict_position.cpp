@@ -9,17 +9,53 @@ namespace crease::codec {
 
 namespace {
 
-Vec3d to_double(const Vec3i& p) {
-  return {double(p.x), double(p.y), double(p.z)};
-}
+// What the triangles of one child add up to.
+struct ChildSums {
+  Spot places{}, sizes{};
+  Spot normal{};  // twice their areas, before a turn
+  std::uint32_t count = 0;
 
-constexpr std::size_t kAfter[] = {1, 2, 0}, kBefore[] = {2, 0, 1};
+  void add_triangle(const Spot& after, const Spot& before) {
+    normal += cross_before_turn(after, before);
+    places += after;
+    places += before;
+    sizes += size_of_each(after);
+    sizes += size_of_each(before);
+    count += 2;
+  }
+  void add_third(const Spot& third) {
+    places += third;
+    sizes += size_of_each(third);
+    ++count;
+  }
+  Spot middle() const { return count > 0 ? places * (1 / static_cast<float>(count)) : Spot{}; }
+};
+
+Surroundings surroundings_of(const ChildSums& t, const ChildSums& u, const Spot& thirds,
+                             std::uint32_t third_count, const Vec3i& parent) {
+  Surroundings result;
+  result.parent = parent;
+  result.middle = {t.middle(), u.middle()};
+  if (third_count > 0) result.thirds = thirds * (1 / static_cast<float>(third_count));
+  const Spot normal = turned(t.normal + u.normal);
+  result.normal = normalized(normal);
+  const float size = sum_of_three(t.sizes + u.sizes);
+  const std::uint32_t count = t.count + u.count;
+  result.mean_edge = count > 0 ? size / static_cast<float>(count) : 0;
+  const float cosine = dot(normalized(turned(t.normal)), normalized(turned(u.normal)));
+  result.bend = result.mean_edge * std::sqrt(std::max(0.0f, 1 - cosine));
+
+  const Spot along = size_of_each(normal);
+  int main = along[1] > along[0] ? 1 : 0;
+  if (along[2] > along[main]) main = 2;
+  result.axis = {main < 2 ? main + 1 : 0, main > 0 ? main - 1 : 2, main};
+  return result;
+}
 
 // From the parent's place.
 struct Neighbour {
   std::uint32_t vertex = kNone;
-  Vec3d place;
-  double size = 0;  // |x| + |y| + |z|
+  Spot place{};
 };
 
 }  // namespace
@@ -27,63 +63,48 @@ struct Neighbour {
 Surroundings surroundings(const PatchMesh& mesh, std::span<const std::uint32_t> around_t,
                           std::span<const std::uint32_t> around_u, std::uint32_t t, std::uint32_t u,
                           const Vec3i& parent) {
-  Surroundings result;
-  result.parent = parent;
-  const Vec3d center = to_double(parent);
-  Vec3d thirds{};
-  std::array<Vec3d, 2> normals{};  // of each child's triangles, twice their area long
-  double size = 0;
-  std::uint32_t third_count = 0, size_count = 0;
+  std::array<ChildSums, 2> sums;
+  Spot thirds{};
+  std::uint32_t third_count = 0;
   const auto seen = [&](std::uint32_t w) {
-    const Vec3d p = to_double(mesh.positions[w]) - center;
-    return Neighbour{w, p, std::abs(p.x) + std::abs(p.y) + std::abs(p.z)};
+    return Neighbour{w, seen_from(parent, mesh.positions[w])};
   };
   for (const bool second : {false, true}) {
     const std::uint32_t own = second ? u : t, other = second ? t : u;
-    Vec3d sum{}, normal{};
-    std::uint32_t count = 0;
     Neighbour a, b;
     for (const std::uint32_t triangle : second ? around_u : around_t) {
       const Corners& corners = mesh.triangles[triangle];
       const std::size_t c = corner_of(corners, own);
-      const std::uint32_t after = corners[kAfter[c]], before = corners[kBefore[c]];
+      const std::uint32_t after = corners[kCornerAfter[c]], before = corners[kCornerBefore[c]];
       a = b;  // mostly they follow each other
       if (after != b.vertex) a = seen(after);
       b = seen(before);
-      if (after == other || before == other) {
-        const Neighbour& third = after == other ? b : a;
-        thirds += third.place;
-        ++third_count;
-        sum += third.place;
-        size += third.size;
-        ++count;
+      if (after != other && before != other) {
+        sums[second].add_triangle(a.place, b.place);
         continue;
       }
-      normal += cross(a.place, b.place);
-      sum += a.place;
-      sum += b.place;
-      size += a.size;
-      size += b.size;
-      count += 2;
+      const Spot& third = after == other ? b.place : a.place;
+      thirds += third;
+      ++third_count;
+      sums[second].add_third(third);
     }
-    normals[second] = normal;
-    size_count += count;
-    if (count > 0) result.middle[second] = rounded_to_float(sum * (1 / double(count)));
   }
-  if (third_count > 0) result.thirds = rounded_to_float(thirds * (1 / double(third_count)));
-  const Vec3d normal = normals[0] + normals[1];
-  result.normal = rounded_to_float(normalized(normal));
-  const double mean_edge = size_count > 0 ? size / double(size_count) : 0;
-  result.mean_edge = static_cast<float>(mean_edge);
-  const double cosine = dot(normalized(normals[0]), normalized(normals[1]));
-  result.bend = static_cast<float>(mean_edge * std::sqrt(std::max(0.0, 1 - cosine)));
+  return surroundings_of(sums[0], sums[1], thirds, third_count, parent);
+}
 
-  int main = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (std::abs(normal[k]) > std::abs(normal[main])) main = k;
-  }
-  result.axis = {(main + 1) % 3, (main + 2) % 3, main};
-  return result;
+Surroundings surroundings_in_fan(std::span<const Spot> places, std::size_t first, std::size_t last,
+                                 bool single, const Vec3i& parent) {
+  ChildSums t, u;
+  const Spot &at_first = places[first], &at_last = places[last];
+  for (std::size_t k = 0; k < first; ++k) t.add_triangle(places[k], places[k + 1]);
+  if (!single) t.add_third(at_first);
+  t.add_third(at_last);
+  for (std::size_t k = last; k + 1 < places.size(); ++k) t.add_triangle(places[k], places[k + 1]);
+  for (std::size_t k = first; k < last; ++k) u.add_triangle(places[k], places[k + 1]);
+  u.add_third(at_last);
+  if (!single) u.add_third(at_first);
+  if (single) return surroundings_of(t, u, at_last + at_last, 2, parent);
+  return surroundings_of(t, u, at_first + at_last + at_last + at_first, 4, parent);
 }
 
 }  // namespace crease::codec

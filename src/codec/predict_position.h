@@ -1,8 +1,9 @@
-// Where the two children of a split are expected, from the triangles that they have. Doubles
-// without fused products: encoder and decoder get the same to the bit on every machine.
+// Where the two children of a split are expected, from the triangles that they have. Floats without
+// fused products: encoder and decoder get the same to the bit on every machine.
 #pragma once
 
 #include "codec/patch_mesh.h"
+#include "codec/spot.h"
 
 #include <array>
 #include <cstdint>
@@ -30,17 +31,13 @@ struct Miss {
 // A split's surroundings, seen from the parent's place.
 struct Surroundings {
   Vec3i parent{};
-  std::array<Vec3f, 2> middle;       // of each child's neighbours without the other child
-  Vec3f thirds{};                    // the middle of the vertices that both have
-  Vec3f normal{};                    // of the ring, of unit length; or zero
+  std::array<Spot, 2> middle{};      // of each child's neighbours without the other child
+  Spot thirds{};                     // the middle of the vertices that both have
+  Spot normal{};                     // of the ring, of unit length; or zero
   float mean_edge = 0;               // distance of the neighbours: |x| + |y| + |z|
   float bend = 0;                    // how far that leads from one child's plane to the other's
   std::array<int, 3> axis{0, 1, 2};  // the last one nearest to the normal
 };
-
-inline Vec3f rounded_to_float(const Vec3d& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
 
 inline Step from_parent(const Surroundings& around, const Vec3i& place) {
   Step step;
@@ -61,5 +58,11 @@ inline Vec3i beside_parent(const Surroundings& around, const Step& step) {
 Surroundings surroundings(const PatchMesh& mesh, std::span<const std::uint32_t> around_t,
                           std::span<const std::uint32_t> around_u, std::uint32_t t, std::uint32_t u,
                           const Vec3i& parent);
+
+// The same of a split of a fan whose vertices are at `places`, from the parent's place, the first
+// one at the end again where it is closed: triangles [first, last) went to u, and there is one new
+// one at the vertex `last` and, unless `single`, one at `first`.
+Surroundings surroundings_in_fan(std::span<const Spot> places, std::size_t first, std::size_t last,
+                                 bool single, const Vec3i& parent);
 
 }  // namespace crease::codec

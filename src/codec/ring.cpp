@@ -1,12 +1,29 @@
 #include "codec/ring.h"
 
+#include "base/four_floats.h"
+#include "crease/ids.h"
+
 #include <algorithm>
+#include <bit>
+#include <cstring>
 
 namespace crease::codec {
 
 namespace {
 
-using Ends = std::array<std::uint32_t, kLargestRing + 1>;
+// Where triangles begin, or end; kNone behind the last one.
+using Ends = std::array<std::uint32_t, kLargestRing + 4>;
+
+// Which one has this vertex, of n; n: none.
+std::size_t find_end(const Ends& ends, std::size_t n, std::uint32_t vertex) {
+  for (std::size_t i = 0; i < n; i += 4) {
+    FourInts four;
+    std::memcpy(&four, &ends[i], sizeof four);
+    const std::uint32_t is = negative_lanes(four == static_cast<std::int32_t>(vertex));
+    if (is != 0) return i + static_cast<std::size_t>(std::countr_zero(is));
+  }
+  return n;
+}
 
 // Whether no vertex is there twice.
 bool are_distinct(std::span<const std::uint32_t> vertices) {
@@ -27,29 +44,32 @@ bool are_distinct(std::span<const std::uint32_t> vertices) {
 }
 
 // Puts triangles and their ends in order, from the first one on or, in an open fan, from that where
-// it starts; false if there is none. Time O(n^2), without a branch that depends on who is where.
+// it starts; false if there is none. Time O(n^2).
 bool sort_ring(std::span<const std::uint32_t> around, Ring& ring) {
   const std::size_t n = around.size();
-  Ends from, to, after, follows;
+  Ends from, to;
   std::copy_n(ring.from.begin(), n, from.begin());
   std::copy_n(ring.next.begin(), n, to.begin());
-  std::fill_n(follows.begin(), n + 1, 0);
+  std::fill_n(from.begin() + static_cast<std::ptrdiff_t>(n), 4, kNone);
+  std::fill_n(to.begin() + static_cast<std::ptrdiff_t>(n), 4, kNone);
+  const auto put_from = [&](std::size_t at) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (at == n) return false;
+      ring.sorted[i] = around[at];
+      ring.from[i] = from[at];
+      ring.next[i] = to[at];
+      at = find_end(from, n, to[at]);
+    }
+    return true;
+  };
+  if (put_from(0)) return true;
+  std::size_t start = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    std::size_t next = n;
-    for (std::size_t j = 0; j < n; ++j) next = from[j] == to[i] ? j : next;
-    after[i] = static_cast<std::uint32_t>(next);
-    follows[next] = 1;
+    const std::size_t before = find_end(to, n, from[start]);
+    if (before == n) return put_from(start);
+    start = before;
   }
-  std::size_t at = 0;
-  for (std::size_t i = n; i-- > 0;) at = follows[i] ? at : i;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (at == n) return false;
-    ring.sorted[i] = around[at];
-    ring.from[i] = from[at];
-    ring.next[i] = to[at];
-    at = after[at];
-  }
-  return true;
+  return false;
 }
 
 }  // namespace
@@ -58,13 +78,12 @@ bool find_ring(std::span<const Corners> triangles, std::span<const std::uint32_t
                std::uint32_t center, Ring& ring) {
   const std::size_t n = around.size();
   if (n == 0 || n > kLargestRing) return false;
-  constexpr std::size_t kAfter[] = {1, 2, 0}, kBefore[] = {2, 0, 1};
   std::uint32_t apart = 0, last = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Corners& t = triangles[around[i]];
-    const std::size_t c = std::size_t(t[1] == center) + 2 * std::size_t(t[2] == center);
-    ring.from[i] = t[kAfter[c]];
-    ring.next[i] = t[kBefore[c]];
+    const std::size_t c = corner_of(t, center);
+    ring.from[i] = t[kCornerAfter[c]];
+    ring.next[i] = t[kCornerBefore[c]];
     apart |= i > 0 ? last ^ ring.from[i] : 0;
     last = ring.next[i];
   }

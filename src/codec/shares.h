@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,24 +21,27 @@ class Shares {
   static constexpr std::uint32_t kAll = 1u << 16;
 
   // Even ones if there are no odds at all. 1 <= count <= N.
-  Shares(const std::array<float, N>& up_to, float before, std::size_t count) {
+  [[gnu::always_inline]] Shares(const std::array<float, N>& up_to, float before,
+                                std::size_t count) {
     constexpr float kFree = static_cast<float>(kAll - kLeast * N);
     const float whole = up_to[count - 1] - before;
+    if constexpr (N > 8) end_ = count + 1;
     std::uint32_t first = 1;
     if (whole > 0) {
       const float unit = kFree / whole;
       FourFloats most{};
-      for (; first < N; first += 4) {
+      for (; first < end_; first += 4) {
         FourFloats part;
         std::memcpy(&part, up_to.data() + first - 1, sizeof part);
-        most = growing(greater((part - before) * unit, FourFloats{} + most[3]));
+        most = greater(growing(greater((part - before) * unit, FourFloats{})),
+                       FourFloats{most[3], most[3], most[3], most[3]});
         place(first, count,
               __builtin_convertvector(lesser(most, FourFloats{} + kFree), FourInts) +
                   kLeast * static_cast<std::int32_t>(first));
       }
     } else {
       const std::int32_t share = kAll / static_cast<std::int32_t>(count);
-      for (; first < N; first += 4) {
+      for (; first < end_; first += 4) {
         const std::int32_t i = static_cast<std::int32_t>(first);
         place(first, count,
               FourInts{i, i + 1, i + 2, i + 3} * share - FourInts{0, 1, 2, 3} * kLeast);
@@ -50,14 +54,14 @@ class Shares {
   std::uint32_t begin(std::size_t i) const { return begin_[i]; }
   // Whose share `at` is in, below kAll.
   std::uint32_t find(std::uint32_t at) const {
-    FourInts before{};
+    std::uint32_t before = 0;  // a bit for each that begins up to there: the first ones
     const std::int32_t most = static_cast<std::int32_t>(at);
-    for (std::size_t i = 1; i < N; i += 4) {
+    for (std::size_t i = 1; i < end_; i += 4) {
       FourInts begin;
       std::memcpy(&begin, begin_.data() + i, sizeof begin);
-      before -= begin <= most;
+      before |= negative_lanes(begin <= most) << (i - 1);
     }
-    return static_cast<std::uint32_t>((before[0] + before[1]) + (before[2] + before[3]));
+    return static_cast<std::uint32_t>(std::countr_one(before));
   }
 
  private:
@@ -77,6 +81,7 @@ class Shares {
     std::memcpy(begin_.data() + first, &begin, sizeof begin);
   }
 
+  std::size_t end_ = N;  // of those that matter; few of many, mostly
   std::array<std::uint32_t, N + 1> begin_;
 };
 

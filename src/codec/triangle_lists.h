@@ -46,6 +46,10 @@ class TriangleLists {
     if (list.count == list.room) move(list);
     triangles_[list.first + list.count++] = triangle;
   }
+  void add(std::uint32_t vertex, std::span<const std::uint32_t> triangles) {
+    const std::size_t count = lists_[vertex].count;
+    std::copy(triangles.begin(), triangles.end(), replace(vertex, count, count, triangles.size()));
+  }
   // Before the one that is there now at `place`, or at the end.
   void insert(std::uint32_t vertex, std::size_t place, std::uint32_t triangle) {
     *replace(vertex, place, place, 1) = triangle;
@@ -60,6 +64,16 @@ class TriangleLists {
     List& list = lists_[vertex];
     std::uint32_t* const first = triangles_.data() + list.first;
     list.count = static_cast<std::uint32_t>(std::remove_if(first, first + list.count, is) - first);
+  }
+  void remove(std::uint32_t vertex, std::uint32_t triangle) {
+    List& list = lists_[vertex];
+    std::uint32_t* const first = triangles_.data() + list.first;
+    std::uint32_t left = 0;
+    for (std::uint32_t i = 0; i < list.count; ++i) {  // without a branch that nobody can foretell
+      first[left] = first[i];
+      left += first[i] != triangle;
+    }
+    list.count = left;
   }
   // Those from `first` to `last` make room for `count` others, which the caller writes.
   std::uint32_t* replace(std::uint32_t vertex, std::size_t first, std::size_t last,

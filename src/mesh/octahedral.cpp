@@ -174,36 +174,12 @@ OctahedralResidual OctahedralCoding::residual(OctahedralCode code, const Frame& 
           wrapped(std::int64_t(p.y) - frame.predicted.y)};
 }
 
-// Where a direction lies on the square, or on its other half; `sum` of its sizes, above 0.
-std::array<double, 2> OctahedralCoding::on_square(const Vec3d& direction, double sum,
-                                                  bool flip) const {
-  const double unit = m_ / sum;
-  const std::array<double, 2> p{direction.x * unit, direction.y * unit};
-  if ((direction.z < 0) == flip) return p;
-  return {std::copysign(m_ - std::abs(p[1]), p[0]), std::copysign(m_ - std::abs(p[0]), p[1])};
-}
-
-OctahedralCode OctahedralCoding::near(const Vec3d& direction) const {
-  const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-  if (!(sum > 0)) return kZero;
-  const std::array<double, 2> p = on_square(direction, sum, false);
-  const auto rounded = [&](double x) {  // cut off from above zero
-    const std::int32_t up = static_cast<std::int32_t>(x + (m_ + 0.5)) - m_;
+OctahedralCode OctahedralCoding::near(float x, float y) const {
+  const auto rounded = [&](float c) {  // cut off from above zero
+    const std::int32_t up = static_cast<std::int32_t>(c + (static_cast<float>(m_) + 0.5f)) - m_;
     return std::clamp(up, -m_, m_);
   };
-  const OctahedralCode code = code_of(settled({rounded(p[0]), rounded(p[1])}));
-  return code;
-}
-
-std::array<float, 2> OctahedralCoding::residual_of(const Vec3d& direction,
-                                                   const Frame& frame) const {
-  const double sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-  if (!(sum > 0)) return {};
-  std::array<double, 2> p = on_square(direction, sum, frame.flip);
-  if (frame.turns & 1) p = {-p[1], p[0]};
-  if (frame.turns & 2) p = {-p[0], -p[1]};
-  return {static_cast<float>(p[0] - frame.predicted.x),
-          static_cast<float>(p[1] - frame.predicted.y)};
+  return code_of(settled({rounded(x), rounded(y)}));
 }
 
 OctahedralCode OctahedralCoding::restore(OctahedralResidual residual, const Frame& frame) const {

@@ -90,14 +90,12 @@ class OctahedralCoding {
     int turns = 0;
     Point predicted{};
   };
-  // The same, of what several residuals have in common. near() is a code within about one of
-  // encode()'s, in a fraction of the time.
+  // The same, of what several residuals have in common.
   Frame frame_of(OctahedralCode predicted) const;
-  OctahedralCode near(const Vec3d& direction) const;
+  // Canonical; of a point of the square, x and y in about [-m, m].
+  OctahedralCode near(float x, float y) const;
   OctahedralResidual residual(OctahedralCode code, const Frame& frame) const;
   OctahedralCode restore(OctahedralResidual residual, const Frame& frame) const;
-  // Where the residual of a direction lies that need not be a code's, about: not around the square.
-  std::array<float, 2> residual_of(const Vec3d& direction, const Frame& frame) const;
 
  private:
   Point point_of(OctahedralCode code) const;
@@ -105,7 +103,6 @@ class OctahedralCoding {
   Point folded(Point p) const;
   Point inside(Point p) const;
   Point settled(Point p) const;  // canonical
-  std::array<double, 2> on_square(const Vec3d& direction, double sum, bool flip) const;
   std::int32_t wrapped(std::int64_t x) const;
 
   std::int32_t m_;

@@ -63,12 +63,17 @@ Real length(const VectorOf<Real>& a) {
 inline double length_1(const Vector& a) {
   return std::abs(a.x) + std::abs(a.y) + std::abs(a.z);
 }
-inline Vector unit(const Vector& a) {
-  const double l = length(a);
+template <class Real>
+Real length_1(const VectorOf<Real>& a) {
+  return std::abs(a.x) + std::abs(a.y) + std::abs(a.z);
+}
+template <class Real>
+VectorOf<Real> unit(const VectorOf<Real>& a) {
+  const Real l = length(a);
   return l > 0 ? a * (1 / l) : a;
 }
-inline FloatVector rounded(const Vector& a) {
-  return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+inline FloatVector sizes_of(const FloatVector& a) {
+  return {std::abs(a.x), std::abs(a.y), std::abs(a.z)};
 }
 
 // "By fours".
@@ -90,6 +95,11 @@ inline Vector difference(const Point& p, const Point& from) {
   return {double(p.x) - double(from.x), double(p.y) - double(from.y), double(p.z) - double(from.z)};
 }
 
+// In f32, where coordinates go round.
+inline FloatVector step(const Point& p, const Point& from) {
+  return {float(less(p.x, from.x)), float(less(p.y, from.y)), float(less(p.z, from.z))};
+}
+
 inline float log2_of(float x) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
   const float e = float(std::int32_t(bits >> 23) - 127);
@@ -103,14 +113,14 @@ inline float power_of_2(float x) {
   return std::ldexp(1.0f, static_cast<int>(w) - 64) * (1 + t - 0.34f * t * (1 - t));
 }
 
-inline double angle_of(double y, double x) {
-  const double m = std::max(y, std::abs(x));
+inline float angle_of(float y, float x) {
+  const float m = std::max(y, std::abs(x));
   if (!(m > 0)) return 0;
-  const double t = std::min(y, std::abs(x)) / m, s = t * t;
-  const double inner = 0.180141 + s * (-0.085133 + s * 0.0208351);
-  double result = t * (0.999866 + s * (-0.3302995 + s * inner));
-  if (y > std::abs(x)) result = 1.5707963267948966 - result;
-  return x < 0 ? 3.141592653589793 - result : result;
+  const float t = std::min(y, std::abs(x)) / m, s = t * t;
+  const float inner = 0.180141f + s * (-0.085133f + s * 0.0208351f);
+  float result = t * (0.999866f + s * (-0.3302995f + s * inner));
+  if (y > std::abs(x)) result = 1.57079633f - result;
+  return x < 0 ? 3.14159265f - result : result;
 }
 
 }  // namespace plain

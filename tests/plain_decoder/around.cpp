@@ -71,20 +71,17 @@ std::optional<Fan> Surface::fan(std::uint32_t v) const {
   return fan;
 }
 
-Vector Surface::twice_area(std::uint32_t t) const {
+FloatVector Surface::twice_area(std::uint32_t t) const {
   const Point &p = places[triangles[t][0]], &q = places[triangles[t][1]],
               &r = places[triangles[t][2]];
-  return cross(difference(q, p), difference(r, p));
+  return cross(step(q, p), step(r, p));
 }
 
 std::size_t Surface::bend(std::uint32_t t, std::uint32_t other) const {
-  const Vector a = twice_area(t), b = twice_area(other);
-  const double c = dot(a, b), l = dot(a, a) * dot(b, b);
-  if (c < 0) return 3;
-  if (c * c >= 0.9999 * l) return 0;
-  if (c * c >= 0.95 * l) return 1;
-  if (c * c >= 0.5 * l) return 2;
-  return 3;
+  const FloatVector a = twice_area(t), b = twice_area(other);
+  if (a.is_zero() || b.is_zero()) return 0;
+  const float c = dot(unit(a), unit(b));
+  return c >= 0.99995f ? 0 : c >= 0.97468f ? 1 : c >= 0.70711f ? 2 : 3;
 }
 
 Numbers Surface::neighbours_before(std::uint32_t t) const {

@@ -42,7 +42,7 @@ class Surface {
   std::uint32_t end_of(std::uint32_t t, std::uint32_t v) const;    // the corner before v
   bool has_corner(std::uint32_t t, std::uint32_t v) const;
   std::optional<Fan> fan(std::uint32_t v) const;
-  Vector twice_area(std::uint32_t t) const;
+  FloatVector twice_area(std::uint32_t t) const;
   std::size_t bend(std::uint32_t t, std::uint32_t other) const;
   Numbers neighbours_before(std::uint32_t t) const;  // in the order of the edges
 };

@@ -28,9 +28,9 @@ struct BlockState {
   std::uint32_t coarse_vertices = 0, coarse_triangles = 0;
   Surface surface;
   std::vector<VertexState> vertices;
-  std::vector<bool> was_derived;      // per triangle of the coarse end
-  std::vector<Vector> coarse_normal;  // per vertex of the coarse end
-  End end;                            // what is known of the fine end
+  std::vector<bool> was_derived;           // per triangle of the coarse end
+  std::vector<FloatVector> coarse_normal;  // per vertex of the coarse end
+  End end;                                 // what is known of the fine end
   std::vector<Split> splits;
 
   bool is_new(std::uint32_t t) const { return t >= coarse_triangles; }

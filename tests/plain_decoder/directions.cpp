@@ -4,8 +4,8 @@ namespace plain {
 
 namespace {
 
-float size(double x) {
-  return log2_of(static_cast<float>(x));
+float size(float x) {
+  return log2_of(x);
 }
 
 }  // namespace
@@ -55,13 +55,13 @@ Code DirectionModel::read(RangeDecoder& in, const Octahedral& coding, const Cand
   return coding.restore(x, y, frame);
 }
 
-std::vector<Vector> normals_of_vertices(const Surface& surface) {
-  std::vector<Vector> normals(surface.places.size());
+std::vector<FloatVector> normals_of_vertices(const Surface& surface) {
+  std::vector<FloatVector> normals(surface.places.size());
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-    const Vector twice = surface.twice_area(t);
+    const FloatVector twice = surface.twice_area(t);
     for (const std::uint32_t v : surface.triangles[t]) normals[v] = normals[v] + twice;
   }
-  for (Vector& normal : normals) normal = unit(normal);
+  for (FloatVector& normal : normals) normal = unit(normal);
   return normals;
 }
 
@@ -83,30 +83,29 @@ DirectionReader::DirectionReader(RangeDecoder& in, const BlockState& block, int 
 
 // "Direction of a whole vertex".
 Code DirectionReader::read_of_vertex(std::uint32_t v, const std::optional<Code>& had) {
-  const Vector& g = geometric_[v];
-  Vector E, F, off, beside;
-  double spread = 0, triangles = 0, count = 0;
+  const FloatVector& g = geometric_[v];
+  FloatVector E, F, off, beside, spread;
+  float triangles = 0, count = 0;
   for (const std::uint32_t t : surface_.first_of_list(v)) {
     const std::uint32_t a = surface_.start_of(t, v), b = surface_.end_of(t, v);
-    const Vector p = difference(surface_.places[a], surface_.places[v]);
-    const Vector q = difference(surface_.places[b], surface_.places[v]);
-    const Vector n = cross(p, q);
-    const double l = dot(p, p) * dot(q, q);
-    if (l > 0) {
-      E = E + n * (1 / std::sqrt(l));
-      F = F + unit(n) * angle_of(length(n), dot(p, q));
+    const FloatVector p = step(surface_.places[a], surface_.places[v]);
+    const FloatVector q = step(surface_.places[b], surface_.places[v]);
+    const FloatVector n = cross(p, q);
+    const float area = length(n);
+    if (area > 0) {
+      E = E + n * (1 / std::sqrt(dot(p, p) * dot(q, q)));
+      F = F + n * (angle_of(area, dot(p, q)) / area);
     }
     triangles += 1;
-    spread += dot(geometric_[a], g);
-    for (const std::uint32_t w : {a, b}) {
-      if (stored_[w].is_zero()) continue;
-      off = off + (stored_[w] - geometric_[w]);
-      beside = beside + stored_[w];
-      count += 1;
-    }
+    spread =
+        spread + FloatVector{geometric_[a].x * g.x, geometric_[a].y * g.y, geometric_[a].z * g.z};
+    if (stored_[a].is_zero()) continue;
+    off = off + (stored_[a] - geometric_[a]);
+    beside = beside + stored_[a];
+    count += 1;
   }
-  const Vector h = direction(had);
-  const Vector o = count > 0 ? off * (1 / count) : Vector{};
+  const FloatVector h = direction(had);
+  const FloatVector o = count > 0 ? off * (1 / count) : FloatVector{};
   const std::uint32_t origin = block_.vertices[v].origin;
   Candidates candidates{};
   candidates[0] = g;
@@ -119,15 +118,15 @@ Code DirectionReader::read_of_vertex(std::uint32_t v, const std::optional<Code>&
   candidates[5] = unit(beside);
   candidates[6] = unit(F);
   if (!h.is_zero()) candidates[7] = h + g;
-  const double mean_spread = triangles > 0 ? spread / triangles : 1;
-  const Sizes sizes{size(length(o) + 0.002),
-                    size(std::sqrt(std::max(0.0, 1 - mean_spread)) + 0.002),
-                    size(length(h - g) + 0.002), count > 0 ? 1.0f : 0.0f};
+  const float mean_spread = triangles > 0 ? (spread.x + spread.y + spread.z) / triangles : 1;
+  const Sizes sizes{size(length(o) + 0.002f),
+                    size(std::sqrt(std::max(0.0f, 1 - mean_spread)) + 0.002f),
+                    size(length(h - g) + 0.002f), count > 0 ? 1.0f : 0.0f};
   return of_vertex_.read(in_, coding_, candidates, sizes);
 }
 
-void DirectionReader::add_onwards(const CornerDirection& asked, bool backwards, Vector& S,
-                                  Vector& B) const {
+void DirectionReader::add_onwards(const CornerDirection& asked, bool backwards, FloatVector& S,
+                                  FloatVector& B) const {
   const std::size_t n = asked.corners.size(), c = asked.at;
   std::uint32_t before = asked.corners[c] / 3;
   bool all_flat = true;
@@ -137,7 +136,7 @@ void DirectionReader::add_onwards(const CornerDirection& asked, bool backwards, 
     const std::size_t bend = surface_.bend(before, t);
     if (bend == 3) return;
     if (bend > 1) all_flat = false;
-    const Vector twice = surface_.twice_area(t);
+    const FloatVector twice = surface_.twice_area(t);
     if (all_flat) S = S + twice;
     B = B + twice;
     before = t;
@@ -147,13 +146,13 @@ void DirectionReader::add_onwards(const CornerDirection& asked, bool backwards, 
 // "Direction of one corner".
 Code DirectionReader::read_of_corner(const CornerDirection& asked) {
   const std::uint32_t corner = asked.corners[asked.at], t = corner / 3;
-  const Vector own = surface_.twice_area(t);
-  Vector S = own, B = own;
+  const FloatVector own = surface_.twice_area(t);
+  FloatVector S = own, B = own;
   if (asked.is_fan) {
     add_onwards(asked, false, S, B);
     add_onwards(asked, true, S, B);
   }
-  Vector beside;
+  FloatVector beside;
   for (std::uint32_t other = 3 * t; other < 3 * t + 3; ++other) {
     if (other != corner && is_known_[other]) beside = beside + coding_.direction(codes_[other]);
   }
@@ -166,7 +165,7 @@ Code DirectionReader::read_of_corner(const CornerDirection& asked) {
                               geometric_[asked.vertex],
                               unit(own)};
   const auto from_own = [&](std::size_t k) {
-    return size(length(candidates[k] - candidates[0]) + 0.002);
+    return size(length(candidates[k] - candidates[0]) + 0.002f);
   };
   const Sizes sizes{from_own(1), from_own(2), size(length(own) + 1), from_own(5)};
   return of_corner_.read(in_, coding_, candidates, sizes);

@@ -10,7 +10,7 @@
 
 namespace plain {
 
-using Candidates = std::array<Vector, kComponents>;
+using Candidates = std::array<FloatVector, kComponents>;
 
 class DirectionModel {
  public:
@@ -44,10 +44,11 @@ class DirectionReader {
   Code read_of_corner(const CornerDirection& asked);
 
  private:
-  Vector direction(const std::optional<Code>& code) const {
-    return code ? coding_.direction(*code) : Vector{};
+  FloatVector direction(const std::optional<Code>& code) const {
+    return code ? coding_.direction(*code) : FloatVector{};
   }
-  void add_onwards(const CornerDirection& asked, bool backwards, Vector& S, Vector& B) const;
+  void add_onwards(const CornerDirection& asked, bool backwards, FloatVector& S,
+                   FloatVector& B) const;
 
   RangeDecoder& in_;
   const BlockState& block_;
@@ -55,11 +56,11 @@ class DirectionReader {
   Octahedral coding_;
   const std::vector<Code>& codes_;
   const std::vector<bool>& is_known_;
-  std::vector<Vector> geometric_, stored_;  // per vertex
+  std::vector<FloatVector> geometric_, stored_;  // per vertex
   DirectionModel of_vertex_{kOfVertices}, of_corner_{kOfCorners};
 };
 
 // The sum of twice the areas of each vertex' triangles, by number, of unit length.
-std::vector<Vector> normals_of_vertices(const Surface& surface);
+std::vector<FloatVector> normals_of_vertices(const Surface& surface);
 
 }  // namespace plain

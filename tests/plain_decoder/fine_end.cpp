@@ -102,6 +102,11 @@ void put_in_box(std::vector<Box>& boxes, std::uint32_t label, const Place& place
 void read_labels(RangeDecoder& in, BlockState& block) {
   const Surface& surface = block.surface;
   std::vector<std::uint32_t>& labels = block.end.labels;
+  AdaptiveBit is_any_above_0;
+  if (!is_any_above_0.read(in)) {
+    labels.assign(surface.triangles.size(), 0);
+    return;
+  }
   std::vector<Box> boxes;
   BitsBy<2> is_box_label;
   AdaptiveBit is_other_label;

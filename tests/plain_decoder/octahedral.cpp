@@ -38,13 +38,12 @@ Octahedral::Flat Octahedral::settle(Flat p) const {
   return p;
 }
 
-Vector Octahedral::direction(const Code& code) const {
+FloatVector Octahedral::direction(const Code& code) const {
   if (is_zero_code(code)) return {};
   const Point n = vector(point(code));
   const std::int64_t x = n.x, y = n.y, z = n.z;
   const double root = std::sqrt(double(x * x + y * y + z * z));
-  return {double(float(double(x) / root)), double(float(double(y) / root)),
-          double(float(double(z) / root))};
+  return {float(double(x) / root), float(double(y) / root), float(double(z) / root)};
 }
 
 Octahedral::Frame Octahedral::frame(const Code& code) const {
@@ -60,32 +59,32 @@ Octahedral::Frame Octahedral::frame(const Code& code) const {
   return f;
 }
 
-std::array<double, 2> Octahedral::on_plane(const Vector& d, double S, bool flipped) const {
-  const double unit = m_ / S, x = d.x * unit, y = d.y * unit;
+std::array<float, 2> Octahedral::on_plane(const FloatVector& d, float S, bool flipped) const {
+  const float m = float(m_), unit = m / S, x = d.x * unit, y = d.y * unit;
   if ((d.z < 0) == flipped) return {x, y};
-  return {std::copysign(m_ - std::abs(y), x), std::copysign(m_ - std::abs(x), y)};
+  return {std::copysign(m - std::abs(y), x), std::copysign(m - std::abs(x), y)};
 }
 
-Code Octahedral::rough(const Vector& d) const {
-  const double S = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+Code Octahedral::rough(const FloatVector& d) const {
+  const float S = length_1(d);
   if (!(S > 0)) return {};
-  const std::array<double, 2> p = on_plane(d, S, false);
-  const auto whole = [&](double x) {
-    return std::clamp(static_cast<std::int32_t>(std::floor(x + (m_ + 0.5))) - m_, -m_, m_);
+  const std::array<float, 2> p = on_plane(d, S, false);
+  const auto whole = [&](float x) {
+    return std::clamp(static_cast<std::int32_t>(x + (float(m_) + 0.5f)) - m_, -m_, m_);
   };
   return code(settle({whole(p[0]), whole(p[1])}));
 }
 
-std::array<float, 2> Octahedral::near(const Vector& d, const Frame& frame) const {
-  const double S = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+std::array<float, 2> Octahedral::near(const FloatVector& d, const Frame& frame) const {
+  const float S = length_1(d);
   if (!(S > 0)) return {0, 0};
   auto [x, y] = on_plane(d, S, frame.flipped);
   for (int i = 0; i < frame.turns; ++i) {
-    const double turned_x = -y;
+    const float turned_x = -y;
     y = x;
     x = turned_x;
   }
-  return {static_cast<float>(x - frame.point.x), static_cast<float>(y - frame.point.y)};
+  return {x - float(frame.point.x), y - float(frame.point.y)};
 }
 
 std::int32_t Octahedral::brought_round(std::int64_t x) const {

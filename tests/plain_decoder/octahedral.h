@@ -24,10 +24,10 @@ class Octahedral {
 
   explicit Octahedral(int bits) : m_(((1 << (bits - 1)) - 1) / 6 * 6) {}
 
-  Vector direction(const Code& code) const;  // components are f32
-  Code rough(const Vector& d) const;
+  FloatVector direction(const Code& code) const;
+  Code rough(const FloatVector& d) const;
   Frame frame(const Code& code) const;
-  std::array<float, 2> near(const Vector& d, const Frame& frame) const;
+  std::array<float, 2> near(const FloatVector& d, const Frame& frame) const;
   Code restore(std::int32_t x, std::int32_t y, const Frame& frame) const;
   std::int32_t most() const { return 2 * m_; }  // of a component of a code
 
@@ -37,7 +37,7 @@ class Octahedral {
   Flat fold(Flat p) const;
   Point vector(Flat p) const;
   Flat settle(Flat p) const;
-  std::array<double, 2> on_plane(const Vector& d, double S, bool flipped) const;
+  std::array<float, 2> on_plane(const FloatVector& d, float S, bool flipped) const;
   std::int32_t brought_round(std::int64_t x) const;
 
   std::int32_t m_;

@@ -11,18 +11,18 @@ namespace plain {
 Surroundings surroundings(const Surface& surface, std::uint32_t first, std::uint32_t second,
                           const Point& s) {
   Surroundings result;
-  std::array<Vector, 2> normals;
-  Vector thirds;
-  double third_count = 0, size = 0, size_count = 0;
+  std::array<FloatVector, 2> normals, sizes;
+  FloatVector thirds;
+  float third_count = 0, all = 0;
   for (const std::size_t which : {0u, 1u}) {
     const std::uint32_t child = which == 0 ? first : second;
     const std::uint32_t other = which == 0 ? second : first;
-    Vector sum;
-    double count = 0;
+    FloatVector sum;
+    float count = 0;
     for (const std::uint32_t t : surface.list(child)) {
       const std::uint32_t after = surface.start_of(t, child), before = surface.end_of(t, child);
-      const Vector a = difference(surface.places[after], s);
-      const Vector b = difference(surface.places[before], s);
+      const FloatVector a = step(surface.places[after], s);
+      const FloatVector b = step(surface.places[before], s);
       if (after == other || before == other) {
         thirds = thirds + (after == other ? b : a);
         third_count += 1;
@@ -32,25 +32,23 @@ Surroundings surroundings(const Surface& surface, std::uint32_t first, std::uint
       if (after != other) {
         sum = sum + a;
         count += 1;
-        size += length_1(a);
-        size_count += 1;
+        sizes[which] = sizes[which] + sizes_of(a);
       }
       if (before != other) {
         sum = sum + b;
         count += 1;
-        size += length_1(b);
-        size_count += 1;
+        sizes[which] = sizes[which] + sizes_of(b);
       }
     }
-    if (count > 0) result.middle[which] = rounded(sum * (1 / count));
+    all += count;
+    if (count > 0) result.middle[which] = sum * (1 / count);
   }
-  if (third_count > 0) result.thirds = rounded(thirds * (1 / third_count));
-  const double edge = size_count > 0 ? size / size_count : 0;
-  result.edge = static_cast<float>(edge);
-  const Vector N = normals[0] + normals[1];
-  result.normal = rounded(unit(N));
-  const double cosine = dot(unit(normals[0]), unit(normals[1]));
-  result.bend = static_cast<float>(edge * std::sqrt(std::max(0.0, 1 - cosine)));
+  if (third_count > 0) result.thirds = thirds * (1 / third_count);
+  result.edge = all > 0 ? length_1(sizes[0] + sizes[1]) / all : 0;
+  const FloatVector N = normals[0] + normals[1];
+  result.normal = unit(N);
+  const float cosine = dot(unit(normals[0]), unit(normals[1]));
+  result.bend = result.edge * std::sqrt(std::max(0.0f, 1 - cosine));
   std::size_t third = 0;
   for (const std::size_t k : {1u, 2u}) {
     if (std::abs(N.along(k)) > std::abs(N.along(third))) third = k;

@@ -28,7 +28,7 @@ class SplitReader {
   void read();
 
  private:
-  double mean_size() const;
+  float mean_size() const;
   bool read_flag(std::uint32_t v, const std::optional<Fan>& fan);
   void split(std::uint32_t v, const std::optional<Fan>& fan);
   Shape read_shape(std::uint32_t v, const std::optional<Fan>& fan);
@@ -51,7 +51,7 @@ class SplitReader {
   RangeDecoder& in_;
   BlockState& block_;
   Surface& surface_;
-  double mean_size_ = 0;
+  float mean_size_ = 0;
 
   BitsBy<3> flag_by_size_, flag_by_triangles_, flag_by_neighbours_;
   BitsBy<2> flag_by_kind_;
@@ -94,7 +94,7 @@ void SplitReader::read() {
   }
 }
 
-double SplitReader::mean_size() const {
+float SplitReader::mean_size() const {
   if (surface_.triangles.empty()) return 0;
   double sum = 0;
   for (const Triangle& t : surface_.triangles) {
@@ -102,28 +102,38 @@ double SplitReader::mean_size() const {
       sum += length_1(difference(surface_.places[t[(c + 1) % 3]], surface_.places[t[c]]));
     }
   }
-  return sum / (3 * double(surface_.triangles.size()));
+  return static_cast<float>(sum / (3 * double(surface_.triangles.size())));
 }
 
 // Flag.
 bool SplitReader::read_flag(std::uint32_t v, const std::optional<Fan>& fan) {
-  double size = 0, split = 0, count = 0;
-  for (const std::uint32_t t : surface_.first_of_list(v)) {
-    for (const std::uint32_t w : surface_.triangles[t]) {
-      if (w == v) continue;
-      size += length_1(difference(surface_.places[w], surface_.places[v]));
-      if (block_.vertices[w].generation > 0) split += 1;
-      count += 1;
+  Numbers beside;
+  if (fan) {
+    beside = fan->w;
+  } else {
+    for (const std::uint32_t t : surface_.first_of_list(v)) {
+      for (const std::uint32_t w : surface_.triangles[t]) {
+        if (w != v) beside.push_back(w);
+      }
     }
+  }
+  FloatVector sizes;
+  float split = 0;
+  for (const std::uint32_t w : beside) {
+    sizes = sizes + sizes_of(step(surface_.places[w], surface_.places[v]));
+    if (block_.vertices[w].generation > 0) split += 1;
   }
   const std::size_t g = std::min<std::size_t>(block_.vertices[v].generation, 5);
   const std::size_t k = !fan ? 0 : fan->closed ? 1 : 2;
   const std::size_t n = std::min<std::size_t>(surface_.list(v).size(), 11);
   std::size_t c = 0, a = 0;
-  if (count > 0) {
-    double limit = mean_size_ * count * 0.35;
-    for (; c < 11 && size > limit; ++c) limit = limit * 1.25;
-    a = 1 + static_cast<std::size_t>(3.99 * split / count);
+  if (!beside.empty()) {
+    const float count = float(beside.size());
+    double power = 1;
+    for (; c < 11 && length_1(sizes) > float(0.35 * power) * (mean_size_ * count); ++c) {
+      power *= 1.25;
+    }
+    a = 1 + static_cast<std::size_t>(3.99f * split / count);
   }
   return read_mixed(in_,
                     {&flag_by_size_[{g, k, c}], &flag_by_triangles_[{g, k, n}],
@@ -186,8 +196,8 @@ void SplitReader::read_fan(std::uint32_t v, const Fan& fan, Shape& shape) {
 PairOdds::Pair SplitReader::read_pair(std::uint32_t v, const Fan& fan) {
   std::vector<FanVertex> vertices;
   for (const std::uint32_t w : fan.w) {
-    vertices.push_back({rounded(difference(surface_.places[w], surface_.places[v])),
-                        surface_.list(w).size(), block_.vertices[w].generation > 0});
+    vertices.push_back({step(surface_.places[w], surface_.places[v]), surface_.list(w).size(),
+                        block_.vertices[w].generation > 0});
   }
   return pair_odds_.read(in_, vertices);
 }
@@ -339,12 +349,10 @@ Child SplitReader::child(bool second, Who who, std::uint32_t v, const Point& s,
   child.who = who;
   child.second = second;
   child.triangles = surface_.list(v).size();
-  child.sibling = rounded(difference(sibling, s));
+  child.sibling = step(sibling, s);
   if (!shape.fan || !shape.fan->closed) return child;
   const std::size_t n = shape.fan->w.size();
-  const auto place = [&](std::size_t k) {
-    return rounded(difference(surface_.places[shape.fan->w[k % n]], s));
-  };
+  const auto place = [&](std::size_t k) { return step(surface_.places[shape.fan->w[k % n]], s); };
   const std::size_t from = second ? shape.i : shape.j, to = second ? shape.j : shape.i + n;
   child.ring.push_back(child.sibling);
   for (std::size_t k = from; k <= to; ++k) child.ring.push_back(place(k));

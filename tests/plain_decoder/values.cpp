@@ -13,7 +13,7 @@ std::vector<float> octahedral_value(const Code& code, int bits) {
     const std::uint32_t most = static_cast<std::uint32_t>(coding.most());
     return static_cast<std::int32_t>(std::min(static_cast<std::uint32_t>(component), most));
   };
-  const Vector d = coding.direction({in_range(code[0]), in_range(code[1]), 0, 0});
+  const FloatVector d = coding.direction({in_range(code[0]), in_range(code[1]), 0, 0});
   return {float(d.x), float(d.y), float(d.z)};
 }
 
