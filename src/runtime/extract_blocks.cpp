@@ -36,7 +36,7 @@ NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
   std::vector<std::vector<std::uint32_t>> vertices(blocks.size());
   std::unordered_map<std::uint64_t, std::uint32_t> vertex_of_name;
   for (std::uint32_t i = 0; i < blocks.size(); ++i) {
-    const codec::FineEnd& end = mesh.resident[blocks[i]]->data().end;
+    codec::FineEnd end = mesh.resident[blocks[i]]->data().end.unpacked();
     vertices[i].assign(end.names.size(), kNone);
     for (std::uint32_t t = 0; t < end.labels.size(); ++t) {
       if (!mesh.is_shown(blocks[i], end.labels[t])) continue;
@@ -53,7 +53,7 @@ NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
         vertices[i][v] = at->second;
       }
     }
-    ends.push_back(whole_end(mesh.resident[blocks[i]]->data()));
+    ends.push_back(std::move(end.mesh));
   }
   for (std::uint32_t i = 0; i < ends.size(); ++i) pieces.push_back({&ends[i], vertices[i]});
   codec::ModelSchema schema = *mesh.schema;
@@ -82,7 +82,7 @@ NamedMesh extract_by_vertex(const BlockMesh::Impl& mesh, const BlockCut& cut) {
   }
   if (mesh.part_names.empty()) return result;
   for (const TriangleId t : piece.id_of_triangle) {
-    const std::uint32_t category = block.end.mesh.category[data.triangle_of[index_of(t)]];
+    const std::uint32_t category = block.end.category(data.triangle_of[index_of(t)]);
     result.mesh.part_of_triangle.push_back(PartId{category / mesh.schema->coding.material_count});
   }
   return result;

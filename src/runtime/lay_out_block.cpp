@@ -19,8 +19,8 @@ constexpr std::size_t kGroupTriangles = 128;
 
 class BlockLayout {
  public:
-  explicit BlockLayout(ResidentBlock::Data& block)
-      : block_(block), schema_(*block.schema), mesh_(block.end.mesh) {
+  BlockLayout(const codec::FineEnd& end, ResidentBlock::Data& block)
+      : block_(block), schema_(*block.schema), end_(end), mesh_(end.mesh) {
     for (std::size_t l = 0; l < schema_.facts.layers.size(); ++l) {
       const LayerSchema& layer = schema_.facts.layers[l];
       const bool is_normal = layer.role == AttributeRole::Normal && layer.dimension == 3;
@@ -35,7 +35,7 @@ class BlockLayout {
     sort_vertices();
     std::vector<std::uint32_t> order(mesh_.triangles.size());
     std::iota(order.begin(), order.end(), 0);
-    const auto label = [&](std::uint32_t t) { return block_.end.labels[t]; };
+    const auto label = [&](std::uint32_t t) { return end_.labels[t]; };
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return label(a) < label(b); });
     reserve();
@@ -134,18 +134,22 @@ class BlockLayout {
         if (*first[v] != *code) is_shared_[v] = 0;
       }
     }
-    block_.position_of_vertex.resize(count);
+    std::vector<std::uint32_t>& place = position_of_vertex_;
+    place.resize(count);
     block_.positions.reserve(count);
     block_.vertex_normals.reserve(
         static_cast<std::size_t>(std::count(is_shared_.begin(), is_shared_.end(), 1)));
     for (const bool shared : {true, false}) {
       for (std::uint32_t v = 0; v < count; ++v) {
         if ((is_shared_[v] != 0) != shared) continue;
-        block_.position_of_vertex[v] = static_cast<std::uint32_t>(block_.positions.size());
+        place[v] = static_cast<std::uint32_t>(block_.positions.size());
         block_.positions.push_back(draw_position(schema_.facts.grid, mesh_.positions[v]));
         if (shared) block_.vertex_normals.push_back(first[v] ? normal(*first[v]) : Vec3f{});
       }
     }
+    block_.position_of_vertex = PackedIndices<>(bits_for(count));
+    block_.position_of_vertex.reserve(count);
+    for (const std::uint32_t p : place) block_.position_of_vertex.push_back(p);
   }
 
   TriangleKind kind(std::uint32_t t) const {
@@ -180,7 +184,7 @@ class BlockLayout {
     BlockPart& to = part(k);
     ++(k == TriangleKind::SN ? group.sn : k == TriangleKind::FN ? group.fn : group.nsn).count;
     for (const std::uint32_t v : mesh_.triangles[t]) {
-      to.indices.push_back(block_.position_of_vertex[v]);
+      to.indices.push_back(position_of_vertex_[v]);
       const Vec3f& p = block_.positions[to.indices.back()];
       group.low = {std::min(group.low.x, p.x), std::min(group.low.y, p.y),
                    std::min(group.low.z, p.z)};
@@ -210,7 +214,7 @@ class BlockLayout {
   }
 
   const Vec3f& first_position(std::uint32_t t) const {
-    return block_.positions[block_.position_of_vertex[mesh_.triangles[t][0]]];
+    return block_.positions[position_of_vertex_[mesh_.triangles[t][0]]];
   }
 
   Vec3f flat_normal(std::uint32_t t) const {
@@ -223,15 +227,17 @@ class BlockLayout {
 
   ResidentBlock::Data& block_;
   const codec::ModelSchema& schema_;
+  const codec::FineEnd& end_;
   const codec::PatchMesh& mesh_;
   std::optional<Layer> normals_, colors_, texcoords_;
-  std::vector<char> is_shared_;  // per vertex: SN
+  std::vector<char> is_shared_;                    // per vertex: SN
+  std::vector<std::uint32_t> position_of_vertex_;  // as the block's
 };
 
 }  // namespace
 
-void lay_out_for_drawing(ResidentBlock::Data& block) {
-  BlockLayout(block).run();
+void lay_out_for_drawing(const codec::FineEnd& end, ResidentBlock::Data& block) {
+  BlockLayout(end, block).run();
 }
 
 }  // namespace crease

@@ -148,12 +148,12 @@ std::optional<std::uint32_t> triangle_of_block(const Hit& hit) {
   const BlockPart& part = hit.kind == TriangleKind::SN   ? data.sn
                           : hit.kind == TriangleKind::FN ? data.fn
                                                          : data.nsn;
-  const std::vector<codec::Corners>& triangles = data.end.mesh.triangles;
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+  for (std::uint32_t t = 0; t < data.end.triangle_count(); ++t) {
+    const codec::Corners corners = data.end.triangle(t);
     bool same = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      same &= data.position_of_vertex[triangles[t][c]] ==
-              part.indices[3 * std::size_t(hit.triangle) + c];
+      same &=
+          data.position_of_vertex[corners[c]] == part.indices[3 * std::size_t(hit.triangle) + c];
     }
     if (same) return t;
   }
@@ -175,8 +175,7 @@ std::string part_of(const Hit& hit, const BlockMesh& mesh) {
       hit.is_by_vertex ? triangle_of_cut(hit, mesh) : triangle_of_block(hit);
   if (!triangle) return {};
   const ResidentBlock::Data& data = hit.block->data();
-  const std::uint32_t number =
-      data.end.mesh.category[*triangle] / data.schema->coding.material_count;
+  const std::uint32_t number = data.end.category(*triangle) / data.schema->coding.material_count;
   const std::span<const std::string> names = mesh.part_names();
   return number < names.size() ? names[number] : std::string();
 }

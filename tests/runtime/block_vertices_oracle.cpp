@@ -61,9 +61,9 @@ class BlocksOracle {
                                 .of_corner = {}});
     }
     for (const std::uint32_t block : mesh_.cut) {
-      const codec::FineEnd& end = data(block).end;
-      for (std::uint32_t t = 0; t < end.labels.size(); ++t) {
-        const std::uint32_t finer = mesh_.graph.next_finer(band(block), end.labels[t]);
+      const KeptEnd& end = data(block).end;
+      for (std::uint32_t t = 0; t < end.triangle_count(); ++t) {
+        const std::uint32_t finer = mesh_.graph.next_finer(band(block), end.label(t));
         if (!is_refined(finer)) add({block, t});
       }
     }
@@ -83,9 +83,9 @@ class BlocksOracle {
   void find_sources(std::uint32_t block) {
     for (const std::uint32_t needed : mesh_.graph.dependencies(block)) {
       if (band(needed) != band(block) + 1) continue;
-      const std::vector<std::uint32_t>& labels = data(needed).end.labels;
-      for (std::uint32_t t = 0; t < labels.size(); ++t) {
-        if (labels[t] == data(block).entry.facts.patch) sources_[block].push_back({needed, t});
+      const KeptEnd& end = data(needed).end;
+      for (std::uint32_t t = 0; t < end.triangle_count(); ++t) {
+        if (end.label(t) == data(block).entry.facts.patch) sources_[block].push_back({needed, t});
       }
     }
     REQUIRE(sources_[block].size() == data(block).coarse_triangles);
@@ -94,14 +94,14 @@ class BlocksOracle {
   Active active(const codec::VertexName& name) const {
     const BlockCut* const cut = mesh_.cuts.cut(name.block);
     if (cut == nullptr) {
-      return {name.block, name.vertex, data(name.block).end.mesh.positions[name.vertex]};
+      return {name.block, name.vertex, data(name.block).end.position(name.vertex)};
     }
     const BlockHierarchy::Data& d = cut->data();
     const NodeId leaf = d.leaf_of_vertex[name.vertex];
     const NodeId node = d.wedge_of_vertex[name.vertex] == kNone ? leaf : active_above(*cut, leaf);
     if (d.hierarchy.vertices.is_root(node)) {
       const auto root = std::find(d.node_of_root.begin(), d.node_of_root.end(), node);
-      const codec::VertexName& made =
+      const codec::VertexName made =
           data(name.block).root_names[std::size_t(root - d.node_of_root.begin())];
       if (made.block != name.block) return active(made);
     }
@@ -122,10 +122,10 @@ class BlocksOracle {
   }
 
   void add(const Place& finest) {
-    const codec::FineEnd& end = data(finest.block).end;
+    const KeptEnd& end = data(finest.block).end;
     std::array<Active, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = active(end.names[end.mesh.triangles[finest.triangle][k]]);
+      corners[k] = active(end.name(end.triangle(finest.triangle)[k]));
     }
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
     Place at = finest;
@@ -137,7 +137,7 @@ class BlocksOracle {
       triangle[k] = VertexId{static_cast<std::uint32_t>(result_.positions.size())};
       result_.positions.push_back(mesh_.schema->facts.grid.position(corners[k].position));
     }
-    const std::uint32_t category = end.mesh.category[finest.triangle];
+    const std::uint32_t category = end.category(finest.triangle);
     const std::uint32_t materials = mesh_.schema->coding.material_count;
     if (!result_.materials.empty()) {
       result_.material_of_triangle.push_back(MaterialId{category % materials});
@@ -156,9 +156,9 @@ class BlocksOracle {
     bool is_derived = false;
     if (cut == nullptr) {
       const ResidentBlock::Data& block = data(at.block);
-      is_derived = block.end.mesh.derived[at.triangle] != 0;
+      is_derived = block.end.is_derived(at.triangle);
       const LayerValues values(mesh_.schema->codings[l], layer.dimension);
-      values.read(block.values[l].at(3 * std::size_t(at.triangle) + k), value);
+      values.read(block.end.value(l, 3 * std::size_t(at.triangle) + k), value);
     } else {
       is_derived = read_value(*cut, at, corners[k], l, k, value);
     }
@@ -182,7 +182,7 @@ class BlocksOracle {
     }
     const std::uint32_t t = new_of[at.triangle];
     const WedgeId wedge = h.vertices.triangles[t][k];
-    const std::uint32_t v = cut.block().data().end.mesh.triangles[at.triangle][k];
+    const std::uint32_t v = cut.block().data().end.triangle(at.triangle)[k];
     NodeId node = cut.data().leaf_of_vertex[v];
     const NodeId active = active_above(cut, node);
     // The corner stands where the block says: what finer blocks split, coarser ones have active.
