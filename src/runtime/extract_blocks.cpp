@@ -26,7 +26,8 @@ std::uint64_t name_of_node(const BlockMesh::Impl& mesh, const codec::VertexName&
 NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
   std::vector<std::uint32_t> blocks;
   for (const std::uint32_t block : mesh.cut) {
-    if (mesh.cuts.cut(block) == nullptr) blocks.push_back(block);
+    const bool is_whole = mesh.levels.shown(block) == kFullLevel;
+    if (is_whole && mesh.cuts.cut(block) == nullptr) blocks.push_back(block);
   }
   NamedMesh whole;
   std::vector<codec::PatchMesh> ends;
@@ -63,10 +64,9 @@ NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
   return whole;
 }
 
-NamedMesh extract_by_vertex(const BlockMesh::Impl& mesh, const BlockCut& cut) {
-  const BlockHierarchy::Data& data = cut.data();
-  const ResidentBlock::Data& block = cut.block().data();
-  CutPiece piece = extract_piece(*cut.live());
+NamedMesh extract_piece_of(const BlockMesh::Impl& mesh, const ActiveCut& cut,
+                           const BlockHierarchy::Data& data, const ResidentBlock::Data& block) {
+  CutPiece piece = extract_piece(cut);
   NamedMesh result{std::move(piece.mesh), {}};
   // A root that is not split is a vertex of the block that made it.
   std::unordered_map<std::uint32_t, std::uint32_t> root_of_node;
@@ -88,6 +88,17 @@ NamedMesh extract_by_vertex(const BlockMesh::Impl& mesh, const BlockCut& cut) {
   return result;
 }
 
+// The hierarchy that its list was made of, once more.
+NamedMesh extract_level(const BlockMesh::Impl& mesh, std::uint32_t block, const LevelList& list) {
+  std::vector<ResidentBlockPtr> needed;
+  for (const std::uint32_t n : mesh.graph.dependencies(block)) needed.push_back(mesh.resident[n]);
+  const BlockHierarchyPtr hierarchy =
+      BlockHierarchyJob(mesh.resident[block], std::move(needed)).run();
+  ActiveCut cut(hierarchy->data().hierarchy);
+  split_as(list, cut);
+  return extract_piece_of(mesh, cut, hierarchy->data(), mesh.resident[block]->data());
+}
+
 }  // namespace
 
 Mesh extract_blocks(const BlockMesh::Impl& mesh) {
@@ -95,8 +106,11 @@ Mesh extract_blocks(const BlockMesh::Impl& mesh) {
   meshes.push_back(extract_whole(mesh));  // with materials and parts, if with no triangle
   for (const std::uint32_t block : mesh.cut) {
     const BlockCut* const cut = mesh.cuts.cut(block);
-    if (cut != nullptr && cut->live() != nullptr) {
-      meshes.push_back(extract_by_vertex(mesh, *cut));
+    if (const LevelList* const list = mesh.levels.list(block)) {
+      meshes.push_back(extract_level(mesh, block, *list));
+    } else if (cut != nullptr && cut->live() != nullptr) {
+      meshes.push_back(
+          extract_piece_of(mesh, *cut->live(), cut->data(), mesh.resident[block]->data()));
     }
   }
   return meshes.size() == 1 ? std::move(meshes[0].mesh) : join_meshes(meshes);

@@ -3,6 +3,7 @@
 #include "crease/shading.h"
 #include "hierarchy/geometric_normal.h"
 #include "runtime/draw_values.h"
+#include "runtime/group_by_place.h"
 #include "runtime/resident_block.h"
 
 #include <algorithm>
@@ -13,9 +14,6 @@
 namespace crease {
 
 namespace {
-
-// Of a group at most: small enough for a view to leave out most of what is beside it.
-constexpr std::size_t kGroupTriangles = 128;
 
 class BlockLayout {
  public:
@@ -42,7 +40,8 @@ class BlockLayout {
     std::vector<std::size_t> ends;
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
       while (end < order.size() && label(order[end]) == label(order[begin])) ++end;
-      part_by_place(order, begin, end, ends);
+      group_by_place(
+          order, begin, end, [this](std::uint32_t t) { return place(t); }, ends);
     }
     for (std::size_t begin = 0, i = 0; i < ends.size(); begin = ends[i++]) {
       BlockGroup group{.patch = label(order[begin]),
@@ -58,40 +57,13 @@ class BlockLayout {
   }
 
  private:
-  // Halves until they are small, across the longest side; the order within stays.
-  void part_by_place(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
-                     std::vector<std::size_t>& ends) const {
-    if (end - begin <= kGroupTriangles) return ends.push_back(end);
-    const auto place = [this](std::uint32_t t) {
-      std::array<std::int64_t, 3> sum{};
-      for (const std::uint32_t v : mesh_.triangles[t]) {
-        const Vec3i& p = mesh_.positions[v];
-        sum = {sum[0] + p.x, sum[1] + p.y, sum[2] + p.z};
-      }
-      return sum;
-    };
-    std::array<std::int64_t, 3> low = place(order[begin]), high = low;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::array<std::int64_t, 3> at = place(order[i]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], at[k]);
-        high[k] = std::max(high[k], at[k]);
-      }
+  std::array<std::int64_t, 3> place(std::uint32_t t) const {
+    std::array<std::int64_t, 3> sum{};
+    for (const std::uint32_t v : mesh_.triangles[t]) {
+      const Vec3i& p = mesh_.positions[v];
+      sum = {sum[0] + p.x, sum[1] + p.y, sum[2] + p.z};
     }
-    std::size_t axis = 0;
-    for (std::size_t k = 1; k < 3; ++k) {
-      if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
-    }
-    const auto at = [&order](std::size_t i) { return order.begin() + std::ptrdiff_t(i); };
-    const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-      const std::int64_t x = place(a)[axis], y = place(b)[axis];
-      return x != y ? x < y : a < b;
-    });
-    std::sort(at(begin), at(middle));
-    std::sort(at(middle), at(end));
-    part_by_place(order, begin, middle, ends);
-    part_by_place(order, middle, end, ends);
+    return sum;
   }
 
   struct Layer {

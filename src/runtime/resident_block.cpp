@@ -1,6 +1,7 @@
 #include "runtime/resident_block.h"
 
 #include "mesh/painted_layer.h"
+#include "runtime/group_by_place.h"
 
 #include <algorithm>
 #include <utility>
@@ -18,11 +19,12 @@ constexpr std::size_t kBytesOfArray = 64;  // that is packed, at least
 constexpr std::size_t kBytesOfBlock = sizeof(ResidentBlock::Data) + 1024;  // beside its arrays
 constexpr std::size_t kBytesOfGroup = sizeof(BlockGroup);
 
-// Groups of a patch are halves of halves of at most 128 triangles (lay_out_block.cpp).
+// Each patch has some of its own.
 std::size_t most_groups(const BlockFacts& facts, const ModelFacts& model) {
   const bool is_finest = facts.band == 0;
   const std::size_t patches = is_finest ? 1 : model.bands[facts.band - 1u].patches;
-  return std::min<std::size_t>(facts.triangles_fine, patches + facts.triangles_fine / 64);
+  return std::min<std::size_t>(facts.triangles_fine,
+                               patches + facts.triangles_fine / (kGroupTriangles / 2));
 }
 
 // Of one value, as bits.

@@ -2,6 +2,7 @@
 
 #include "codec/layer_values.h"
 #include "hierarchy/geometric_normal.h"
+#include "runtime/block_errors.h"
 #include "runtime/block_mesh_impl.h"
 #include "runtime/draw_values.h"
 #include "runtime/view_error.h"
@@ -31,8 +32,26 @@ struct Place {
   std::uint32_t block = 0, triangle = 0;
 };
 
+// A block that is by vertex, or at a level between its ends.
+struct OneCut {
+  const ResidentBlock* resident = nullptr;
+  const BlockCut* by_vertex = nullptr;
+  const LevelList* list = nullptr;  // or this one,
+  BlockHierarchyPtr hierarchy;      // and what it is a cut of
+
+  const ResidentBlock& block() const { return *resident; }
+  const BlockHierarchy::Data& data() const {
+    return by_vertex != nullptr ? by_vertex->data() : hierarchy->data();
+  }
+  bool is_done(SplitId s) const {
+    if (by_vertex != nullptr) return by_vertex->is_done(s);
+    return (list->done[index_of(s) / 64] >> (index_of(s) % 64) & 1) != 0;
+  }
+};
+
 // The lowest node that is above the leaf and not below a split that is not done.
-NodeId active_above(const BlockCut& cut, NodeId leaf) {
+template <typename Cut>
+NodeId active_above(const Cut& cut, NodeId leaf) {
   const VertexHierarchy& h = cut.data().hierarchy.vertices;
   NodeId active = leaf;
   for (NodeId n = leaf; !h.is_root(n);) {
@@ -46,7 +65,10 @@ NodeId active_above(const BlockCut& cut, NodeId leaf) {
 class BlocksOracle {
  public:
   explicit BlocksOracle(const BlockMesh::Impl& mesh) : mesh_(mesh) {
-    for (const std::uint32_t block : mesh_.cut) find_sources(block);
+    for (const std::uint32_t block : mesh_.cut) {
+      find_sources(block);
+      find_cut(block);
+    }
   }
 
   Mesh run() {
@@ -61,6 +83,7 @@ class BlocksOracle {
                                 .of_corner = {}});
     }
     for (const std::uint32_t block : mesh_.cut) {
+      if (!is_refined(block)) continue;
       const KeptEnd& end = data(block).end;
       for (std::uint32_t t = 0; t < end.triangle_count(); ++t) {
         const std::uint32_t finer = mesh_.graph.next_finer(band(block), end.label(t));
@@ -76,7 +99,25 @@ class BlocksOracle {
   }
   std::uint16_t band(std::uint32_t block) const { return data(block).entry.facts.band; }
   bool is_refined(std::uint32_t block) const {
-    return block < mesh_.is_refined.size() && mesh_.is_refined[block] != 0;
+    return block != kNone && mesh_.levels.shown(block) > 0;
+  }
+
+  void find_cut(std::uint32_t block) {
+    OneCut cut{mesh_.resident[block].get(), mesh_.cuts.cut(block), mesh_.levels.list(block), {}};
+    if (cut.by_vertex == nullptr && cut.list == nullptr) return;
+    if (cut.by_vertex == nullptr) {
+      std::vector<ResidentBlockPtr> needed;
+      for (const std::uint32_t n : mesh_.graph.dependencies(block)) {
+        needed.push_back(mesh_.resident[n]);
+      }
+      cut.hierarchy = BlockHierarchyJob(mesh_.resident[block], std::move(needed)).run();
+    }
+    cuts_.emplace(block, std::move(cut));
+  }
+  // Null: the block is shown whole.
+  const OneCut* cut_of(std::uint32_t block) const {
+    const auto at = cuts_.find(block);
+    return at == cuts_.end() ? nullptr : &at->second;
   }
 
   // Per triangle of its coarse end, where it comes from.
@@ -92,7 +133,7 @@ class BlocksOracle {
   }
 
   Active active(const codec::VertexName& name) const {
-    const BlockCut* const cut = mesh_.cuts.cut(name.block);
+    const OneCut* const cut = cut_of(name.block);
     if (cut == nullptr) {
       return {name.block, name.vertex, data(name.block).end.position(name.vertex)};
     }
@@ -108,12 +149,12 @@ class BlocksOracle {
     return {name.block, static_cast<std::uint32_t>(node), d.hierarchy.vertices.position_of(node)};
   }
 
-  static bool is_split(const BlockCut& cut, std::uint32_t root) {
+  static bool is_split(const OneCut& cut, std::uint32_t root) {
     const SplitId s = cut.data().hierarchy.vertices.split_of(cut.data().node_of_root[root]);
     return s != kNoSplit && cut.is_done(s);
   }
   bool has_split_root(const Place& at) const {
-    const BlockCut* const cut = mesh_.cuts.cut(at.block);
+    const OneCut* const cut = cut_of(at.block);
     if (cut == nullptr) return true;
     for (const std::uint32_t root : cut->data().roots_of_triangle[at.triangle]) {
       if (is_split(*cut, root)) return true;
@@ -152,7 +193,7 @@ class BlocksOracle {
                  std::size_t k) {
     AttributeLayer& layer = result_.layers[l];
     std::vector<float> value(layer.dimension, 0);
-    const BlockCut* const cut = mesh_.cuts.cut(at.block);
+    const OneCut* const cut = cut_of(at.block);
     bool is_derived = false;
     if (cut == nullptr) {
       const ResidentBlock::Data& block = data(at.block);
@@ -172,7 +213,7 @@ class BlocksOracle {
   }
 
   // True if the triangle shows its geometric normal.
-  bool read_value(const BlockCut& cut, const Place& at, const Active& corner, std::size_t l,
+  bool read_value(const OneCut& cut, const Place& at, const Active& corner, std::size_t l,
                   std::size_t k, std::vector<float>& value) {
     const MeshHierarchy& h = cut.data().hierarchy;
     std::vector<std::uint32_t>& new_of = new_of_triangle_[at.block];
@@ -199,6 +240,7 @@ class BlocksOracle {
 
   const BlockMesh::Impl& mesh_;
   std::map<std::uint32_t, std::vector<Place>> sources_;
+  std::map<std::uint32_t, OneCut> cuts_;
   std::map<std::uint32_t, std::vector<std::uint32_t>> new_of_triangle_;  // per block by vertex
   Mesh result_;
 };
@@ -224,6 +266,49 @@ void check_by_vertex(const BlockMesh& mesh) {
   const Grid& grid = mesh.facts().grid;
   const auto place = [&grid](const Vec3d& p) { return draw_position(grid, grid.nearest(p)); };
   CHECK((drawn == drawn_of_mesh(shown, place)));
+}
+
+// How wrong the vertices of all resident blocks are, from fine to coarse, as the finer ones tell.
+std::size_t check_levels_are_right(const BlockMesh& mesh, const ViewParameters& view) {
+  const BlockMesh::Impl& impl = mesh.impl();
+  const ViewError error(view, mesh.facts().grid);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, RoundedError> error_of_name;
+  std::size_t between = 0, wrong = 0;
+  for (std::size_t i = impl.cut.size(); i-- > 0;) {
+    const std::uint32_t block = impl.cut[i];
+    if (impl.graph.is_base(block)) continue;
+    std::vector<ResidentBlockPtr> needed;
+    for (const std::uint32_t n : impl.graph.dependencies(block)) {
+      needed.push_back(impl.resident[n]);
+    }
+    const BlockHierarchyPtr hierarchy =
+        BlockHierarchyJob(impl.resident[block], std::move(needed)).run();
+    const BlockHierarchy::Data& data = hierarchy->data();
+    BlockErrors errors(data);
+    const ResidentBlock::Data& resident = impl.resident[block]->data();
+    for (std::uint32_t v = 0; v < resident.end.vertex_count(); ++v) {
+      const codec::VertexName name = resident.end.name(v);
+      const auto known = error_of_name.find({name.block, name.vertex});
+      if (known != error_of_name.end()) errors.tighten(v, known->second);
+    }
+    errors.settle();
+    for (std::uint32_t r = 0; r < data.node_of_root.size(); ++r) {
+      const codec::VertexName name = resident.root_names[r];
+      error_of_name[{name.block, name.vertex}] = errors.of_root(r);
+    }
+    const int level = impl.levels.shown(block);
+    if (level == kFullLevel) continue;
+    const LevelList* const list = impl.levels.list(block);
+    between += list != nullptr;
+    const VertexHierarchy& h = data.hierarchy.vertices;
+    for (std::size_t s = 0; s < h.split_count(); ++s) {
+      if (list != nullptr && (list->done[s / 64] >> (s % 64) & 1) != 0) continue;
+      const Vec3f position = error.position(h.position_of(h.node_of_split[s]));
+      wrong += error.is_wrong(error.watch(errors.bounds()[s], position, 1));
+    }
+  }
+  CHECK(wrong == 0);
+  return between;
 }
 
 std::size_t check_nothing_is_wrong(const BlockMesh& mesh, const ViewParameters& view) {
