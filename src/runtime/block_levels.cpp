@@ -89,10 +89,15 @@ class PieceMaker {
         piece_of_root[order_[i]] = piece;
       }
     }
+    const std::size_t count = ends_.size();
+    for (int k = 1; k < kFullLevel; ++k) {
+      for (std::size_t i = 0; i < count; ++i) facts_.pieces.push_back(facts_.pieces[i]);
+    }
     for (std::size_t s = 0; s < bounds_.size(); ++s) {
-      LevelPiece& piece = facts_.pieces[piece_of_root[root_split_[s]]];
-      for (int k = 0; k < kFullLevel && !levels_.is_done(s, k); ++k) {
-        hold(bounds_[s], piece.left[static_cast<std::size_t>(k)]);
+      for (int k = 0; k < kFullLevel; ++k) {
+        if (levels_.is_done(s, k)) continue;
+        const std::size_t first = static_cast<std::size_t>(k) * count;
+        hold(bounds_[s], facts_.pieces[first + piece_of_root[root_split_[s]]].left);
       }
     }
   }
@@ -138,7 +143,7 @@ class PieceMaker {
     }
     LevelPiece piece;
     piece.center = center;
-    for (SplitBounds& bounds : piece.left) bounds.radius = RoundedUp::from(radius);
+    piece.left.radius = RoundedUp::from(radius);
     facts_.pieces.push_back(piece);
     ends_.push_back(end);
   }

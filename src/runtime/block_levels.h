@@ -28,16 +28,17 @@ namespace crease {
 inline constexpr int kFullLevel = 6;
 inline constexpr double kLevelRatio = 0.70710678;
 
-// A piece of the block: around the vertices of its coarse end, how wrong each level leaves it.
+// A piece of the block: around some vertices of its coarse end, how wrong a level leaves them.
 struct LevelPiece {
   Vec3f center;  // from the grid's origin, model units
-  std::array<SplitBounds, kFullLevel> left;
+  SplitBounds left;
 };
 
 struct LevelFacts {
   std::array<LevelError, kFullLevel> left;  // per level but the full one: the largest
   std::vector<RoundedError> of_root;        // empty: the block has no hierarchy
-  std::vector<LevelPiece> pieces;           // a level is right where it is in all of them
+  // All of level 0, then all of level 1, and so on. A level is right where it is in all of its.
+  std::vector<LevelPiece> pieces;
 };
 
 // What a level shows, as a list of its own, group by group.

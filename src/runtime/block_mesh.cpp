@@ -14,7 +14,7 @@ using codec::ModelSchema;
 namespace {
 
 // So long a list stays that is not shown, while there is room.
-constexpr std::uint64_t kUpdatesOfList = 128;
+constexpr std::uint32_t kUpdatesOfList = 128;
 
 DrawList draw_list_of(const LevelList& list, const ModelSchema& schema) {
   const auto part = [](const BlockPart& p) -> DrawPart {
@@ -117,7 +117,7 @@ void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, bool 
   }
   was_by_vertex = parameters.by_vertex;
   if (lists) list_shown();
-  list_cuts();
+  if (lists || was_by_vertex) list_cuts();
   list_missing_hierarchies();
 }
 

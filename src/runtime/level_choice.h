@@ -32,7 +32,7 @@ class LevelChoice {
   void insert(BlockLevelsPtr levels) { waiting_.push_back(std::move(levels)); }
   void drop(std::uint32_t block);  // it is not resident any more
   // Lists that were not shown for so many choices, or at all in the last one. True if any.
-  bool drop_lists(std::uint64_t age);
+  bool drop_lists(std::uint32_t age);
 
   // `cut`: ascending. `keep`: the error under which a level is given up for a coarser one. True if
   // what is shown has changed.
@@ -40,9 +40,7 @@ class LevelChoice {
   // All of the cut whole.
   bool choose_whole(std::span<const std::uint32_t> cut);
 
-  int shown(std::uint32_t block) const {
-    return block < entries_.size() ? entries_[block].shown : 0;
-  }
+  int shown(std::uint32_t block) const { return block < states_.size() ? states_[block].shown : 0; }
   // Null: it is shown whole, or not.
   const LevelList* list(std::uint32_t block) const {
     const int level = shown(block);
@@ -54,7 +52,7 @@ class LevelChoice {
   LevelFactsPtr facts(std::uint32_t block) const {
     return block < entries_.size() ? entries_[block].facts : nullptr;
   }
-  int wanted(std::uint32_t block) const { return entries_[block].wanted; }
+  int wanted(std::uint32_t block) const { return states_[block].wanted; }
   // As BlockMesh::missing_levels(), of those of the last choose().
   void list_missing(std::span<const std::uint32_t> cut, std::vector<BlockId>& missing) const;
   std::size_t bytes_of(std::uint32_t block) const;
@@ -66,26 +64,36 @@ class LevelChoice {
     LevelFactsPtr facts;
     std::array<SplitBounds, kFullLevel> bounds{};  // what each level leaves
     std::array<LevelListPtr, kFullLevel> lists;    // per level; that of 0 is none
-    std::array<std::uint64_t, kFullLevel> shown_at{};
-    std::uint8_t wanted = 0, shown = 0, wrong_piece = 0;
-    bool is_stale = false;                     // finer blocks know more
-    std::uint64_t needed_at = 0, seen_at = 0;  // the last choice that had it so
+    std::array<std::uint32_t, kFullLevel> shown_at{};
+  };
+  // What each choice looks at of every block of the cut.
+  struct State {
+    std::uint32_t needed_at = 0, seen_at = 0;  // the last choice that had it so
+    std::uint8_t wanted = 0, shown = 0;
+    std::uint8_t wrong_piece = 0;  // the one that was wrong when it was looked at last
+    std::uint8_t lists = 0;        // a bit per level: its list is there
+    bool is_known = false;
+    bool can_choose = false;  // it is, and the block is not always whole
+    bool is_stale = false;    // finer blocks know more
   };
 
   void take_waiting();
   void take(const BlockLevels& levels);
   int wanted_level(std::uint32_t block, const ViewError& error, float keep);
   bool is_wrong(std::uint32_t block, int level, const ViewError& error, float limit);
-  int level_at_hand(const Entry& entry, int level) const;
+  static int level_at_hand(const State& state, int level);
+  void grow(std::size_t blocks);
   bool show(std::uint32_t block, int level);
   bool hide_others();
 
   const BlockGraph& graph_;
   std::vector<Entry> entries_;  // per block
+  std::vector<State> states_;   // likewise
   std::vector<std::uint32_t> was_shown_, is_shown_;
   std::vector<std::uint32_t> resized_;
   std::vector<BlockLevelsPtr> waiting_;
-  std::uint64_t choices_ = 0;
+  bool lists_have_changed_ = false;
+  std::uint32_t choices_ = 0;
 };
 
 }  // namespace crease
