@@ -238,9 +238,12 @@ void print(const Granularity& g) {
   std::printf("\n");
 }
 
-// Blocks by vertex are worked out in the background and come over a few with each update.
+// Levels and blocks by vertex are worked out in the background and come over a few with each
+// update.
 void wait_for(BlockStreamer& streamer, const BlockViewParameters& parameters) {
-  while (!streamer.update(parameters).is_complete) streamer.wait(std::chrono::milliseconds(100));
+  while (!streamer.update(parameters).is_complete || !streamer.mesh().missing_levels().empty()) {
+    streamer.wait(std::chrono::milliseconds(100));
+  }
 }
 
 template <typename Update>
@@ -256,7 +259,9 @@ std::size_t drawn_triangles(const BlockMesh& mesh, const Camera& camera) {
   for (const ShownRange& r : shown_in_view(mesh.shown(), mesh.facts().grid.origin, camera)) {
     count += r.triangle_count();
   }
-  for (const ShownCut& cut : mesh.shown_cuts()) count += cut.triangle_count();
+  for (const ShownCut& cut : mesh.shown_cuts()) {
+    for (const ShownRange& r : shown_in_view(cut, camera)) count += r.triangle_count();
+  }
   return count;
 }
 

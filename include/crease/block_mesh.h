@@ -28,6 +28,15 @@
 // is at a block's fine end is known from the hierarchies of the finer blocks, of those that have
 // been there; so with more of them the same view may show less.
 //
+// By block, a block need not be shown whole or not at all: where its coarse end is off by little
+// more than is allowed, a mesh of it between its ends will do. It comes as a list of its own:
+//
+//   for (const ShownCut& cut : mesh->shown_cuts()) draw(cut.list);
+//   for (BlockId id : mesh->missing_levels())                         // whenever there is time
+//     if (auto job = mesh->levels_job(id)) mesh->insert(job->run());  // on any thread
+//
+// Until then the block is shown whole.
+//
 // BlockMesh does no input and has no threads: crease/block_streamer.h feeds one. What is shown is
 // at every moment a cut of blocks that are resident, however few they are; without any it is empty.
 #pragma once
@@ -131,6 +140,38 @@ class BlockHierarchyJob {
   std::vector<ResidentBlockPtr> needed_;
 };
 
+// How wrong a block is between its two ends, and what it shows at one of the levels there. Does not
+// change.
+class BlockLevels {
+ public:
+  struct Data;
+  explicit BlockLevels(std::unique_ptr<const Data> data);
+  ~BlockLevels();
+
+  BlockId id() const;
+  const Data& data() const { return *data_; }  // for the library
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+using BlockLevelsPtr = std::shared_ptr<const BlockLevels>;
+
+// Holds what making them takes, so that it runs on any thread.
+class BlockLevelsJob {
+ public:
+  struct Data;
+  explicit BlockLevelsJob(std::unique_ptr<const Data> data);
+  ~BlockLevelsJob();
+  BlockLevelsJob(BlockLevelsJob&&) noexcept;
+
+  BlockId id() const;
+  // Time and memory: those of a BlockHierarchyJob, of which nothing stays.
+  BlockLevelsPtr run() const;
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+
 struct BlockViewParameters {
   // By block, of these: camera, degrees, max_triangles, hysteresis, coarse_outside,
   // silhouette_weight. The errors are bounds of whole blocks. By vertex, inside the blocks that are
@@ -142,6 +183,8 @@ struct BlockViewParameters {
   std::size_t max_bytes = std::size_t(256) << 20;
   // May change with every update(). Blocks change over a few at a time, what they need first.
   bool by_vertex = false;
+  // By block: blocks may be shown between their ends. False: only whole or not at all.
+  bool in_levels = true;
 };
 
 // A run of groups of one block. Ranges are in triangles of the parts of its draw list.
@@ -152,12 +195,14 @@ struct ShownRange {
   std::size_t triangle_count() const { return std::size_t(sn.count) + fn.count + nsn.count; }
 };
 
-// What a block shows of its triangles by vertex.
+// What a block shows by vertex, or at a level between its ends.
 struct ShownCut {
   const ResidentBlock* block = nullptr;
   DrawList list;  // into the mesh; as for AdaptiveMesh, with positions that no triangle uses
   // Another one whenever `list` has changed, however often the block comes and goes.
   std::uint64_t revision = 0;
+  // At a level, all of the list, group by group; by vertex none.
+  std::span<const BlockGroup> groups{};
 
   std::size_t triangle_count() const {
     return list.sn.triangle_count() + list.fn.triangle_count() + list.nsn.triangle_count();
@@ -217,12 +262,21 @@ class BlockMesh {
   // As for blocks. What is not resident any more is let go.
   void insert(BlockHierarchyPtr hierarchy);
   BlockHierarchyPtr hierarchy(BlockId id) const;  // null: there is none
+
+  // By block: blocks of the cut of which levels are not known, or one that would do is not there,
+  // or more is known since of finer blocks; in this order, and fine ones first.
+  std::span<const BlockId> missing_levels() const;
+  // None where the block, or one that it needs, is not resident.
+  std::optional<BlockLevelsJob> levels_job(BlockId id) const;
+  // As for blocks. What is not resident any more is let go.
+  void insert(BlockLevelsPtr levels);
+
   // All of the view is shown as the last update() wanted it, as far as blocks are resident.
   bool has_arrived() const;
 
   // Both until the next update(). Coarse blocks first.
   std::span<const ShownRange> shown() const;     // whole groups
-  std::span<const ShownCut> shown_cuts() const;  // by vertex
+  std::span<const ShownCut> shown_cuts() const;  // by vertex, or between two ends
   std::size_t triangle_count() const;            // of what is shown
   // The largest of what is shown. By vertex O(vertices).
   LevelError error() const;

@@ -12,7 +12,7 @@
 //   every frame: for (std::size_t v = 0; v < 2; ++v) streamer->update(parameters[v], v);
 //
 // By vertex, hierarchies are made on the threads that decode, when there is nothing to decode;
-// until then blocks are shown whole.
+// until then blocks are shown whole. So are levels by block, once no block is missing.
 //
 // Memory: what BlockViewParameters::max_bytes allows of resident blocks, and beside that at most
 // StreamOptions::max_pending_bytes of payloads, of each thread the BlockFacts::decoded_bytes of

@@ -23,8 +23,12 @@ bool needs_block(const BlockFacts& block, const Grid& grid, const ViewParameters
 // O(groups).
 std::vector<ShownRange> shown_groups(std::span<const ShownRange> shown,
                                      const std::function<bool(const BlockGroup&)>& is_in);
+// The same of a cut that has groups: ranges of its list, with its block. Of any other, all of it.
+std::vector<ShownRange> shown_groups(const ShownCut& cut,
+                                     const std::function<bool(const BlockGroup&)>& is_in);
 // Those whose boxes are not beside the camera's view or behind it. `origin`: of the draw lists.
 std::vector<ShownRange> shown_in_view(std::span<const ShownRange> shown, const Vec3d& origin,
                                       const Camera& camera);
+std::vector<ShownRange> shown_in_view(const ShownCut& cut, const Camera& camera);
 
 }  // namespace crease

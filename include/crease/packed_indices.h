@@ -26,6 +26,7 @@ constexpr unsigned bits_for(std::size_t limit) {
 // Bits one after the other.
 class BitArray {
  public:
+  void reserve(std::size_t bits) { words_.reserve(bits / 64 + 2); }
   // `value` must have no more bits than said, at most 32.
   void append(std::uint32_t value, unsigned bits) {
     words_.resize((size_ + bits) / 64 + 2);  // reads look one word further
@@ -59,6 +60,7 @@ class PackedIndices {
   PackedIndices() = default;
   explicit PackedIndices(unsigned bits) : bits_(bits) {}  // at most 32
 
+  void reserve(std::size_t size) { packed_.reserve(size * bits_); }
   void push_back(Index index) {
     packed_.append(static_cast<std::uint32_t>(index), bits_);
     ++size_;

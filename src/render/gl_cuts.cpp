@@ -1,5 +1,7 @@
 #include "render/gl_cuts.h"
 
+#include "crease/block_view.h"
+
 namespace crease {
 
 namespace {
@@ -70,14 +72,21 @@ Result<DrawCount> GlCuts::draw(ProgramCache& programs, const DrawPass& pass, con
     const GlScene* const scene = find(cut);
     if (scene == nullptr || scene->box().empty || is_beside(pass.view, scene->box())) continue;
     if (color_of_block) of_block.surface = color_of_block(*cut.block);
-    if (const Status drawn = scene->draw(programs, pass, of_block); !drawn.ok()) {
-      return drawn.failure();
+    const std::vector<ShownRange> in_view = shown_groups(cut, [&](const BlockGroup& group) {
+      Box box;
+      for (const Vec3f& p : {group.low, group.high}) {
+        box.add(cut.list.origin + Vec3d{p.x, p.y, p.z});
+      }
+      return !is_beside(pass.view, box);
+    });
+    for (const ShownRange& range : in_view) {
+      const DrawRanges ranges{range.sn, range.fn, range.nsn};
+      if (const Status drawn = scene->draw(programs, pass, of_block, ranges); !drawn.ok()) {
+        return drawn.failure();
+      }
+      count.calls += (range.sn.count > 0) + (range.fn.count > 0) + (range.nsn.count > 0);
+      count.triangles += range.triangle_count();
     }
-    const DrawList& list = cut.list;
-    for (const DrawPart* part : {&list.sn, &list.fn, &list.nsn}) {
-      count.calls += part->triangle_count() > 0;
-    }
-    count.triangles += cut.triangle_count();
   }
   return count;
 }

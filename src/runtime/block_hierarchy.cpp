@@ -29,7 +29,7 @@ struct ModelOfOne {
 // The finest mesh of the block alone, and the contractions that lead to its coarse end.
 ModelOfOne model_of(const ResidentBlock::Data& block, std::span<const ResidentBlockPtr> needed) {
   codec::BlockUnfolder unfolder;
-  unfolder.add_alone(block.entry.facts, whole_end(block), block.splits,
+  unfolder.add_alone(block.entry.facts, block.end.unpacked().mesh, block.splits.unpacked(),
                      coarse_end_of(needed, block.entry.facts));
   ModelOfOne result;
   codec::ModelOfBlocks blocks(*block.schema, unfolder);
@@ -40,10 +40,10 @@ ModelOfOne model_of(const ResidentBlock::Data& block, std::span<const ResidentBl
 
 // The first child of a split keeps its parent's number, so a root is the first vertex of its tree.
 std::vector<std::uint32_t> roots_of_vertices(const ResidentBlock::Data& block) {
-  std::vector<std::uint32_t> root(block.end.names.size());
+  std::vector<std::uint32_t> root(block.end.vertex_count());
   const std::size_t roots = root.size() - block.splits.size();
   for (std::uint32_t v = 0; v < root.size(); ++v) {
-    root[v] = v < roots ? v : root[block.splits[v - roots].vertex];
+    root[v] = v < roots ? v : root[block.splits.vertex(v - roots)];
   }
   return root;
 }
@@ -69,7 +69,7 @@ void find_nodes(const ResidentBlock::Data& block, const HierarchyMaps& maps,
   data.roots_of_triangle.reserve(maps.new_of_triangle.size());
   for (std::uint32_t t = 0; t < maps.new_of_triangle.size(); ++t) {
     data.triangle_of[index_of(maps.new_of_triangle[t])] = t;
-    codec::Corners roots = block.end.mesh.triangles[t];
+    codec::Corners roots = block.end.triangle(t);
     for (std::uint32_t& v : roots) v = root_of_vertex[v];
     data.roots_of_triangle.push_back(roots);
   }
@@ -132,7 +132,8 @@ void count_requirable_splits(BlockHierarchy::Data& data) {
 }
 
 void sort_triangles_by_patch(const ResidentBlock::Data& block, BlockHierarchy::Data& data) {
-  const std::vector<std::uint32_t>& labels = block.end.labels;
+  std::vector<std::uint32_t> labels;
+  for (std::size_t t = 0; t < block.end.triangle_count(); ++t) labels.push_back(block.end.label(t));
   data.triangles_by_patch.resize(labels.size());
   std::iota(data.triangles_by_patch.begin(), data.triangles_by_patch.end(), 0);
   std::stable_sort(data.triangles_by_patch.begin(), data.triangles_by_patch.end(),

@@ -11,13 +11,36 @@ namespace crease {
 
 using codec::ModelSchema;
 
+namespace {
+
+// So long a list stays that is not shown, while there is room.
+constexpr std::uint32_t kUpdatesOfList = 128;
+
+DrawList draw_list_of(const LevelList& list, const ModelSchema& schema) {
+  const auto part = [](const BlockPart& p) -> DrawPart {
+    return {p.indices, p.normals, p.materials, p.colors, p.texcoords};
+  };
+  DrawList drawn;
+  drawn.origin = schema.facts.grid.origin;
+  drawn.positions = list.positions;
+  drawn.vertex_normals = list.vertex_normals;
+  drawn.sn = part(list.sn);
+  drawn.fn = part(list.fn);
+  drawn.nsn = part(list.nsn);
+  drawn.materials = schema.materials;
+  return drawn;
+}
+
+}  // namespace
+
 void BlockMesh::Impl::make_room() {
   const std::uint32_t count = graph.size();
   resident.resize(count);
+  runs.resize(count);
   for (auto block = static_cast<std::uint32_t>(bytes_of_block.size()); block < count; ++block) {
     bytes_of_block.push_back(resident_bytes_of(graph.entry(block).facts, *schema));
   }
-  vertex_bytes.resize(count, 0);
+  more_bytes.resize(count, 0);
   is_refined.resize(count, 0);
   wanted_at.resize(count, 0);
   has_changed = true;
@@ -30,7 +53,8 @@ BlockChooser::Limits BlockMesh::Impl::limits(const BlockViewParameters& paramete
 BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
   BlockUpdate report;
   const bool is_same = parameters.view == last.view && parameters.max_bytes == last.max_bytes &&
-                       parameters.by_vertex == last.by_vertex;
+                       parameters.by_vertex == last.by_vertex &&
+                       parameters.in_levels == last.in_levels;
   if (is_same && !has_changed) return report;
   has_changed = false;
   last = parameters;
@@ -47,13 +71,34 @@ BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
   for (const BlockChooser::Candidate& wrong : chooser.wrong()) {
     if (!is_refined[wrong.block]) view_error = std::max(view_error, wrong.error);
   }
+  const bool have_changed = choose_levels(parameters);
   drop_beyond(parameters.max_bytes, report);
-  move_vertices(parameters, report);
+  move_vertices(parameters, have_changed || report.refined + report.coarsened > 0, report);
   return report;
 }
 
-void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, BlockUpdate& report) {
-  bool lists = report.refined + report.coarsened > 0;
+// True if blocks are shown at other levels than before.
+bool BlockMesh::Impl::choose_levels(const BlockViewParameters& parameters) {
+  missing_levels.clear();
+  bool have_changed = false;
+  if (parameters.by_vertex || !parameters.in_levels) {
+    have_changed = levels.choose_whole(cut);
+  } else {
+    const auto keep = static_cast<float>(1 / std::max(parameters.view.hysteresis, 1.0));
+    have_changed = levels.choose(cut, ViewError(parameters.view, schema->facts.grid), keep);
+    levels.list_missing(cut, missing_levels);
+  }
+  const bool are_too_many = resident_bytes > parameters.max_bytes;
+  if (are_too_many || updates % kUpdatesOfList == 0) {
+    levels.drop_lists(are_too_many ? 0 : kUpdatesOfList);
+  }
+  for (const std::uint32_t block : levels.take_resized()) count_bytes(block);
+  return have_changed;
+}
+
+void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, bool have_changed,
+                                    BlockUpdate& report) {
+  bool lists = have_changed;
   if (parameters.by_vertex) {
     const VertexCuts::Report moved =
         cuts.update({resident, cut, is_refined}, parameters.view, lists || !was_by_vertex);
@@ -72,18 +117,23 @@ void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, Block
   }
   was_by_vertex = parameters.by_vertex;
   if (lists) list_shown();
-  list_cuts();
+  if (lists || was_by_vertex) list_cuts();
   list_missing_hierarchies();
 }
 
 void BlockMesh::Impl::list_cuts() {
   shown_cuts.clear();
   cut_triangles = 0;
-  if (!was_by_vertex) return;
   for (const std::uint32_t block : cut) {
     const BlockCut* const by_vertex = cuts.cut(block);
-    if (by_vertex == nullptr || by_vertex->live() == nullptr) continue;
-    shown_cuts.push_back({resident[block].get(), by_vertex->draw_list(), by_vertex->revision()});
+    if (const LevelList* const list = levels.list(block)) {
+      shown_cuts.push_back(
+          {resident[block].get(), draw_list_of(*list, *schema), list->revision, list->groups});
+    } else if (by_vertex != nullptr && by_vertex->live() != nullptr) {
+      shown_cuts.push_back({resident[block].get(), by_vertex->draw_list(), by_vertex->revision()});
+    } else {
+      continue;
+    }
     cut_triangles += shown_cuts.back().triangle_count();
     if (shown_cuts.back().triangle_count() == 0) shown_cuts.pop_back();
   }
@@ -97,13 +147,13 @@ void BlockMesh::Impl::list_missing_hierarchies() {
   }
 }
 
-// Of a resident block, what being by vertex takes.
+// Of a resident block, what levels and being by vertex take.
 void BlockMesh::Impl::count_bytes(std::uint32_t block) {
   if (!resident[block]) return;
-  const std::size_t now = cuts.bytes_of(block);
-  resident_bytes = resident_bytes + now - vertex_bytes[block];
-  bytes_of_block[block] = bytes_of_block[block] + now - vertex_bytes[block];
-  vertex_bytes[block] = now;
+  const std::size_t now = cuts.bytes_of(block) + levels.bytes_of(block);
+  resident_bytes = resident_bytes + now - more_bytes[block];
+  bytes_of_block[block] = bytes_of_block[block] + now - more_bytes[block];
+  more_bytes[block] = now;
 }
 
 void BlockMesh::Impl::move_cut(std::span<const std::uint32_t> chosen, BlockUpdate& report) {
@@ -137,19 +187,21 @@ void BlockMesh::Impl::drop_beyond(std::size_t max_bytes, BlockUpdate& report) {
   for (const std::uint32_t block : unwanted) {
     if (resident_bytes <= max_bytes) return;
     CREASE_ASSERT(!is_refined[block]);
-    resident_bytes -= resident[block]->bytes() + vertex_bytes[block];
-    vertex_bytes[block] = 0;  // bytes_of_block still tells what it takes
+    resident_bytes -= resident[block]->bytes() + more_bytes[block];
+    more_bytes[block] = 0;  // bytes_of_block still tells what it takes
     cuts.drop(block);
+    levels.drop(block);
+    runs[block] = {};
     --resident_count;
     resident[block] = nullptr;
     report.dropped.push_back(graph.entry(block).id);
   }
 }
 
-// A group is shown unless the block that goes on with it is refined.
+// A group is shown unless the block that goes on with it shows something.
 bool BlockMesh::Impl::is_shown(std::uint32_t block, std::uint32_t patch) const {
   const std::uint32_t finer = graph.next_finer(graph.entry(block).facts.band, patch);
-  return finer == kNone || finer >= is_refined.size() || !is_refined[finer];
+  return finer == kNone || levels.shown(finer) == 0;
 }
 
 // Of what is shown or vanished: what the blocks that would go on from here say of their coarse
@@ -157,7 +209,8 @@ bool BlockMesh::Impl::is_shown(std::uint32_t block, std::uint32_t patch) const {
 LevelError BlockMesh::Impl::error_of_cut() const {
   LevelError error;
   const auto add = [&](std::uint32_t block) {
-    if (!is_refined[block]) error = larger(error, graph.entry(block).facts.coarse);
+    const LevelError& coarse = graph.entry(block).facts.coarse;
+    error = larger(error, is_refined[block] ? levels.left(block, coarse) : coarse);
   };
   for (const std::uint32_t block : graph.starts()) add(block);
   for (const std::uint32_t block : cut) {
@@ -170,26 +223,44 @@ void BlockMesh::Impl::list_shown() {
   shown.clear();
   shown_triangles = 0;
   for (const std::uint32_t block : cut) {
-    if (cuts.cut(block) == nullptr) list_shown_of(block);
+    if (cuts.cut(block) == nullptr && levels.shown(block) == kFullLevel) list_shown_of(block);
   }
   for (const ShownRange& range : shown) shown_triangles += range.triangle_count();
-  shown_error = error_of_cut();
 }
 
 void BlockMesh::Impl::list_shown_of(std::uint32_t block) {
   bool goes_on = false;
-  for (const BlockGroup& group : resident[block]->groups()) {
-    const bool shows = is_shown(block, group.patch);
+  for (const PatchRun& run : runs[block]) {
+    const bool shows = run.finer == kNone || levels.shown(run.finer) == 0;
     if (shows && goes_on) {
       ShownRange& range = shown.back();
-      range.sn.count += group.sn.count;
-      range.fn.count += group.fn.count;
-      range.nsn.count += group.nsn.count;
+      range.sn.count += run.range.sn.count;
+      range.fn.count += run.range.fn.count;
+      range.nsn.count += run.range.nsn.count;
     } else if (shows) {
-      shown.push_back({resident[block].get(), group.sn, group.fn, group.nsn});
+      shown.push_back(run.range);
     }
     goes_on = shows;
   }
+}
+
+std::vector<PatchRun> BlockMesh::Impl::runs_of(const ResidentBlock& block) const {
+  std::vector<PatchRun> result;
+  const BlockGroup* before = nullptr;
+  for (const BlockGroup& group : block.groups()) {
+    if (before == nullptr || before->patch != group.patch) {
+      result.push_back({graph.next_finer(block.facts().band, group.patch),
+                        {&block, group.sn, group.fn, group.nsn}});
+    } else {
+      ShownRange& range = result.back().range;
+      range.sn.count += group.sn.count;
+      range.fn.count += group.fn.count;
+      range.nsn.count += group.nsn.count;
+    }
+    before = &group;
+  }
+  result.shrink_to_fit();
+  return result;
 }
 
 Result<BlockMesh> BlockMesh::open(const BlockFile& file) {
@@ -278,6 +349,7 @@ void BlockMesh::insert(ResidentBlockPtr block) {
   // As if it had just been wanted: what was prefetched is not the first to go.
   std::uint64_t& wanted_at = impl_->wanted_at[index_of(block->id())];
   wanted_at = std::max(wanted_at, impl_->updates);
+  impl_->runs[index_of(block->id())] = impl_->runs_of(*block);
   place = std::move(block);
   impl_->has_changed = true;
 }
@@ -310,6 +382,34 @@ BlockHierarchyPtr BlockMesh::hierarchy(BlockId id) const {
   return impl_->cuts.hierarchy(static_cast<std::uint32_t>(index_of(id)));
 }
 
+std::span<const BlockId> BlockMesh::missing_levels() const {
+  return impl_->missing_levels;
+}
+
+std::optional<BlockLevelsJob> BlockMesh::levels_job(BlockId id) const {
+  auto data = std::make_unique<BlockLevelsJob::Data>();
+  data->block = resident(id);
+  if (!data->block) return std::nullopt;
+  const auto block = static_cast<std::uint32_t>(index_of(id));
+  for (const std::uint32_t n : impl_->graph.dependencies(block)) {
+    if (!impl_->resident[n]) return std::nullopt;
+    data->needed.push_back(impl_->resident[n]);
+  }
+  for (const std::uint32_t finer : impl_->graph.dependents(block)) {
+    const LevelFactsPtr facts = impl_->levels.facts(finer);
+    if (facts && impl_->resident[finer]) data->finer.push_back({impl_->resident[finer], facts});
+  }
+  data->level = impl_->levels.wanted(block);
+  return BlockLevelsJob(std::move(data));
+}
+
+void BlockMesh::insert(BlockLevelsPtr levels) {
+  CREASE_ASSERT(levels != nullptr);
+  if (!is_resident(levels->id())) return;
+  impl_->levels.insert(std::move(levels));
+  impl_->has_changed = true;
+}
+
 bool BlockMesh::has_arrived() const {
   return !impl_->was_by_vertex || impl_->cuts.has_arrived();
 }
@@ -327,7 +427,7 @@ std::size_t BlockMesh::triangle_count() const {
 }
 
 LevelError BlockMesh::error() const {
-  LevelError error = impl_->shown_error;
+  LevelError error = impl_->error_of_cut();
   for (const std::uint32_t block : impl_->cut) {
     const BlockCut* const by_vertex = impl_->cuts.cut(block);
     if (by_vertex != nullptr) error = larger(error, by_vertex->error());

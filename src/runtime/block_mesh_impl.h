@@ -5,6 +5,7 @@
 #include "crease/block_mesh.h"
 #include "runtime/block_choice.h"
 #include "runtime/block_graph.h"
+#include "runtime/level_choice.h"
 #include "runtime/resident_block.h"
 #include "runtime/vertex_cuts.h"
 
@@ -18,12 +19,19 @@
 
 namespace crease {
 
+// The groups of a block that go on with the same patch.
+struct PatchRun {
+  std::uint32_t finer = 0;  // the block; kNone: there is none
+  ShownRange range;
+};
+
 struct BlockMesh::Impl {
   Impl(codec::ModelSchema s, std::uint32_t blocks, std::uint32_t pages)
       : schema(std::make_shared<const codec::ModelSchema>(std::move(s))),
         page_count(pages),
         graph(schema->facts, blocks),
         chooser(graph, schema->facts.grid),
+        levels(graph),
         cuts(graph, schema->facts.grid) {}
   // Of the same file, with no block.
   explicit Impl(const Impl* other)
@@ -32,6 +40,7 @@ struct BlockMesh::Impl {
         page_count(other->page_count),
         graph(other->graph),
         chooser(graph, schema->facts.grid),
+        levels(graph),
         cuts(graph, schema->facts.grid) {
     make_room();
   }
@@ -40,12 +49,14 @@ struct BlockMesh::Impl {
   BlockUpdate update(const BlockViewParameters& parameters);
   void move_cut(std::span<const std::uint32_t> chosen, BlockUpdate& report);
   void drop_beyond(std::size_t max_bytes, BlockUpdate& report);
-  void move_vertices(const BlockViewParameters& parameters, BlockUpdate& report);
+  bool choose_levels(const BlockViewParameters& parameters);
+  void move_vertices(const BlockViewParameters& parameters, bool have_changed, BlockUpdate& report);
   void list_cuts();
   void list_missing_hierarchies();
   void count_bytes(std::uint32_t block);
   void list_shown();
   void list_shown_of(std::uint32_t block);
+  std::vector<PatchRun> runs_of(const ResidentBlock& block) const;
   bool is_shown(std::uint32_t block, std::uint32_t patch) const;
   LevelError error_of_cut() const;
   BlockChooser::Limits limits(const BlockViewParameters& parameters) const;
@@ -58,16 +69,17 @@ struct BlockMesh::Impl {
   // Per block.
   std::vector<ResidentBlockPtr> resident;
   std::vector<std::size_t> bytes_of_block;  // what it takes, or at most would
-  std::vector<std::size_t> vertex_bytes;    // what being by vertex takes
+  std::vector<std::size_t> more_bytes;      // what levels and being by vertex take
+  std::vector<std::vector<PatchRun>> runs;  // of resident ones
   std::vector<char> is_refined;             // it is in the cut: resident, and so is what it needs
   std::vector<std::uint64_t> wanted_at;     // the last update that wanted it
   std::vector<std::uint32_t> cut;           // those that are refined, ascending
   std::vector<BlockEntry> missing;
+  LevelChoice levels;
   VertexCuts cuts;
-  std::vector<BlockId> missing_hierarchies;
+  std::vector<BlockId> missing_hierarchies, missing_levels;
   std::vector<ShownRange> shown;
   std::vector<ShownCut> shown_cuts;
-  LevelError shown_error;
   float view_error = 0;
   std::size_t shown_triangles = 0, cut_triangles = 0, resident_count = 0, resident_bytes = 0;
   std::uint64_t updates = 0;

@@ -55,6 +55,7 @@ struct BlockStreamer::Impl {
   void take_from_others(std::size_t view, StreamReport& report);
   void take_hierarchies();
   void make_hierarchies(std::size_t view);
+  void make_levels(std::size_t view);
   bool others_have(BlockId id) const;
   void ask_for_page();
   void ask_for_names();
@@ -83,7 +84,8 @@ struct BlockStreamer::Impl {
   std::vector<BlockMesh> meshes;  // one a view; all have the same pages
   AsyncSourcePtr source;
   StreamOptions options;
-  std::set<BlockId> making;            // hierarchies
+  std::set<BlockId> making;  // hierarchies
+  std::set<BlockId> making_levels;
   std::map<BlockId, Pending> pending;  // by id: coarse ones first
   std::unordered_map<std::uint64_t, BlockId> block_of_ticket;
   std::size_t pending_bytes = 0;
@@ -113,6 +115,7 @@ StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters, 
   forget_unwanted();
   decode_what_can_be();
   make_hierarchies(view);
+  make_levels(view);
   report.is_complete = mesh.missing().empty() && !mesh.next_page() &&
                        mesh.missing_hierarchies().empty() && mesh.has_arrived();
   return report;
@@ -230,6 +233,10 @@ void BlockStreamer::Impl::take_hierarchies() {
     making.erase(hierarchy->id());
     for (BlockMesh& mesh : meshes) mesh.insert(hierarchy);
   }
+  for (const BlockLevelsPtr& levels : workers.take_levels()) {
+    making_levels.erase(levels->id());
+    for (BlockMesh& mesh : meshes) mesh.insert(levels);
+  }
 }
 
 // Of blocks that are shown, so that they are resident, and so is what they need.
@@ -245,6 +252,20 @@ void BlockStreamer::Impl::make_hierarchies(std::size_t view) {
       meshes[view].insert(other->hierarchy(id));
     } else if (std::optional<BlockHierarchyJob> job = meshes[view].hierarchy_job(id)) {
       making.insert(id);
+      workers.add(*std::move(job));
+    }
+  }
+}
+
+// Few at a time, and none while blocks are missing: those are worth more, and decoded sooner.
+void BlockStreamer::Impl::make_levels(std::size_t view) {
+  if (!is_nothing_missing()) return;
+  const std::size_t most = 1 + std::size_t(std::max(options.decode_threads, 0));
+  for (const BlockId id : meshes[view].missing_levels()) {
+    if (making_levels.size() >= most) return;
+    if (making_levels.contains(id)) continue;
+    if (std::optional<BlockLevelsJob> job = meshes[view].levels_job(id)) {
+      making_levels.insert(id);
       workers.add(*std::move(job));
     }
   }

@@ -16,6 +16,17 @@ bool is_within(const Range& group, const Range& range) {
   return group.first >= range.first && group.first + group.count <= range.first + range.count;
 }
 
+void take_group(const BlockGroup& group, const ResidentBlock* block, bool goes_on,
+                std::vector<ShownRange>& ranges) {
+  if (!goes_on) {
+    ranges.push_back({block, group.sn, group.fn, group.nsn});
+    return;
+  }
+  ranges.back().sn.count += group.sn.count;
+  ranges.back().fn.count += group.fn.count;
+  ranges.back().nsn.count += group.nsn.count;
+}
+
 // Five planes through the eye: four sides, and what is behind it.
 class ViewPlanes {
  public:
@@ -51,15 +62,26 @@ std::vector<ShownRange> shown_groups(std::span<const ShownRange> shown,
     for (const BlockGroup& group : range.block->groups()) {
       const bool takes = is_within(group.sn, range.sn) && is_within(group.fn, range.fn) &&
                          is_within(group.nsn, range.nsn) && is_in(group);
-      if (takes && goes_on) {
-        result.back().sn.count += group.sn.count;
-        result.back().fn.count += group.fn.count;
-        result.back().nsn.count += group.nsn.count;
-      } else if (takes) {
-        result.push_back({range.block, group.sn, group.fn, group.nsn});
-      }
+      if (takes) take_group(group, range.block, goes_on, result);
       goes_on = takes;
     }
+  }
+  return result;
+}
+
+std::vector<ShownRange> shown_groups(const ShownCut& cut,
+                                     const std::function<bool(const BlockGroup&)>& is_in) {
+  const auto all = [](const DrawPart& part) {
+    return Range{0, static_cast<std::uint32_t>(part.triangle_count())};
+  };
+  if (cut.groups.empty())
+    return {{cut.block, all(cut.list.sn), all(cut.list.fn), all(cut.list.nsn)}};
+  std::vector<ShownRange> result;
+  bool goes_on = false;
+  for (const BlockGroup& group : cut.groups) {
+    const bool takes = is_in(group);
+    if (takes) take_group(group, cut.block, goes_on, result);
+    goes_on = takes;
   }
   return result;
 }
@@ -69,6 +91,14 @@ std::vector<ShownRange> shown_in_view(std::span<const ShownRange> shown, const V
   const ViewPlanes planes(camera);
   const auto place = [&origin](const Vec3f& p) { return origin + Vec3d{p.x, p.y, p.z}; };
   return shown_groups(shown, [&](const BlockGroup& group) {
+    return planes.sees(place(group.low), place(group.high));
+  });
+}
+
+std::vector<ShownRange> shown_in_view(const ShownCut& cut, const Camera& camera) {
+  const ViewPlanes planes(camera);
+  const auto place = [&cut](const Vec3f& p) { return cut.list.origin + Vec3d{p.x, p.y, p.z}; };
+  return shown_groups(cut, [&](const BlockGroup& group) {
     return planes.sees(place(group.low), place(group.high));
   });
 }

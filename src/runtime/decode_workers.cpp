@@ -48,6 +48,21 @@ std::vector<BlockHierarchyPtr> DecodeWorkers::take_hierarchies() {
   return std::exchange(done_hierarchies_, {});
 }
 
+void DecodeWorkers::add(BlockLevelsJob job) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_levels_.push_back(std::move(job));
+    ++outstanding_hierarchies_;
+  }
+  has_work_.notify_one();
+}
+
+std::vector<BlockLevelsPtr> DecodeWorkers::take_levels() {
+  const std::lock_guard lock(mutex_);
+  outstanding_hierarchies_ -= done_levels_.size();
+  return std::exchange(done_levels_, {});
+}
+
 std::size_t DecodeWorkers::outstanding_hierarchies() const {
   const std::lock_guard lock(mutex_);
   return outstanding_hierarchies_;
@@ -65,8 +80,9 @@ double DecodeWorkers::seconds() const {
 
 bool DecodeWorkers::wait(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  return has_results_.wait_for(lock, timeout,
-                               [this] { return !done_.empty() || !done_hierarchies_.empty(); });
+  return has_results_.wait_for(lock, timeout, [this] {
+    return !done_.empty() || !done_hierarchies_.empty() || !done_levels_.empty();
+  });
 }
 
 void DecodeWorkers::work() {
@@ -80,12 +96,22 @@ void DecodeWorkers::work() {
 
 void DecodeWorkers::do_next(std::unique_lock<std::mutex>& lock) {
   if (!waiting_.empty()) return decode_next(lock);
-  const BlockHierarchyJob job = std::move(waiting_hierarchies_.front());
-  waiting_hierarchies_.pop_front();
+  if (!waiting_hierarchies_.empty()) {
+    make_next(lock, waiting_hierarchies_, done_hierarchies_);
+  } else {
+    make_next(lock, waiting_levels_, done_levels_);
+  }
+}
+
+template <typename Job, typename Done>
+void DecodeWorkers::make_next(std::unique_lock<std::mutex>& lock, std::deque<Job>& waiting,
+                              Done& done) {
+  const Job job = std::move(waiting.front());
+  waiting.pop_front();
   lock.unlock();
-  BlockHierarchyPtr hierarchy = job.run();
+  auto made = job.run();
   lock.lock();
-  done_hierarchies_.push_back(std::move(hierarchy));
+  done.push_back(std::move(made));
   has_results_.notify_all();
 }
 

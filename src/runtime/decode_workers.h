@@ -1,5 +1,5 @@
 // Threads that decode blocks, one after the other, in the order in which they were given, and while
-// there is nothing to decode make vertex hierarchies of those that are there.
+// there is nothing to decode make vertex hierarchies, or levels, of those that are there.
 #pragma once
 
 #include "crease/block_mesh.h"
@@ -34,8 +34,11 @@ class DecodeWorkers {
   void add(BlockHierarchyJob job);
   std::vector<BlockHierarchyPtr> take_hierarchies();  // after take()
 
+  void add(BlockLevelsJob job);
+  std::vector<BlockLevelsPtr> take_levels();  // likewise
+
   std::size_t outstanding() const;              // blocks added and not taken
-  std::size_t outstanding_hierarchies() const;  // likewise
+  std::size_t outstanding_hierarchies() const;  // and levels, likewise
   double seconds() const;                       // spent decoding, over all threads
   // Until one of both has something (true), or the time is over. Not without threads.
   bool wait(std::chrono::milliseconds timeout);
@@ -47,10 +50,14 @@ class DecodeWorkers {
   };
 
   void work();
-  bool has_waiting() const { return !waiting_.empty() || !waiting_hierarchies_.empty(); }
+  bool has_waiting() const {
+    return !waiting_.empty() || !waiting_hierarchies_.empty() || !waiting_levels_.empty();
+  }
   // The lock is held before and after, not while it works. Something must be waiting.
   void do_next(std::unique_lock<std::mutex>& lock);
   void decode_next(std::unique_lock<std::mutex>& lock);
+  template <typename Job, typename Done>
+  void make_next(std::unique_lock<std::mutex>& lock, std::deque<Job>& waiting, Done& done);
 
   mutable std::mutex mutex_;
   std::condition_variable has_work_, has_results_;
@@ -58,6 +65,8 @@ class DecodeWorkers {
   std::deque<BlockHierarchyJob> waiting_hierarchies_;
   std::vector<Decoded> done_;
   std::vector<BlockHierarchyPtr> done_hierarchies_;
+  std::deque<BlockLevelsJob> waiting_levels_;
+  std::vector<BlockLevelsPtr> done_levels_;
   std::size_t outstanding_ = 0, outstanding_hierarchies_ = 0;
   double seconds_ = 0;
   bool is_ending_ = false;

@@ -26,7 +26,8 @@ std::uint64_t name_of_node(const BlockMesh::Impl& mesh, const codec::VertexName&
 NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
   std::vector<std::uint32_t> blocks;
   for (const std::uint32_t block : mesh.cut) {
-    if (mesh.cuts.cut(block) == nullptr) blocks.push_back(block);
+    const bool is_whole = mesh.levels.shown(block) == kFullLevel;
+    if (is_whole && mesh.cuts.cut(block) == nullptr) blocks.push_back(block);
   }
   NamedMesh whole;
   std::vector<codec::PatchMesh> ends;
@@ -36,7 +37,7 @@ NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
   std::vector<std::vector<std::uint32_t>> vertices(blocks.size());
   std::unordered_map<std::uint64_t, std::uint32_t> vertex_of_name;
   for (std::uint32_t i = 0; i < blocks.size(); ++i) {
-    const codec::FineEnd& end = mesh.resident[blocks[i]]->data().end;
+    codec::FineEnd end = mesh.resident[blocks[i]]->data().end.unpacked();
     vertices[i].assign(end.names.size(), kNone);
     for (std::uint32_t t = 0; t < end.labels.size(); ++t) {
       if (!mesh.is_shown(blocks[i], end.labels[t])) continue;
@@ -53,7 +54,7 @@ NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
         vertices[i][v] = at->second;
       }
     }
-    ends.push_back(whole_end(mesh.resident[blocks[i]]->data()));
+    ends.push_back(std::move(end.mesh));
   }
   for (std::uint32_t i = 0; i < ends.size(); ++i) pieces.push_back({&ends[i], vertices[i]});
   codec::ModelSchema schema = *mesh.schema;
@@ -63,10 +64,9 @@ NamedMesh extract_whole(const BlockMesh::Impl& mesh) {
   return whole;
 }
 
-NamedMesh extract_by_vertex(const BlockMesh::Impl& mesh, const BlockCut& cut) {
-  const BlockHierarchy::Data& data = cut.data();
-  const ResidentBlock::Data& block = cut.block().data();
-  CutPiece piece = extract_piece(*cut.live());
+NamedMesh extract_piece_of(const BlockMesh::Impl& mesh, const ActiveCut& cut,
+                           const BlockHierarchy::Data& data, const ResidentBlock::Data& block) {
+  CutPiece piece = extract_piece(cut);
   NamedMesh result{std::move(piece.mesh), {}};
   // A root that is not split is a vertex of the block that made it.
   std::unordered_map<std::uint32_t, std::uint32_t> root_of_node;
@@ -82,10 +82,21 @@ NamedMesh extract_by_vertex(const BlockMesh::Impl& mesh, const BlockCut& cut) {
   }
   if (mesh.part_names.empty()) return result;
   for (const TriangleId t : piece.id_of_triangle) {
-    const std::uint32_t category = block.end.mesh.category[data.triangle_of[index_of(t)]];
+    const std::uint32_t category = block.end.category(data.triangle_of[index_of(t)]);
     result.mesh.part_of_triangle.push_back(PartId{category / mesh.schema->coding.material_count});
   }
   return result;
+}
+
+// The hierarchy that its list was made of, once more.
+NamedMesh extract_level(const BlockMesh::Impl& mesh, std::uint32_t block, const LevelList& list) {
+  std::vector<ResidentBlockPtr> needed;
+  for (const std::uint32_t n : mesh.graph.dependencies(block)) needed.push_back(mesh.resident[n]);
+  const BlockHierarchyPtr hierarchy =
+      BlockHierarchyJob(mesh.resident[block], std::move(needed)).run();
+  ActiveCut cut(hierarchy->data().hierarchy);
+  split_as(list, cut);
+  return extract_piece_of(mesh, cut, hierarchy->data(), mesh.resident[block]->data());
 }
 
 }  // namespace
@@ -95,8 +106,11 @@ Mesh extract_blocks(const BlockMesh::Impl& mesh) {
   meshes.push_back(extract_whole(mesh));  // with materials and parts, if with no triangle
   for (const std::uint32_t block : mesh.cut) {
     const BlockCut* const cut = mesh.cuts.cut(block);
-    if (cut != nullptr && cut->live() != nullptr) {
-      meshes.push_back(extract_by_vertex(mesh, *cut));
+    if (const LevelList* const list = mesh.levels.list(block)) {
+      meshes.push_back(extract_level(mesh, block, *list));
+    } else if (cut != nullptr && cut->live() != nullptr) {
+      meshes.push_back(
+          extract_piece_of(mesh, *cut->live(), cut->data(), mesh.resident[block]->data()));
     }
   }
   return meshes.size() == 1 ? std::move(meshes[0].mesh) : join_meshes(meshes);

@@ -3,6 +3,7 @@
 #include "crease/shading.h"
 #include "hierarchy/geometric_normal.h"
 #include "runtime/draw_values.h"
+#include "runtime/group_by_place.h"
 #include "runtime/resident_block.h"
 
 #include <algorithm>
@@ -14,13 +15,10 @@ namespace crease {
 
 namespace {
 
-// Of a group at most: small enough for a view to leave out most of what is beside it.
-constexpr std::size_t kGroupTriangles = 128;
-
 class BlockLayout {
  public:
-  explicit BlockLayout(ResidentBlock::Data& block)
-      : block_(block), schema_(*block.schema), mesh_(block.end.mesh) {
+  BlockLayout(const codec::FineEnd& end, ResidentBlock::Data& block)
+      : block_(block), schema_(*block.schema), end_(end), mesh_(end.mesh) {
     for (std::size_t l = 0; l < schema_.facts.layers.size(); ++l) {
       const LayerSchema& layer = schema_.facts.layers[l];
       const bool is_normal = layer.role == AttributeRole::Normal && layer.dimension == 3;
@@ -35,14 +33,15 @@ class BlockLayout {
     sort_vertices();
     std::vector<std::uint32_t> order(mesh_.triangles.size());
     std::iota(order.begin(), order.end(), 0);
-    const auto label = [&](std::uint32_t t) { return block_.end.labels[t]; };
+    const auto label = [&](std::uint32_t t) { return end_.labels[t]; };
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return label(a) < label(b); });
     reserve();
     std::vector<std::size_t> ends;
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
       while (end < order.size() && label(order[end]) == label(order[begin])) ++end;
-      part_by_place(order, begin, end, ends);
+      group_by_place(
+          order, begin, end, [this](std::uint32_t t) { return place(t); }, ends);
     }
     for (std::size_t begin = 0, i = 0; i < ends.size(); begin = ends[i++]) {
       BlockGroup group{.patch = label(order[begin]),
@@ -58,40 +57,13 @@ class BlockLayout {
   }
 
  private:
-  // Halves until they are small, across the longest side; the order within stays.
-  void part_by_place(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
-                     std::vector<std::size_t>& ends) const {
-    if (end - begin <= kGroupTriangles) return ends.push_back(end);
-    const auto place = [this](std::uint32_t t) {
-      std::array<std::int64_t, 3> sum{};
-      for (const std::uint32_t v : mesh_.triangles[t]) {
-        const Vec3i& p = mesh_.positions[v];
-        sum = {sum[0] + p.x, sum[1] + p.y, sum[2] + p.z};
-      }
-      return sum;
-    };
-    std::array<std::int64_t, 3> low = place(order[begin]), high = low;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::array<std::int64_t, 3> at = place(order[i]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], at[k]);
-        high[k] = std::max(high[k], at[k]);
-      }
+  std::array<std::int64_t, 3> place(std::uint32_t t) const {
+    std::array<std::int64_t, 3> sum{};
+    for (const std::uint32_t v : mesh_.triangles[t]) {
+      const Vec3i& p = mesh_.positions[v];
+      sum = {sum[0] + p.x, sum[1] + p.y, sum[2] + p.z};
     }
-    std::size_t axis = 0;
-    for (std::size_t k = 1; k < 3; ++k) {
-      if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
-    }
-    const auto at = [&order](std::size_t i) { return order.begin() + std::ptrdiff_t(i); };
-    const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-      const std::int64_t x = place(a)[axis], y = place(b)[axis];
-      return x != y ? x < y : a < b;
-    });
-    std::sort(at(begin), at(middle));
-    std::sort(at(middle), at(end));
-    part_by_place(order, begin, middle, ends);
-    part_by_place(order, middle, end, ends);
+    return sum;
   }
 
   struct Layer {
@@ -134,18 +106,22 @@ class BlockLayout {
         if (*first[v] != *code) is_shared_[v] = 0;
       }
     }
-    block_.position_of_vertex.resize(count);
+    std::vector<std::uint32_t>& place = position_of_vertex_;
+    place.resize(count);
     block_.positions.reserve(count);
     block_.vertex_normals.reserve(
         static_cast<std::size_t>(std::count(is_shared_.begin(), is_shared_.end(), 1)));
     for (const bool shared : {true, false}) {
       for (std::uint32_t v = 0; v < count; ++v) {
         if ((is_shared_[v] != 0) != shared) continue;
-        block_.position_of_vertex[v] = static_cast<std::uint32_t>(block_.positions.size());
+        place[v] = static_cast<std::uint32_t>(block_.positions.size());
         block_.positions.push_back(draw_position(schema_.facts.grid, mesh_.positions[v]));
         if (shared) block_.vertex_normals.push_back(first[v] ? normal(*first[v]) : Vec3f{});
       }
     }
+    block_.position_of_vertex = PackedIndices<>(bits_for(count));
+    block_.position_of_vertex.reserve(count);
+    for (const std::uint32_t p : place) block_.position_of_vertex.push_back(p);
   }
 
   TriangleKind kind(std::uint32_t t) const {
@@ -180,7 +156,7 @@ class BlockLayout {
     BlockPart& to = part(k);
     ++(k == TriangleKind::SN ? group.sn : k == TriangleKind::FN ? group.fn : group.nsn).count;
     for (const std::uint32_t v : mesh_.triangles[t]) {
-      to.indices.push_back(block_.position_of_vertex[v]);
+      to.indices.push_back(position_of_vertex_[v]);
       const Vec3f& p = block_.positions[to.indices.back()];
       group.low = {std::min(group.low.x, p.x), std::min(group.low.y, p.y),
                    std::min(group.low.z, p.z)};
@@ -210,7 +186,7 @@ class BlockLayout {
   }
 
   const Vec3f& first_position(std::uint32_t t) const {
-    return block_.positions[block_.position_of_vertex[mesh_.triangles[t][0]]];
+    return block_.positions[position_of_vertex_[mesh_.triangles[t][0]]];
   }
 
   Vec3f flat_normal(std::uint32_t t) const {
@@ -223,15 +199,17 @@ class BlockLayout {
 
   ResidentBlock::Data& block_;
   const codec::ModelSchema& schema_;
+  const codec::FineEnd& end_;
   const codec::PatchMesh& mesh_;
   std::optional<Layer> normals_, colors_, texcoords_;
-  std::vector<char> is_shared_;  // per vertex: SN
+  std::vector<char> is_shared_;                    // per vertex: SN
+  std::vector<std::uint32_t> position_of_vertex_;  // as the block's
 };
 
 }  // namespace
 
-void lay_out_for_drawing(ResidentBlock::Data& block) {
-  BlockLayout(block).run();
+void lay_out_for_drawing(const codec::FineEnd& end, ResidentBlock::Data& block) {
+  BlockLayout(end, block).run();
 }
 
 }  // namespace crease

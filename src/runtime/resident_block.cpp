@@ -1,6 +1,7 @@
 #include "runtime/resident_block.h"
 
 #include "mesh/painted_layer.h"
+#include "runtime/group_by_place.h"
 
 #include <algorithm>
 #include <utility>
@@ -14,34 +15,23 @@ std::size_t bytes_of_vector(const std::vector<T>& all) {
   return all.capacity() * sizeof(T);
 }
 
-std::size_t bytes_of_end(const codec::FineEnd& end) {
-  const codec::PatchMesh& mesh = end.mesh;
-  std::size_t bytes = bytes_of_vector(mesh.positions) + bytes_of_vector(mesh.triangles) +
-                      bytes_of_vector(mesh.category) + bytes_of_vector(mesh.derived) +
-                      bytes_of_vector(end.names) + bytes_of_vector(end.labels);
-  return bytes;
-}
-
-std::size_t bytes_of_values(const std::vector<codec::CompactValues>& layers) {
-  std::size_t bytes = bytes_of_vector(layers);
-  for (const codec::CompactValues& layer : layers) {
-    bytes += bytes_of_vector(layer.values) + bytes_of_vector(layer.of_corner);
-  }
-  return bytes;
-}
-
-// Of what stays, room that a vector grew by and did not need goes.
-void shrink(codec::FineEnd& end) {
-  end.mesh.positions.shrink_to_fit();
-  end.mesh.triangles.shrink_to_fit();
-  end.mesh.category.shrink_to_fit();
-  end.mesh.derived.shrink_to_fit();
-  end.names.shrink_to_fit();
-  end.labels.shrink_to_fit();
-}
-
-constexpr std::size_t kBytesOfBlock = 1024;  // beside its arrays
+constexpr std::size_t kBytesOfArray = 64;  // that is packed, at least
+constexpr std::size_t kBytesOfBlock = sizeof(ResidentBlock::Data) + 1024;  // beside its arrays
 constexpr std::size_t kBytesOfGroup = sizeof(BlockGroup);
+
+// Each patch has some of its own.
+std::size_t most_groups(const BlockFacts& facts, const ModelFacts& model) {
+  const bool is_finest = facts.band == 0;
+  const std::size_t patches = is_finest ? 1 : model.bands[facts.band - 1u].patches;
+  return std::min<std::size_t>(facts.triangles_fine,
+                               patches + facts.triangles_fine / (kGroupTriangles / 2));
+}
+
+// Of one value, as bits.
+std::size_t most_bits(const codec::BlockLayer& layer) {
+  return layer.octahedral_bits > 0 ? 2 * std::size_t(layer.octahedral_bits)
+                                   : 32 * std::size_t(layer.dimension);
+}
 
 }  // namespace
 
@@ -56,17 +46,23 @@ std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema&
                   [](const LayerSchema& layer) { return layer.role == AttributeRole::Color; });
   const bool has_texcoords = painted_layer(schema.facts.layers, schema.materials) != kNone;
   const std::size_t layers = schema.facts.layers.size();
+  const std::size_t vertex_bits = bits_for(facts.vertices);
   const std::size_t of_vertex =
-      sizeof(Vec3i) + sizeof(codec::VertexName) + sizeof(std::uint32_t) + 2 * sizeof(Vec3f) +
+      sizeof(Vec3i) + sizeof(codec::VertexName) + 2 * sizeof(Vec3f) +
       std::max(sizeof(codec::Split), sizeof(codec::VertexName));  // a root or made by a split
-  // Corners, category, derived, label; values, each of its own; a group of its own; indices,
-  // normals, material.
-  const std::size_t of_triangle =
-      sizeof(codec::Corners) + 9 + 3 * layers * (sizeof(codec::CodedValue) + 4) + kBytesOfGroup +
-      12 + 3 * sizeof(Vec3f) + 4 + (has_colors ? 3 * sizeof(std::array<float, 4>) : 0) +
-      (has_texcoords ? 3 * sizeof(std::array<float, 2>) : 0);
-  return kBytesOfBlock + layers * sizeof(codec::CompactValues) + of_vertex * facts.vertices +
-         of_triangle * facts.triangles_fine;
+  // Corners, derived; label and category, each of its own; values likewise.
+  std::size_t bits_of_triangle = 3 * vertex_bits + 1 + 2 * (32 + bits_for(facts.triangles_fine));
+  for (const codec::BlockLayer& layer : schema.coding.layers) {
+    bits_of_triangle += 3 * (most_bits(layer) + bits_for(3 * std::size_t(facts.triangles_fine)));
+  }
+  // Indices, normals, material.
+  const std::size_t of_triangle = 12 + 3 * sizeof(Vec3f) + (schema.materials.empty() ? 0 : 4) +
+                                  (has_colors ? 3 * sizeof(std::array<float, 4>) : 0) +
+                                  (has_texcoords ? 3 * sizeof(std::array<float, 2>) : 0);
+  return kBytesOfBlock + layers * (sizeof(codec::RepeatedRecords<4>) + kBytesOfArray) +
+         kBytesOfGroup * most_groups(facts, schema.facts) +
+         (of_vertex + vertex_bits / 8 + 1) * facts.vertices +
+         (of_triangle + bits_of_triangle / 8 + 1) * facts.triangles_fine;
 }
 
 ResidentBlock::ResidentBlock(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
@@ -122,21 +118,21 @@ bool names_are_known(const codec::FineEnd& end, std::size_t first, BlockId id,
     const auto maker = std::find_if(needed.begin(), needed.end(), [&](const ResidentBlockPtr& b) {
       return index_of(b->id()) == name.block;
     });
-    if (maker == needed.end() || name.vertex >= (*maker)->data().end.names.size()) return false;
+    if (maker == needed.end() || name.vertex >= (*maker)->data().end.vertex_count()) return false;
   }
   return true;
 }
 
 // The start's sources count among the blocks.
 void fill_values(std::span<const ResidentBlock::Data* const> blocks, codec::CoarseEnd& start) {
-  const std::size_t layers = blocks.empty() ? 0 : blocks[0]->values.size();
+  const std::size_t layers = blocks.empty() ? 0 : blocks[0]->end.layer_count();
   start.mesh.values.resize(layers);
   for (std::size_t l = 0; l < layers; ++l) {
     start.mesh.values[l].reserve(3 * start.sources.size());
     for (const codec::TriangleSource& source : start.sources) {
-      const codec::CompactValues& values = blocks[source.end]->values[l];
       for (std::size_t c = 0; c < 3; ++c) {
-        start.mesh.values[l].push_back(values.at(3 * std::size_t(source.triangle) + c));
+        start.mesh.values[l].push_back(
+            blocks[source.end]->end.value(l, 3 * std::size_t(source.triangle) + c));
       }
     }
   }
@@ -146,27 +142,17 @@ void fill_values(std::span<const ResidentBlock::Data* const> blocks, codec::Coar
 
 codec::CoarseEnd coarse_end_of(std::span<const ResidentBlockPtr> needed, const BlockFacts& facts) {
   std::vector<const ResidentBlock::Data*> blocks;
-  std::vector<const codec::FineEnd*> ends;
+  std::vector<codec::FineEnd> ends;
   for (const ResidentBlockPtr& block : needed) {
     if (block->data().entry.facts.band != facts.band + 1) continue;
     blocks.push_back(&block->data());
-    ends.push_back(&block->data().end);
+    ends.push_back(block->data().end.unpacked_but_values());
   }
-  codec::CoarseEnd start = codec::coarse_end_of(ends, facts.patch);
+  std::vector<const codec::FineEnd*> pointers;
+  for (const codec::FineEnd& end : ends) pointers.push_back(&end);
+  codec::CoarseEnd start = codec::coarse_end_of(pointers, facts.patch);
   fill_values(blocks, start);
   return start;
-}
-
-codec::PatchMesh whole_end(const ResidentBlock::Data& block) {
-  codec::PatchMesh mesh = block.end.mesh;
-  for (const codec::CompactValues& layer : block.values) {
-    std::vector<codec::CodedValue>& values = mesh.values.emplace_back();
-    values.reserve(layer.of_corner.size());
-    for (std::size_t corner = 0; corner < layer.of_corner.size(); ++corner) {
-      values.push_back(layer.at(corner));
-    }
-  }
-  return mesh;
 }
 
 Result<ResidentBlockPtr> BlockDecodeJob::run(std::span<const std::byte> payload) const {
@@ -188,26 +174,20 @@ Result<ResidentBlockPtr> BlockDecodeJob::run(std::span<const std::byte> payload)
   auto block = std::make_unique<ResidentBlock::Data>();
   block->entry = data_->entry;
   block->schema = data_->schema;
-  block->end = std::move(decoded->end);
-  block->splits = std::move(decoded->splits);
+  const codec::FineEnd& end = decoded->end;
   block->coarse_triangles = static_cast<std::uint32_t>(coarse_triangles);
-  const std::size_t roots = block->end.names.size() - block->splits.size();
-  names.insert(names.end(), block->end.names.begin() + std::ptrdiff_t(known),
-               block->end.names.begin() + std::ptrdiff_t(roots));
-  block->root_names = std::move(names);
-  lay_out_for_drawing(*block);
-  for (const auto& values : block->end.mesh.values) {
-    block->values.push_back(codec::compacted(values));
-  }
-  block->end.mesh.values = {};
-  shrink(block->end);
-  block->splits.shrink_to_fit();
-  block->root_names.shrink_to_fit();
-  block->bytes = kBytesOfBlock + bytes_of_end(block->end) + bytes_of_values(block->values) +
-                 bytes_of_vector(block->splits) + bytes_of_vector(block->root_names) +
-                 bytes_of_vector(block->groups) + bytes_of_vector(block->position_of_vertex) +
-                 bytes_of_vector(block->positions) + bytes_of_vector(block->vertex_normals) +
-                 block->sn.bytes() + block->fn.bytes() + block->nsn.bytes();
+  const std::size_t roots = end.names.size() - decoded->splits.size();
+  names.insert(names.end(), end.names.begin() + std::ptrdiff_t(known),
+               end.names.begin() + std::ptrdiff_t(roots));
+  block->root_names = KeptNames(names);
+  block->splits = KeptSplits(decoded->splits);
+  block->end = KeptEnd(end);
+  lay_out_for_drawing(end, *block);
+  block->bytes = kBytesOfBlock + block->end.bytes() + block->splits.bytes() +
+                 block->root_names.bytes() + bytes_of_vector(block->groups) +
+                 block->position_of_vertex.bytes() + bytes_of_vector(block->positions) +
+                 bytes_of_vector(block->vertex_normals) + block->sn.bytes() + block->fn.bytes() +
+                 block->nsn.bytes();
   return std::make_shared<const ResidentBlock>(std::move(block));
 }
 

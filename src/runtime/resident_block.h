@@ -1,9 +1,9 @@
 // Blocks in memory: decoded from the fine ends of the coarser ones, and laid out for drawing.
 #pragma once
 
-#include "codec/compact_values.h"
 #include "codec/model_schema.h"
 #include "crease/block_mesh.h"
+#include "runtime/kept_end.h"
 
 #include <array>
 #include <memory>
@@ -26,17 +26,17 @@ struct BlockPart {
 struct ResidentBlock::Data {
   BlockEntry entry;
   std::shared_ptr<const codec::ModelSchema> schema;
-  codec::FineEnd end;                        // without its values
-  std::vector<codec::CompactValues> values;  // per layer
+  KeptEnd end;
   // What it takes to go back to its coarse end (runtime/block_hierarchy.h). The roots are the first
   // vertices: those of the coarse end, then those that no triangle has there. Their names are those
   // before any split.
-  std::vector<codec::Split> splits;
-  std::vector<codec::VertexName> root_names;
+  KeptSplits splits;
+  KeptNames root_names;
   std::uint32_t coarse_triangles = 0;  // of the coarse end; the first ones of `end`
   std::vector<BlockGroup> groups;
-  std::vector<std::uint32_t> position_of_vertex;  // of the draw list, per vertex of `end`
-  std::vector<Vec3f> positions, vertex_normals;   // as in DrawList: SN vertices first
+  // Of the draw list, per vertex of `end`.
+  PackedIndices<> position_of_vertex;
+  std::vector<Vec3f> positions, vertex_normals;  // as in DrawList: SN vertices first
   BlockPart sn, fn, nsn;
   std::size_t bytes = 0;
 };
@@ -50,14 +50,11 @@ struct BlockDecodeJob::Data {
 // What a block takes at most.
 std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema& schema);
 
-// All of the fine end, with its values.
-codec::PatchMesh whole_end(const ResidentBlock::Data& block);
-
 // What a block starts from, with its values: the triangles of `needed`, those that it needs, that
 // are of its patch. Those of other bands are passed over.
 codec::CoarseEnd coarse_end_of(std::span<const ResidentBlockPtr> needed, const BlockFacts& facts);
 
-// Fills what is for drawing from `end`, which has its values.
-void lay_out_for_drawing(ResidentBlock::Data& block);
+// Fills what is for drawing from the fine end, which has its values.
+void lay_out_for_drawing(const codec::FineEnd& end, ResidentBlock::Data& block);
 
 }  // namespace crease

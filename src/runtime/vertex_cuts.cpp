@@ -95,7 +95,7 @@ void VertexCuts::settle_errors(const Blocks& blocks) {
 void VertexCuts::tighten(std::uint32_t block, const Blocks& blocks) {
   const ResidentBlock& resident = *blocks.resident[block];
   const BlockHierarchy::Data& data = entries_[block].hierarchy->data();
-  const std::vector<codec::Corners>& triangles = resident.data().end.mesh.triangles;
+  const KeptEnd& fine = resident.data().end;
   for (const BlockGroup& group : resident.groups()) {
     const std::uint32_t finer = graph_.next_finer(resident.facts().band, group.patch);
     if (finer >= entries_.size() || !entries_[finer].errors) continue;
@@ -112,8 +112,8 @@ void VertexCuts::tighten(std::uint32_t block, const Blocks& blocks) {
       const std::uint32_t end =
           i + 1 < sources.size() ? sources[i + 1].first : finer_data.coarse_triangles;
       for (std::uint32_t t = sources[i].first; t < end; ++t) {
-        const codec::Corners& corners =
-            triangles[data.triangles_by_patch[sources[i].there + t - sources[i].first]];
+        const codec::Corners corners =
+            fine.triangle(data.triangles_by_patch[sources[i].there + t - sources[i].first]);
         const codec::Corners& roots = finer_data.roots_of_triangle[t];
         for (std::size_t k = 0; k < 3; ++k) {
           entries_[block].errors->tighten(corners[k], errors.of_root(roots[k]));

@@ -96,7 +96,9 @@ std::vector<std::uint32_t> VertexCuts::makers_of(const ResidentBlock& block) con
   const std::span<const std::uint32_t> needed =
       graph_.dependencies(static_cast<std::uint32_t>(index_of(block.id())));
   std::vector<std::uint32_t> makers(needed.begin(), needed.end());
-  for (const codec::VertexName& name : block.data().root_names) {
+  const KeptNames& names = block.data().root_names;
+  for (std::size_t r = 0; r < names.size(); ++r) {
+    const codec::VertexName name = names[r];
     if (makers.empty() || makers.back() != name.block) makers.push_back(name.block);
   }
   std::sort(makers.begin(), makers.end());
@@ -128,7 +130,7 @@ std::vector<VertexCuts::Source> VertexCuts::sources_of(std::uint32_t block,
 }
 
 void VertexCuts::want(std::uint32_t root, const Entry& entry, bool is_wanted) {
-  const codec::VertexName& name = entry.block->data().root_names[root];
+  const codec::VertexName name = entry.block->data().root_names[root];
   if (name.block == index_of(entry.block->id()) || !entries_[name.block].cut) return;
   BlockLinks& links = entries_[name.block].cut->links();
   is_wanted ? links.hold(name.vertex) : links.release(name.vertex);
@@ -147,7 +149,7 @@ void VertexCuts::take(std::uint32_t triangle, const Entry& entry, bool is_taken)
 
 // Of a block that is shown whole, its whole coarse end; `of`: of that block only, or of all.
 void VertexCuts::want_all(const Entry& entry, bool is_wanted, std::uint32_t of) {
-  const std::vector<codec::VertexName>& names = entry.block->data().root_names;
+  const KeptNames& names = entry.block->data().root_names;
   for (std::uint32_t root = 0; root < names.size(); ++root) {
     if (of == kNone || names[root].block == of) want(root, entry, is_wanted);
   }

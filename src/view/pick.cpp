@@ -148,37 +148,47 @@ std::optional<std::uint32_t> triangle_of_block(const Hit& hit) {
   const BlockPart& part = hit.kind == TriangleKind::SN   ? data.sn
                           : hit.kind == TriangleKind::FN ? data.fn
                                                          : data.nsn;
-  const std::vector<codec::Corners>& triangles = data.end.mesh.triangles;
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+  for (std::uint32_t t = 0; t < data.end.triangle_count(); ++t) {
+    const codec::Corners corners = data.end.triangle(t);
     bool same = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      same &= data.position_of_vertex[triangles[t][c]] ==
-              part.indices[3 * std::size_t(hit.triangle) + c];
+      same &=
+          data.position_of_vertex[corners[c]] == part.indices[3 * std::size_t(hit.triangle) + c];
     }
     if (same) return t;
   }
   return std::nullopt;
 }
 
-std::optional<std::uint32_t> triangle_of_cut(const Hit& hit, const BlockMesh& mesh) {
-  const BlockCut* const cut =
-      mesh.impl().cuts.cut(static_cast<std::uint32_t>(index_of(hit.block->id())));
+// At a level between the block's ends, or by vertex.
+std::optional<std::uint32_t> part_of_cut(const Hit& hit, const BlockMesh& mesh) {
+  const auto block = static_cast<std::uint32_t>(index_of(hit.block->id()));
+  if (const LevelList* const list = mesh.impl().levels.list(block)) {
+    return list->part_of_triangle[static_cast<std::size_t>(hit.kind)][hit.triangle];
+  }
+  const BlockCut* const cut = mesh.impl().cuts.cut(block);
   if (cut == nullptr) return std::nullopt;
-  return cut->triangle_of(static_cast<Part>(hit.kind), hit.triangle);
+  const ResidentBlock::Data& data = hit.block->data();
+  const std::uint32_t triangle = cut->triangle_of(static_cast<Part>(hit.kind), hit.triangle);
+  return data.end.category(triangle) / data.schema->coding.material_count;
+}
+
+std::optional<std::uint32_t> part_of_block(const Hit& hit) {
+  const std::optional<std::uint32_t> triangle = triangle_of_block(hit);
+  if (!triangle) return std::nullopt;
+  const ResidentBlock::Data& data = hit.block->data();
+  return data.end.category(*triangle) / data.schema->coding.material_count;
 }
 
 }  // namespace
 
 std::string part_of(const Hit& hit, const BlockMesh& mesh) {
   if (hit.block == nullptr) return {};
-  const std::optional<std::uint32_t> triangle =
-      hit.is_by_vertex ? triangle_of_cut(hit, mesh) : triangle_of_block(hit);
-  if (!triangle) return {};
-  const ResidentBlock::Data& data = hit.block->data();
-  const std::uint32_t number =
-      data.end.mesh.category[*triangle] / data.schema->coding.material_count;
   const std::span<const std::string> names = mesh.part_names();
-  return number < names.size() ? names[number] : std::string();
+  if (names.empty()) return {};
+  const std::optional<std::uint32_t> part =
+      hit.is_by_vertex ? part_of_cut(hit, mesh) : part_of_block(hit);
+  return part && *part < names.size() ? names[*part] : std::string();
 }
 
 // By places: corners come from floats, and may be off by their last bits.

@@ -76,6 +76,7 @@ BlockViewParameters view_of_all() {
   parameters.view.camera.position = {0, 0, 3};
   parameters.view.camera.pixels = 1e-30;
   parameters.view.coarse_outside = false;
+  parameters.in_levels = false;
   parameters.max_bytes = std::numeric_limits<std::size_t>::max();
   return parameters;
 }

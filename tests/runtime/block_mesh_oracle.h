@@ -20,7 +20,7 @@ BlockSet refined_blocks(const BlockFile& file, const BlockMesh& mesh);
 // What is seen to be wrong, and what that needs.
 BlockSet wanted_blocks(const BlockFile& file, const ViewParameters& view);
 
-// Whatever is off at all is wrong, wherever the camera is; no budget.
+// Whatever is off at all is wrong, wherever the camera is; no budget; blocks whole.
 BlockViewParameters view_of_all();
 
 // Some camera near the mesh, which has vertices.

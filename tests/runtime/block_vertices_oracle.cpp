@@ -2,6 +2,7 @@
 
 #include "codec/layer_values.h"
 #include "hierarchy/geometric_normal.h"
+#include "runtime/block_errors.h"
 #include "runtime/block_mesh_impl.h"
 #include "runtime/draw_values.h"
 #include "runtime/view_error.h"
@@ -31,8 +32,26 @@ struct Place {
   std::uint32_t block = 0, triangle = 0;
 };
 
+// A block that is by vertex, or at a level between its ends.
+struct OneCut {
+  const ResidentBlock* resident = nullptr;
+  const BlockCut* by_vertex = nullptr;
+  const LevelList* list = nullptr;  // or this one,
+  BlockHierarchyPtr hierarchy;      // and what it is a cut of
+
+  const ResidentBlock& block() const { return *resident; }
+  const BlockHierarchy::Data& data() const {
+    return by_vertex != nullptr ? by_vertex->data() : hierarchy->data();
+  }
+  bool is_done(SplitId s) const {
+    if (by_vertex != nullptr) return by_vertex->is_done(s);
+    return (list->done[index_of(s) / 64] >> (index_of(s) % 64) & 1) != 0;
+  }
+};
+
 // The lowest node that is above the leaf and not below a split that is not done.
-NodeId active_above(const BlockCut& cut, NodeId leaf) {
+template <typename Cut>
+NodeId active_above(const Cut& cut, NodeId leaf) {
   const VertexHierarchy& h = cut.data().hierarchy.vertices;
   NodeId active = leaf;
   for (NodeId n = leaf; !h.is_root(n);) {
@@ -46,7 +65,10 @@ NodeId active_above(const BlockCut& cut, NodeId leaf) {
 class BlocksOracle {
  public:
   explicit BlocksOracle(const BlockMesh::Impl& mesh) : mesh_(mesh) {
-    for (const std::uint32_t block : mesh_.cut) find_sources(block);
+    for (const std::uint32_t block : mesh_.cut) {
+      find_sources(block);
+      find_cut(block);
+    }
   }
 
   Mesh run() {
@@ -61,9 +83,10 @@ class BlocksOracle {
                                 .of_corner = {}});
     }
     for (const std::uint32_t block : mesh_.cut) {
-      const codec::FineEnd& end = data(block).end;
-      for (std::uint32_t t = 0; t < end.labels.size(); ++t) {
-        const std::uint32_t finer = mesh_.graph.next_finer(band(block), end.labels[t]);
+      if (!is_refined(block)) continue;
+      const KeptEnd& end = data(block).end;
+      for (std::uint32_t t = 0; t < end.triangle_count(); ++t) {
+        const std::uint32_t finer = mesh_.graph.next_finer(band(block), end.label(t));
         if (!is_refined(finer)) add({block, t});
       }
     }
@@ -76,44 +99,62 @@ class BlocksOracle {
   }
   std::uint16_t band(std::uint32_t block) const { return data(block).entry.facts.band; }
   bool is_refined(std::uint32_t block) const {
-    return block < mesh_.is_refined.size() && mesh_.is_refined[block] != 0;
+    return block != kNone && mesh_.levels.shown(block) > 0;
+  }
+
+  void find_cut(std::uint32_t block) {
+    OneCut cut{mesh_.resident[block].get(), mesh_.cuts.cut(block), mesh_.levels.list(block), {}};
+    if (cut.by_vertex == nullptr && cut.list == nullptr) return;
+    if (cut.by_vertex == nullptr) {
+      std::vector<ResidentBlockPtr> needed;
+      for (const std::uint32_t n : mesh_.graph.dependencies(block)) {
+        needed.push_back(mesh_.resident[n]);
+      }
+      cut.hierarchy = BlockHierarchyJob(mesh_.resident[block], std::move(needed)).run();
+    }
+    cuts_.emplace(block, std::move(cut));
+  }
+  // Null: the block is shown whole.
+  const OneCut* cut_of(std::uint32_t block) const {
+    const auto at = cuts_.find(block);
+    return at == cuts_.end() ? nullptr : &at->second;
   }
 
   // Per triangle of its coarse end, where it comes from.
   void find_sources(std::uint32_t block) {
     for (const std::uint32_t needed : mesh_.graph.dependencies(block)) {
       if (band(needed) != band(block) + 1) continue;
-      const std::vector<std::uint32_t>& labels = data(needed).end.labels;
-      for (std::uint32_t t = 0; t < labels.size(); ++t) {
-        if (labels[t] == data(block).entry.facts.patch) sources_[block].push_back({needed, t});
+      const KeptEnd& end = data(needed).end;
+      for (std::uint32_t t = 0; t < end.triangle_count(); ++t) {
+        if (end.label(t) == data(block).entry.facts.patch) sources_[block].push_back({needed, t});
       }
     }
     REQUIRE(sources_[block].size() == data(block).coarse_triangles);
   }
 
   Active active(const codec::VertexName& name) const {
-    const BlockCut* const cut = mesh_.cuts.cut(name.block);
+    const OneCut* const cut = cut_of(name.block);
     if (cut == nullptr) {
-      return {name.block, name.vertex, data(name.block).end.mesh.positions[name.vertex]};
+      return {name.block, name.vertex, data(name.block).end.position(name.vertex)};
     }
     const BlockHierarchy::Data& d = cut->data();
     const NodeId leaf = d.leaf_of_vertex[name.vertex];
     const NodeId node = d.wedge_of_vertex[name.vertex] == kNone ? leaf : active_above(*cut, leaf);
     if (d.hierarchy.vertices.is_root(node)) {
       const auto root = std::find(d.node_of_root.begin(), d.node_of_root.end(), node);
-      const codec::VertexName& made =
+      const codec::VertexName made =
           data(name.block).root_names[std::size_t(root - d.node_of_root.begin())];
       if (made.block != name.block) return active(made);
     }
     return {name.block, static_cast<std::uint32_t>(node), d.hierarchy.vertices.position_of(node)};
   }
 
-  static bool is_split(const BlockCut& cut, std::uint32_t root) {
+  static bool is_split(const OneCut& cut, std::uint32_t root) {
     const SplitId s = cut.data().hierarchy.vertices.split_of(cut.data().node_of_root[root]);
     return s != kNoSplit && cut.is_done(s);
   }
   bool has_split_root(const Place& at) const {
-    const BlockCut* const cut = mesh_.cuts.cut(at.block);
+    const OneCut* const cut = cut_of(at.block);
     if (cut == nullptr) return true;
     for (const std::uint32_t root : cut->data().roots_of_triangle[at.triangle]) {
       if (is_split(*cut, root)) return true;
@@ -122,10 +163,10 @@ class BlocksOracle {
   }
 
   void add(const Place& finest) {
-    const codec::FineEnd& end = data(finest.block).end;
+    const KeptEnd& end = data(finest.block).end;
     std::array<Active, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = active(end.names[end.mesh.triangles[finest.triangle][k]]);
+      corners[k] = active(end.name(end.triangle(finest.triangle)[k]));
     }
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
     Place at = finest;
@@ -137,7 +178,7 @@ class BlocksOracle {
       triangle[k] = VertexId{static_cast<std::uint32_t>(result_.positions.size())};
       result_.positions.push_back(mesh_.schema->facts.grid.position(corners[k].position));
     }
-    const std::uint32_t category = end.mesh.category[finest.triangle];
+    const std::uint32_t category = end.category(finest.triangle);
     const std::uint32_t materials = mesh_.schema->coding.material_count;
     if (!result_.materials.empty()) {
       result_.material_of_triangle.push_back(MaterialId{category % materials});
@@ -152,13 +193,13 @@ class BlocksOracle {
                  std::size_t k) {
     AttributeLayer& layer = result_.layers[l];
     std::vector<float> value(layer.dimension, 0);
-    const BlockCut* const cut = mesh_.cuts.cut(at.block);
+    const OneCut* const cut = cut_of(at.block);
     bool is_derived = false;
     if (cut == nullptr) {
       const ResidentBlock::Data& block = data(at.block);
-      is_derived = block.end.mesh.derived[at.triangle] != 0;
+      is_derived = block.end.is_derived(at.triangle);
       const LayerValues values(mesh_.schema->codings[l], layer.dimension);
-      values.read(block.values[l].at(3 * std::size_t(at.triangle) + k), value);
+      values.read(block.end.value(l, 3 * std::size_t(at.triangle) + k), value);
     } else {
       is_derived = read_value(*cut, at, corners[k], l, k, value);
     }
@@ -172,7 +213,7 @@ class BlocksOracle {
   }
 
   // True if the triangle shows its geometric normal.
-  bool read_value(const BlockCut& cut, const Place& at, const Active& corner, std::size_t l,
+  bool read_value(const OneCut& cut, const Place& at, const Active& corner, std::size_t l,
                   std::size_t k, std::vector<float>& value) {
     const MeshHierarchy& h = cut.data().hierarchy;
     std::vector<std::uint32_t>& new_of = new_of_triangle_[at.block];
@@ -182,7 +223,7 @@ class BlocksOracle {
     }
     const std::uint32_t t = new_of[at.triangle];
     const WedgeId wedge = h.vertices.triangles[t][k];
-    const std::uint32_t v = cut.block().data().end.mesh.triangles[at.triangle][k];
+    const std::uint32_t v = cut.block().data().end.triangle(at.triangle)[k];
     NodeId node = cut.data().leaf_of_vertex[v];
     const NodeId active = active_above(cut, node);
     // The corner stands where the block says: what finer blocks split, coarser ones have active.
@@ -199,6 +240,7 @@ class BlocksOracle {
 
   const BlockMesh::Impl& mesh_;
   std::map<std::uint32_t, std::vector<Place>> sources_;
+  std::map<std::uint32_t, OneCut> cuts_;
   std::map<std::uint32_t, std::vector<std::uint32_t>> new_of_triangle_;  // per block by vertex
   Mesh result_;
 };
@@ -224,6 +266,49 @@ void check_by_vertex(const BlockMesh& mesh) {
   const Grid& grid = mesh.facts().grid;
   const auto place = [&grid](const Vec3d& p) { return draw_position(grid, grid.nearest(p)); };
   CHECK((drawn == drawn_of_mesh(shown, place)));
+}
+
+// How wrong the vertices of all resident blocks are, from fine to coarse, as the finer ones tell.
+std::size_t check_levels_are_right(const BlockMesh& mesh, const ViewParameters& view) {
+  const BlockMesh::Impl& impl = mesh.impl();
+  const ViewError error(view, mesh.facts().grid);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, RoundedError> error_of_name;
+  std::size_t between = 0, wrong = 0;
+  for (std::size_t i = impl.cut.size(); i-- > 0;) {
+    const std::uint32_t block = impl.cut[i];
+    if (impl.graph.is_base(block)) continue;
+    std::vector<ResidentBlockPtr> needed;
+    for (const std::uint32_t n : impl.graph.dependencies(block)) {
+      needed.push_back(impl.resident[n]);
+    }
+    const BlockHierarchyPtr hierarchy =
+        BlockHierarchyJob(impl.resident[block], std::move(needed)).run();
+    const BlockHierarchy::Data& data = hierarchy->data();
+    BlockErrors errors(data);
+    const ResidentBlock::Data& resident = impl.resident[block]->data();
+    for (std::uint32_t v = 0; v < resident.end.vertex_count(); ++v) {
+      const codec::VertexName name = resident.end.name(v);
+      const auto known = error_of_name.find({name.block, name.vertex});
+      if (known != error_of_name.end()) errors.tighten(v, known->second);
+    }
+    errors.settle();
+    for (std::uint32_t r = 0; r < data.node_of_root.size(); ++r) {
+      const codec::VertexName name = resident.root_names[r];
+      error_of_name[{name.block, name.vertex}] = errors.of_root(r);
+    }
+    const int level = impl.levels.shown(block);
+    if (level == kFullLevel) continue;
+    const LevelList* const list = impl.levels.list(block);
+    between += list != nullptr;
+    const VertexHierarchy& h = data.hierarchy.vertices;
+    for (std::size_t s = 0; s < h.split_count(); ++s) {
+      if (list != nullptr && (list->done[s / 64] >> (s % 64) & 1) != 0) continue;
+      const Vec3f position = error.position(h.position_of(h.node_of_split[s]));
+      wrong += error.is_wrong(error.watch(errors.bounds()[s], position, 1));
+    }
+  }
+  CHECK(wrong == 0);
+  return between;
 }
 
 std::size_t check_nothing_is_wrong(const BlockMesh& mesh, const ViewParameters& view) {

@@ -6,6 +6,7 @@
 #include "crease/build.h"
 #include "render/gl_blocks.h"
 #include "render/gl_context.h"
+#include "render/gl_cuts.h"
 #include "render/gl_target.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
@@ -58,15 +59,24 @@ class Stage {
 
   // How much of each pixel is covered, 0 to 255.
   std::vector<int> cover(const GlBlocks& blocks, std::span<const ShownRange> shown,
-                         const Camera& camera, bool faces_away_too) {
+                         const Camera& camera, bool faces_away_too, const GlCuts* cuts = nullptr,
+                         std::span<const ShownCut> shown_cuts = {}) {
     DrawPass pass{.view = make_view(camera, 1), .up = camera.up};
-    const Box box = blocks.box_of(shown);
+    Box box = blocks.box_of(shown);
+    if (!shown_cuts.empty()) {
+      box.add(cuts->box_of(shown_cuts).low);
+      box.add(cuts->box_of(shown_cuts).high);
+    }
     pass.depth = depth_range(pass.view, box.low, box.high);
     target_->begin(kSide, kSide);
     if (!faces_away_too) glEnable(GL_CULL_FACE);
     const Result<DrawCount> drawn =
         blocks.draw(programs_, pass, {.reversed_depth = gl_->limits().can_reverse_depth}, shown);
     REQUIRE(drawn.ok());
+    if (!shown_cuts.empty()) {
+      const DrawStyle style{.reversed_depth = gl_->limits().can_reverse_depth};
+      REQUIRE(cuts->draw(programs_, pass, style, shown_cuts).ok());
+    }
     glDisable(GL_CULL_FACE);
     std::vector<std::uint8_t> rgba(4 * kSide * kSide);
     target_->read(kSide, kSide, rgba);
@@ -143,14 +153,16 @@ TEST_CASE("no background shows between the blocks of a closed model") {
                                                  {"box", hard_box(36)},
                                                  {"cylinder", hard_cylinder(128, 48)}};
   Stage stage;
+  std::size_t all_between = 0;
   for (const auto& [name, mesh] : closed) {
     CAPTURE(name);
     const StreamedModel model = streamed_model(mesh, 400);
     BlockStreamer streamer = model.stream();
     GlBlocks blocks;
+    GlCuts cuts(std::make_shared<GlMaterials>());
     std::mt19937 random(3);
     Found found;
-    std::size_t most_bands = 0;
+    std::size_t most_bands = 0, between = 0;
     for (int i = 0; i < kViews; ++i) {
       // The cut is for one camera, near the surface, and the picture from another.
       BlockViewParameters parameters;
@@ -159,20 +171,32 @@ TEST_CASE("no background shows between the blocks of a closed model") {
       parameters.view.camera.pixels = std::pow(10, number(random));
       parameters.max_bytes = std::size_t(1) << 20;
       finish(streamer, parameters);
+      for (int rounds = 0; !streamer.mesh().missing_levels().empty(); ++rounds) {
+        REQUIRE(rounds < 10'000);
+        streamer.wait(std::chrono::milliseconds(20));
+        streamer.update(parameters);
+      }
       const std::span<const ShownRange> shown = streamer.mesh().shown();
+      const std::span<const ShownCut> levels = streamer.mesh().shown_cuts();
       blocks.upload(shown);
+      cuts.upload(levels);
+      between += levels.size();
       const Camera camera = camera_from(model, direction(random), 1.3);
-      const Found here = count_leaks(stage.cover(blocks, shown, camera, true),
-                                     stage.cover(blocks, shown, camera, false),
+      const Found here = count_leaks(stage.cover(blocks, shown, camera, true, &cuts, levels),
+                                     stage.cover(blocks, shown, camera, false, &cuts, levels),
                                      slivers(streamer.mesh().extract(), camera));
       found.inside += here.inside;
       found.leaks += here.leaks;
-      most_bands = std::max(most_bands, bands_of(shown).size());
+      std::set<std::uint16_t> bands = bands_of(shown);
+      for (const ShownCut& cut : levels) bands.insert(cut.block->facts().band);
+      most_bands = std::max(most_bands, bands.size());
     }
     CHECK(found.leaks == 0);
     CHECK(found.inside > kViews * 2000);
     if (!kSanitized) CHECK(most_bands >= 2);  // there were seams to look at
+    all_between += between;
   }
+  CHECK(all_between > 0);
 }
 
 TEST_CASE("a block that is left out would have been found") {
@@ -180,6 +204,7 @@ TEST_CASE("a block that is left out would have been found") {
   const StreamedModel model = streamed_model(smooth_sphere(32, 64), 400);
   BlockStreamer streamer = model.stream();
   BlockViewParameters parameters;
+  parameters.in_levels = false;
   parameters.view.camera = camera_from(model, {1, 0, 0}, 1.3);
   finish(streamer, parameters);
   GlBlocks blocks;
@@ -202,6 +227,7 @@ TEST_CASE("blocks are uploaded once, and freed when the mesh drops them") {
   BlockStreamer streamer = model.stream();
   GlBlocks blocks;
   BlockViewParameters parameters;
+  parameters.in_levels = false;
   parameters.view.camera = camera_from(model, {1, 0, 0}, 1.3);
   parameters.view.camera.pixels = 0.01;
   finish(streamer, parameters);

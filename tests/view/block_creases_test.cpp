@@ -61,6 +61,7 @@ TEST_CASE("the lines of blocks are those of the mesh that they show together") {
     BlockStreamer streamer = model.stream();
     for (const double pixels : {8.0, 1.0, 0.1}) {
       BlockViewParameters parameters;
+      parameters.in_levels = false;
       const Vec3d middle = (model.low + model.high) * 0.5, size = model.high - model.low;
       parameters.view.camera.target = middle;
       parameters.view.camera.position = middle + Vec3d{0.3, -0.5, 0.8} * length(size);

@@ -52,6 +52,7 @@ TEST_CASE("of blocks the same is met as of all their triangles") {
   const StreamedModel model = streamed_model(smooth_sphere(32, 64), 400);
   BlockStreamer streamer = model.stream();
   BlockViewParameters parameters;
+  parameters.in_levels = false;
   parameters.view.camera = camera_from({2, -1, 1});
   finish(streamer, parameters);
   const BlockMesh& mesh = streamer.mesh();
@@ -79,6 +80,7 @@ TEST_CASE("a triangle of a block knows its part") {
   const StreamedModel model = streamed_model(mesh, 8000);
   BlockStreamer streamer = model.stream();
   BlockViewParameters parameters;
+  parameters.in_levels = false;
   parameters.view.camera = camera_from({20, 10, 30});
   parameters.view.camera.pixels = 1e-3;
   finish(streamer, parameters);

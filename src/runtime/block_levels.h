@@ -1,0 +1,79 @@
+// A block between its two ends, by block: some meshes of all of it that are coarser than the fine
+// end, each right within a share of what the coarse end is wrong by.
+//
+// A file's bands are a factor of two apart. Where a block is shown because its coarse end is seen
+// to be wrong by little more than is allowed, its fine end has twice the triangles that are needed.
+// Level k has those splits done whose errors are above kLevelRatio^k of the coarse end's, the
+// largest: a cut of the block's hierarchy as any, and so without a crack beside whatever is shown
+// around it. Level 0 is the coarse end and kFullLevel the fine one.
+//
+// The hierarchy that this takes is made for the job and not kept. What is kept of it is what each
+// level leaves, how wrong the vertices of the coarse end are (for the blocks that made them, as in
+// BlockErrors), and one draw list of each level that has been wanted.
+#pragma once
+
+#include "crease/block_mesh.h"
+#include "runtime/active_cut.h"
+#include "runtime/block_hierarchy.h"
+#include "runtime/resident_block.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace crease {
+
+inline constexpr int kFullLevel = 6;
+inline constexpr double kLevelRatio = 0.70710678;
+
+// A piece of the block: around some vertices of its coarse end, how wrong a level leaves them.
+struct LevelPiece {
+  Vec3f center;  // from the grid's origin, model units
+  SplitBounds left;
+};
+
+struct LevelFacts {
+  std::array<LevelError, kFullLevel> left;  // per level but the full one: the largest
+  std::vector<RoundedError> of_root;        // empty: the block has no hierarchy
+  // All of level 0, then all of level 1, and so on. A level is right where it is in all of its.
+  std::vector<LevelPiece> pieces;
+};
+
+// What a level shows, as a list of its own, group by group.
+struct LevelList {
+  int level = 0;
+  std::vector<std::uint64_t> done;  // a bit per split of the hierarchy that the job made
+  std::vector<Vec3f> positions, vertex_normals;
+  BlockPart sn, fn, nsn;
+  std::vector<BlockGroup> groups;                   // of no patch
+  std::array<PackedIndices<>, 3> part_of_triangle;  // per triangle of sn, fn, nsn; or empty
+  std::uint64_t revision = 0;
+
+  std::size_t bytes() const;
+};
+using LevelListPtr = std::shared_ptr<const LevelList>;
+using LevelFactsPtr = std::shared_ptr<const LevelFacts>;
+
+struct BlockLevels::Data {
+  BlockId id{};
+  LevelFactsPtr facts;
+  LevelListPtr list;  // or null
+};
+
+struct BlockLevelsJob::Data {
+  ResidentBlockPtr block;
+  std::vector<ResidentBlockPtr> needed;  // ascending
+  struct Finer {
+    ResidentBlockPtr block;
+    LevelFactsPtr facts;
+  };
+  std::vector<Finer> finer;  // blocks that need it and of which something is known
+  int level = 0;             // of which a list is wanted
+};
+
+// The cut of a level through the block's hierarchy.
+void split_as(const LevelList& list, ActiveCut& cut);
+
+}  // namespace crease

@@ -1,0 +1,99 @@
+// At which level each block of a cut by block is shown, and what is known of their levels.
+//
+//   LevelChoice levels(graph);
+//   levels.insert(*block_levels);                               // whenever some have come
+//   if (levels.choose({cut, is_refined}, view_error, keep)) ...    // blocks are shown at other
+//   ones levels.shown(block)                                         // 0: by coarser blocks
+//
+// Fine blocks decide first: one that shows anything wants all fine ends that it starts from. Each
+// takes the coarsest level whose error is not seen to be too large; those that are not known yet
+// are shown whole, and so are levels of which no list is there, or the next finer one that is.
+// Time: O(cut). Memory: 8 bytes a vertex of a block's coarse end, and the lists.
+#pragma once
+
+#include "runtime/block_graph.h"
+#include "runtime/block_levels.h"
+#include "runtime/view_error.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace crease {
+
+class LevelChoice {
+ public:
+  explicit LevelChoice(const BlockGraph& graph) : graph_(graph) {}
+
+  // Of a block that is resident. What is shown does not change until the next choice.
+  void insert(BlockLevelsPtr levels) { waiting_.push_back(std::move(levels)); }
+  void drop(std::uint32_t block);  // it is not resident any more
+  // Lists that were not shown for so many choices, or at all in the last one. True if any.
+  bool drop_lists(std::uint32_t age);
+
+  // `cut`: ascending. `keep`: the error under which a level is given up for a coarser one. True if
+  // what is shown has changed.
+  bool choose(std::span<const std::uint32_t> cut, const ViewError& error, float keep);
+  // All of the cut whole.
+  bool choose_whole(std::span<const std::uint32_t> cut);
+
+  int shown(std::uint32_t block) const { return block < states_.size() ? states_[block].shown : 0; }
+  // Null: it is shown whole, or not.
+  const LevelList* list(std::uint32_t block) const {
+    const int level = shown(block);
+    return level % kFullLevel == 0 ? nullptr : entries_[block].lists[level].get();
+  }
+  // How wrong the block is as it is shown; `coarse`: where levels are not known, of its coarse end.
+  LevelError left(std::uint32_t block, const LevelError& coarse) const;
+
+  LevelFactsPtr facts(std::uint32_t block) const {
+    return block < entries_.size() ? entries_[block].facts : nullptr;
+  }
+  int wanted(std::uint32_t block) const { return states_[block].wanted; }
+  // As BlockMesh::missing_levels(), of those of the last choose().
+  void list_missing(std::span<const std::uint32_t> cut, std::vector<BlockId>& missing) const;
+  std::size_t bytes_of(std::uint32_t block) const;
+  // Blocks of which bytes_of() is another since this was asked last.
+  std::vector<std::uint32_t> take_resized() { return std::exchange(resized_, {}); }
+
+ private:
+  struct Entry {
+    LevelFactsPtr facts;
+    std::array<SplitBounds, kFullLevel> bounds{};  // what each level leaves
+    std::array<LevelListPtr, kFullLevel> lists;    // per level; that of 0 is none
+    std::array<std::uint32_t, kFullLevel> shown_at{};
+  };
+  // What each choice looks at of every block of the cut.
+  struct State {
+    std::uint32_t needed_at = 0, seen_at = 0;  // the last choice that had it so
+    std::uint8_t wanted = 0, shown = 0;
+    std::uint8_t wrong_piece = 0;  // the one that was wrong when it was looked at last
+    std::uint8_t lists = 0;        // a bit per level: its list is there
+    bool is_known = false;
+    bool can_choose = false;  // it is, and the block is not always whole
+    bool is_stale = false;    // finer blocks know more
+  };
+
+  void take_waiting();
+  void take(const BlockLevels& levels);
+  int wanted_level(std::uint32_t block, const ViewError& error, float keep);
+  bool is_wrong(std::uint32_t block, int level, const ViewError& error, float limit);
+  static int level_at_hand(const State& state, int level);
+  void grow(std::size_t blocks);
+  bool show(std::uint32_t block, int level);
+  bool hide_others();
+
+  const BlockGraph& graph_;
+  std::vector<Entry> entries_;  // per block
+  std::vector<State> states_;   // likewise
+  std::vector<std::uint32_t> was_shown_, is_shown_;
+  std::vector<std::uint32_t> resized_;
+  std::vector<BlockLevelsPtr> waiting_;
+  bool lists_have_changed_ = false;
+  std::uint32_t choices_ = 0;
+};
+
+}  // namespace crease

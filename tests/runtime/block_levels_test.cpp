@@ -1,0 +1,170 @@
+// Blocks between their ends, against the definition: whatever has come, what is shown is one cut,
+// and right within what the view allows.
+#include "crease/block_streamer.h"
+#include "crease/block_view.h"
+#include "runtime/block_mesh_impl.h"
+#include "runtime/block_mesh_oracle.h"
+#include "runtime/block_vertices_oracle.h"
+#include "support/mesh_zoo.h"
+#include "support/sanitized.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+namespace crease {
+namespace {
+
+BlockMesh mesh_of(const BlockFile& file) {
+  Result<BlockMesh> mesh = BlockMesh::open(file);
+  REQUIRE(mesh.ok());
+  while (const std::optional<std::uint32_t> page = mesh->next_page()) {
+    REQUIRE(mesh->add_page(*file.read_page(*page)).ok());
+  }
+  mesh->set_part_names(*file.read_parts());
+  return *std::move(mesh);
+}
+
+void load_block(const BlockFile& file, BlockMesh& mesh, const BlockEntry& entry) {
+  const std::optional<BlockDecodeJob> job = mesh.decode_job(entry.id);
+  if (job) mesh.insert(*job->run(*file.read_block(entry)));
+}
+
+void make_levels(BlockMesh& mesh, BlockId id) {
+  const std::optional<BlockLevelsJob> job = mesh.levels_job(id);
+  REQUIRE(job.has_value());
+  mesh.insert(job->run());
+}
+
+// Until nothing is missing.
+void load_all(const BlockFile& file, BlockMesh& mesh, const BlockViewParameters& parameters) {
+  for (int rounds = 0;; ++rounds) {
+    REQUIRE(rounds < 10'000);
+    mesh.update(parameters);
+    const std::vector<BlockEntry> missing(mesh.missing().begin(), mesh.missing().end());
+    for (const BlockEntry& entry : missing) load_block(file, mesh, entry);
+    if (!missing.empty()) continue;
+    if (mesh.missing_levels().empty()) return;
+    make_levels(mesh, mesh.missing_levels().front());
+  }
+}
+
+BlockViewParameters random_level_view(const Mesh& mesh, std::mt19937_64& random) {
+  BlockViewParameters parameters = random_view(mesh, random);
+  parameters.in_levels = true;
+  parameters.view.degrees = random() % 4 ? 0 : 20;
+  return parameters;
+}
+
+// Blocks and levels come in any order, some are dropped, the mode changes to and fro.
+std::size_t walk(const EncodedCase& c, std::uint64_t seed) {
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = mesh_of(file);
+  std::mt19937_64 random(seed);
+  std::size_t between = 0;
+  for (int trial = 0; trial < (kSanitized ? 6 : 24); ++trial) {
+    BlockViewParameters parameters = random_level_view(c.mesh, random);
+    if (random() % 3 == 0) parameters.max_bytes = random() % 600'000;
+    parameters.in_levels = random() % 5 != 0;
+    for (std::size_t steps = random() % 8 + 1; steps > 0; --steps) {
+      mesh.update(parameters);
+      const std::vector<BlockEntry> missing(mesh.missing().begin(), mesh.missing().end());
+      if (!missing.empty()) load_block(file, mesh, missing[random() % missing.size()]);
+      for (const BlockId id :
+           std::vector<BlockId>(mesh.missing_levels().begin(), mesh.missing_levels().end())) {
+        if (random() % 2) make_levels(mesh, id);
+      }
+    }
+    if (random() % 2) mesh.update(parameters);
+    if (!mesh.is_resident(BlockId{0})) continue;
+    check_by_vertex(mesh);
+    between += mesh.shown_cuts().size();
+  }
+  return between;
+}
+
+TEST_CASE("whatever has come of blocks and levels, what is shown is one cut") {
+  std::uint64_t seed = 0;
+  std::size_t between = 0;
+  for (const ZooMesh& zoo : mesh_zoo()) {
+    INFO(zoo.name);
+    if (zoo.mesh.vertex_count() == 0) continue;
+    between += walk(simplified_case(zoo.mesh, 100, 14, kCoarsePrecision), ++seed);
+  }
+  CHECK(between > 0);
+}
+
+TEST_CASE(
+    "between its ends a block is right within what the view allows, and has fewer triangles") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 400, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = mesh_of(file);
+  std::mt19937_64 random(5);
+  std::size_t between = 0, in_levels = 0, whole = 0;
+  for (int trial = 0; trial < (kSanitized ? 4 : 20); ++trial) {
+    BlockViewParameters parameters = random_level_view(c.mesh, random);
+    load_all(file, mesh, parameters);
+    check_by_vertex(mesh);
+    between += check_levels_are_right(mesh, parameters.view);
+    in_levels += mesh.triangle_count();
+    parameters.in_levels = false;
+    mesh.update(parameters);
+    check_shown(file, mesh, wanted_blocks(file, parameters.view));
+    whole += mesh.triangle_count();
+  }
+  CHECK(between > 0);
+  CHECK(in_levels < whole);
+}
+
+TEST_CASE("groups of a level's list are all of it, and those beside a view are left out") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 800, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = mesh_of(file);
+  std::mt19937_64 random(9);
+  std::size_t left_out = 0, lists = 0;
+  for (int trial = 0; trial < (kSanitized ? 3 : 12); ++trial) {
+    BlockViewParameters parameters = random_level_view(c.mesh, random);
+    load_all(file, mesh, parameters);
+    for (const ShownCut& cut : mesh.shown_cuts()) {
+      ++lists;
+      const auto all = shown_groups(cut, [](const BlockGroup&) { return true; });
+      REQUIRE(all.size() == 1);
+      CHECK(all[0].triangle_count() == cut.triangle_count());
+      std::size_t seen = 0;
+      for (const ShownRange& range : shown_in_view(cut, parameters.view.camera)) {
+        seen += range.triangle_count();
+      }
+      CHECK(seen <= cut.triangle_count());
+      left_out += cut.triangle_count() - seen;
+    }
+  }
+  CHECK(lists > 0);
+  CHECK(left_out > 0);
+}
+
+TEST_CASE("a streamer makes levels beside the frames") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 400, 14, kCoarsePrecision);
+  std::mt19937_64 random(5);
+  for (const int threads : {0, 2}) {
+    Result<BlockStreamer> streamer =
+        BlockStreamer::open(async_memory_source(c.bytes), {.decode_threads = threads});
+    REQUIRE(streamer.ok());
+    std::size_t between = 0;
+    for (int trial = 0; trial < (kSanitized ? 3 : 10); ++trial) {
+      const BlockViewParameters parameters = random_level_view(c.mesh, random);
+      for (int frames = 0;
+           !streamer->update(parameters).is_complete || !streamer->mesh().missing_levels().empty();
+           ++frames) {
+        REQUIRE(frames < 100'000);
+        if (frames % 8 == 0 && !streamer->mesh().shown().empty()) check_by_vertex(streamer->mesh());
+        streamer->wait(std::chrono::milliseconds(20));
+      }
+      check_by_vertex(streamer->mesh());
+      between += streamer->mesh().shown_cuts().size();
+    }
+    CHECK(between > 0);
+  }
+}
+
+}  // namespace
+}  // namespace crease
