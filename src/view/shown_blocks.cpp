@@ -57,6 +57,7 @@ FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camer
   facts.has_changed =
       report.cut.refined + report.cut.coarsened + report.inserted + facts.uploaded_bytes > 0;
   facts.is_complete = report.is_complete && facts.uploaded_bytes == 0 &&
+                      mesh().missing_levels().empty() &&
                       !(mesh().shown().empty() && mesh().shown_cuts().empty());
   return facts;
 }
