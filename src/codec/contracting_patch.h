@@ -32,10 +32,11 @@ class ContractingPatch {
     moved_count_ = 0;
     for (const std::uint32_t t : around) {  // without a branch, since nobody can tell which vanish
       const Corners& corners = corners_[t];
-      const bool vanishes = (corners[0] == first) | (corners[1] == first) | (corners[2] == first);
+      const auto is_first = [&](std::size_t c) { return std::uint32_t(corners[c] == first); };
+      const std::uint32_t vanishes = is_first(0) | is_first(1) | is_first(2);
       vanished_[gone] = moved_[moved_count_] = t;
       gone += vanishes;
-      moved_count_ += !vanishes;
+      moved_count_ += 1 - vanishes;
     }
     vanished_.resize(gone);
     for (std::size_t i = 0; i < moved_count_; ++i) {
