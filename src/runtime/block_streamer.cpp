@@ -257,9 +257,9 @@ void BlockStreamer::Impl::make_hierarchies(std::size_t view) {
   }
 }
 
-// Few at a time, and none while blocks are missing: those are worth more, and decoded sooner.
+// Few at a time, and none while the view misses blocks: those are worth more, and decoded sooner.
 void BlockStreamer::Impl::make_levels(std::size_t view) {
-  if (!is_nothing_missing()) return;
+  if (!meshes[view].missing().empty()) return;
   const std::size_t most = 1 + std::size_t(std::max(options.decode_threads, 0));
   for (const BlockId id : meshes[view].missing_levels()) {
     if (making_levels.size() >= most) return;
