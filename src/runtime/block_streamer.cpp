@@ -75,6 +75,7 @@ struct BlockStreamer::Impl {
   }
   void note_failure(BlockId id, const Failure& failure);
   bool is_paused(BlockId id) const;
+  bool do_all_wait() const;
   std::vector<BlockEntry> missing_soon(const BlockViewParameters& parameters);
   std::size_t most_decoding() const {
     return kDecodingPerThread * std::size_t(std::max(options.decode_threads, 1));
@@ -309,6 +310,13 @@ void BlockStreamer::Impl::ask_for_blocks(const BlockViewParameters& parameters, 
   last_camera = parameters.view.camera;
 }
 
+// Nothing pending goes on by itself: what it needs was with another view, which has dropped it.
+bool BlockStreamer::Impl::do_all_wait() const {
+  return workers.outstanding() == 0 &&
+         std::all_of(pending.begin(), pending.end(),
+                     [](const auto& p) { return p.second.state == Pending::State::Waiting; });
+}
+
 // In their order, as far as there is room, and with what they need on its way.
 void BlockStreamer::Impl::ask_for(std::span<const BlockEntry> missing, std::size_t view,
                                   bool is_prefetch) {
@@ -316,8 +324,10 @@ void BlockStreamer::Impl::ask_for(std::span<const BlockEntry> missing, std::size
   std::vector<RangeRequest> requests;
   std::vector<BlockId> ids;
   float priority = is_prefetch ? 0 : static_cast<float>(missing.size());
+  const bool all_wait = do_all_wait();
   for (const BlockEntry& entry : missing) {
-    if (pending_bytes > 0 && pending_bytes + entry.bytes > options.max_pending_bytes) break;
+    const bool has_room = pending_bytes + entry.bytes <= options.max_pending_bytes;
+    if (!has_room && !(all_wait && requests.empty())) break;
     priority -= 1;
     if (pending.contains(entry.id) || is_paused(entry.id) || others_have(entry.id)) continue;
     const std::vector<BlockId> needed = mesh.lacking(entry.id);
