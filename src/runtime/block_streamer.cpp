@@ -75,7 +75,7 @@ struct BlockStreamer::Impl {
   }
   void note_failure(BlockId id, const Failure& failure);
   bool is_paused(BlockId id) const;
-  bool do_all_wait() const;
+  bool waits_in_vain(BlockId id) const;
   std::vector<BlockEntry> missing_soon(const BlockViewParameters& parameters);
   std::size_t most_decoding() const {
     return kDecodingPerThread * std::size_t(std::max(options.decode_threads, 1));
@@ -310,13 +310,6 @@ void BlockStreamer::Impl::ask_for_blocks(const BlockViewParameters& parameters, 
   last_camera = parameters.view.camera;
 }
 
-// Nothing pending goes on by itself: what it needs was with another view, which has dropped it.
-bool BlockStreamer::Impl::do_all_wait() const {
-  return workers.outstanding() == 0 &&
-         std::all_of(pending.begin(), pending.end(),
-                     [](const auto& p) { return p.second.state == Pending::State::Waiting; });
-}
-
 // In their order, as far as there is room, and with what they need on its way.
 void BlockStreamer::Impl::ask_for(std::span<const BlockEntry> missing, std::size_t view,
                                   bool is_prefetch) {
@@ -324,10 +317,8 @@ void BlockStreamer::Impl::ask_for(std::span<const BlockEntry> missing, std::size
   std::vector<RangeRequest> requests;
   std::vector<BlockId> ids;
   float priority = is_prefetch ? 0 : static_cast<float>(missing.size());
-  const bool all_wait = do_all_wait();
   for (const BlockEntry& entry : missing) {
-    const bool has_room = pending_bytes + entry.bytes <= options.max_pending_bytes;
-    if (!has_room && !(all_wait && requests.empty())) break;
+    if (pending_bytes > 0 && pending_bytes + entry.bytes > options.max_pending_bytes) break;
     priority -= 1;
     if (pending.contains(entry.id) || is_paused(entry.id) || others_have(entry.id)) continue;
     const std::vector<BlockId> needed = mesh.lacking(entry.id);
@@ -368,12 +359,20 @@ std::vector<BlockEntry> BlockStreamer::Impl::missing_soon(const BlockViewParamet
   return meshes.front().missing_for(soon);
 }
 
+// What it needs was with another view, which has dropped it, and nobody has asked for it again.
+bool BlockStreamer::Impl::waits_in_vain(BlockId id) const {
+  const std::vector<BlockId> needed = meshes.front().lacking(id);
+  return std::any_of(needed.begin(), needed.end(),
+                     [this](BlockId n) { return !pending.contains(n) && !others_have(n); });
+}
+
 // What was prefetched may come while nobody else needs its room.
 void BlockStreamer::Impl::forget_unwanted() {
   const bool has_room = is_nothing_missing() || pending_bytes <= options.max_pending_bytes / 2;
   for (auto at = pending.begin(); at != pending.end();) {
     Pending& p = at->second;
-    if (p.wanted_by != 0 || p.state == Pending::State::Decoding || (p.is_prefetch && has_room)) {
+    const bool is_wanted = p.wanted_by != 0 || (p.is_prefetch && has_room);
+    if (p.state == Pending::State::Decoding || (is_wanted && !waits_in_vain(at->first))) {
       ++at;
       continue;
     }
