@@ -113,13 +113,18 @@ int LevelChoice::level_at_hand(const State& state, int level) {
   return level;
 }
 
-bool LevelChoice::choose(std::span<const std::uint32_t> cut, const ViewError& error, float keep) {
+// Whether lists have come.
+bool LevelChoice::begin_choice(std::span<const std::uint32_t> cut) {
   ++choices_;
   take_waiting();
   if (!cut.empty()) grow(std::size_t(cut.back()) + 1);
   is_shown_.swap(was_shown_);
   is_shown_.clear();
-  bool has_changed = std::exchange(lists_have_changed_, false);
+  return std::exchange(lists_have_changed_, false);
+}
+
+bool LevelChoice::choose(std::span<const std::uint32_t> cut, const ViewError& error, float keep) {
+  bool has_changed = begin_choice(cut);
   for (std::size_t i = cut.size(); i-- > 0;) {
     const std::uint32_t block = cut[i];
     State& state = states_[block];
@@ -136,12 +141,7 @@ bool LevelChoice::choose(std::span<const std::uint32_t> cut, const ViewError& er
 }
 
 bool LevelChoice::choose_whole(std::span<const std::uint32_t> cut) {
-  ++choices_;
-  take_waiting();
-  if (!cut.empty()) grow(std::size_t(cut.back()) + 1);
-  is_shown_.swap(was_shown_);
-  is_shown_.clear();
-  bool has_changed = std::exchange(lists_have_changed_, false);
+  bool has_changed = begin_choice(cut);
   for (const std::uint32_t block : cut) {
     states_[block].wanted = kFullLevel;
     has_changed |= show(block, kFullLevel);

@@ -84,6 +84,7 @@ class LevelChoice {
   static int level_at_hand(const State& state, int level);
   void grow(std::size_t blocks);
   bool show(std::uint32_t block, int level);
+  bool begin_choice(std::span<const std::uint32_t> cut);
   bool hide_others();
 
   const BlockGraph& graph_;
