@@ -471,7 +471,7 @@ bool BlockStreamer::wait(std::chrono::milliseconds timeout) {
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
     const DecodeWorkers& workers = impl_->workers;
-    const bool is_decoding = workers.outstanding() + workers.outstanding_hierarchies() > 0;
+    const bool is_decoding = workers.outstanding() + workers.outstanding_making() > 0;
     if (is_decoding && impl_->options.decode_threads == 0) return true;
     if (is_decoding && impl_->workers.wait(std::min(left, kLook))) return true;
     if (impl_->source->wait(is_decoding ? std::min(left, kLook) : left)) return true;

@@ -33,39 +33,39 @@ std::vector<DecodeWorkers::Decoded> DecodeWorkers::take() {
   return std::exchange(done_, {});
 }
 
+template <typename Job, typename Made>
+void DecodeWorkers::add(Making<Job, Made>& making, Job job) {
+  {
+    const std::lock_guard lock(mutex_);
+    making.waiting.push_back(std::move(job));
+    ++outstanding_making_;
+  }
+  has_work_.notify_one();
+}
+
+template <typename Job, typename Made>
+std::vector<Made> DecodeWorkers::take(Making<Job, Made>& making) {
+  const std::lock_guard lock(mutex_);
+  outstanding_making_ -= making.done.size();
+  return std::exchange(making.done, {});
+}
+
 void DecodeWorkers::add(BlockHierarchyJob job) {
-  {
-    const std::lock_guard lock(mutex_);
-    waiting_hierarchies_.push_back(std::move(job));
-    ++outstanding_hierarchies_;
-  }
-  has_work_.notify_one();
+  add(hierarchies_, std::move(job));
 }
-
-std::vector<BlockHierarchyPtr> DecodeWorkers::take_hierarchies() {
-  const std::lock_guard lock(mutex_);
-  outstanding_hierarchies_ -= done_hierarchies_.size();
-  return std::exchange(done_hierarchies_, {});
-}
-
 void DecodeWorkers::add(BlockLevelsJob job) {
-  {
-    const std::lock_guard lock(mutex_);
-    waiting_levels_.push_back(std::move(job));
-    ++outstanding_hierarchies_;
-  }
-  has_work_.notify_one();
+  add(levels_, std::move(job));
 }
-
+std::vector<BlockHierarchyPtr> DecodeWorkers::take_hierarchies() {
+  return take(hierarchies_);
+}
 std::vector<BlockLevelsPtr> DecodeWorkers::take_levels() {
-  const std::lock_guard lock(mutex_);
-  outstanding_hierarchies_ -= done_levels_.size();
-  return std::exchange(done_levels_, {});
+  return take(levels_);
 }
 
-std::size_t DecodeWorkers::outstanding_hierarchies() const {
+std::size_t DecodeWorkers::outstanding_making() const {
   const std::lock_guard lock(mutex_);
-  return outstanding_hierarchies_;
+  return outstanding_making_;
 }
 
 std::size_t DecodeWorkers::outstanding() const {
@@ -81,7 +81,7 @@ double DecodeWorkers::seconds() const {
 bool DecodeWorkers::wait(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   return has_results_.wait_for(lock, timeout, [this] {
-    return !done_.empty() || !done_hierarchies_.empty() || !done_levels_.empty();
+    return !done_.empty() || !hierarchies_.done.empty() || !levels_.done.empty();
   });
 }
 
@@ -96,22 +96,18 @@ void DecodeWorkers::work() {
 
 void DecodeWorkers::do_next(std::unique_lock<std::mutex>& lock) {
   if (!waiting_.empty()) return decode_next(lock);
-  if (!waiting_hierarchies_.empty()) {
-    make_next(lock, waiting_hierarchies_, done_hierarchies_);
-  } else {
-    make_next(lock, waiting_levels_, done_levels_);
-  }
+  if (!hierarchies_.waiting.empty()) return make_next(lock, hierarchies_);
+  make_next(lock, levels_);
 }
 
-template <typename Job, typename Done>
-void DecodeWorkers::make_next(std::unique_lock<std::mutex>& lock, std::deque<Job>& waiting,
-                              Done& done) {
-  const Job job = std::move(waiting.front());
-  waiting.pop_front();
+template <typename Job, typename Made>
+void DecodeWorkers::make_next(std::unique_lock<std::mutex>& lock, Making<Job, Made>& making) {
+  const Job job = std::move(making.waiting.front());
+  making.waiting.pop_front();
   lock.unlock();
-  auto made = job.run();
+  Made made = job.run();
   lock.lock();
-  done.push_back(std::move(made));
+  making.done.push_back(std::move(made));
   has_results_.notify_all();
 }
 

@@ -21,7 +21,7 @@ class DecodeWorkers {
     Result<ResidentBlockPtr> block;
   };
 
-  // 0: take() does one of both on the caller's.
+  // 0: take() does one of them on the caller's.
   explicit DecodeWorkers(int threads);
   ~DecodeWorkers();  // waits for those that are being decoded; what waits is left
   DecodeWorkers(const DecodeWorkers&) = delete;
@@ -37,10 +37,10 @@ class DecodeWorkers {
   void add(BlockLevelsJob job);
   std::vector<BlockLevelsPtr> take_levels();  // likewise
 
-  std::size_t outstanding() const;              // blocks added and not taken
-  std::size_t outstanding_hierarchies() const;  // and levels, likewise
-  double seconds() const;                       // spent decoding, over all threads
-  // Until one of both has something (true), or the time is over. Not without threads.
+  std::size_t outstanding() const;         // blocks added and not taken
+  std::size_t outstanding_making() const;  // hierarchies and levels, likewise
+  double seconds() const;                  // spent decoding, over all threads
+  // Until one of them has something (true), or the time is over. Not without threads.
   bool wait(std::chrono::milliseconds timeout);
 
  private:
@@ -49,25 +49,34 @@ class DecodeWorkers {
     std::vector<std::byte> payload;
   };
 
+  // What is made of blocks that are there.
+  template <typename Job, typename Made>
+  struct Making {
+    std::deque<Job> waiting;
+    std::vector<Made> done;
+  };
+
   void work();
   bool has_waiting() const {
-    return !waiting_.empty() || !waiting_hierarchies_.empty() || !waiting_levels_.empty();
+    return !waiting_.empty() || !hierarchies_.waiting.empty() || !levels_.waiting.empty();
   }
   // The lock is held before and after, not while it works. Something must be waiting.
   void do_next(std::unique_lock<std::mutex>& lock);
   void decode_next(std::unique_lock<std::mutex>& lock);
-  template <typename Job, typename Done>
-  void make_next(std::unique_lock<std::mutex>& lock, std::deque<Job>& waiting, Done& done);
+  template <typename Job, typename Made>
+  void add(Making<Job, Made>& making, Job job);
+  template <typename Job, typename Made>
+  std::vector<Made> take(Making<Job, Made>& making);
+  template <typename Job, typename Made>
+  void make_next(std::unique_lock<std::mutex>& lock, Making<Job, Made>& making);
 
   mutable std::mutex mutex_;
   std::condition_variable has_work_, has_results_;
   std::deque<Waiting> waiting_;
-  std::deque<BlockHierarchyJob> waiting_hierarchies_;
   std::vector<Decoded> done_;
-  std::vector<BlockHierarchyPtr> done_hierarchies_;
-  std::deque<BlockLevelsJob> waiting_levels_;
-  std::vector<BlockLevelsPtr> done_levels_;
-  std::size_t outstanding_ = 0, outstanding_hierarchies_ = 0;
+  Making<BlockHierarchyJob, BlockHierarchyPtr> hierarchies_;
+  Making<BlockLevelsJob, BlockLevelsPtr> levels_;
+  std::size_t outstanding_ = 0, outstanding_making_ = 0;
   double seconds_ = 0;
   bool is_ending_ = false;
   std::vector<std::thread> threads_;
