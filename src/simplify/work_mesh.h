@@ -63,7 +63,7 @@ struct WorkMesh {
 // are left open.
 WorkMesh make_work(const Mesh& mesh, const Grid& grid);
 
-// What one patch did in one pass, in its own numbering of new attribute values.
+// What one patch did in one band, in its own numbering of new attribute values.
 struct PatchContraction {
   double key;  // steering cost; never falls inside a patch
   Contraction contraction;
