@@ -3,6 +3,7 @@
 
 #include "crease/block_file.h"
 #include "crease/split_bounds.h"
+#include "runtime/rounded_error.h"
 
 namespace crease {
 
@@ -14,10 +15,7 @@ struct BlockBounds {
 
 inline BlockBounds bounds_of(const BlockFacts& block, const Grid& grid) {
   BlockBounds result;
-  result.bounds.surface = RoundedUp::from(block.coarse.surface);
-  result.bounds.line = RoundedUp::from(block.coarse.line);
-  result.bounds.degrees = RoundedUp::from(block.coarse.degrees);
-  result.bounds.texture = RoundedUp::from(block.coarse.texture);
+  set_error(result.bounds, RoundedError::from(block.coarse));
   result.bounds.radius = RoundedUp::from(static_cast<float>(grid.step * block.radius));
   result.center = {static_cast<float>(grid.step * block.center.x),
                    static_cast<float>(grid.step * block.center.y),

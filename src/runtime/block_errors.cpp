@@ -12,15 +12,6 @@ RoundedUp better(RoundedUp a, RoundedUp b) {
   return a.bits < b.bits ? a : b;
 }
 
-RoundedUp worse(RoundedUp a, RoundedUp b) {
-  return a.bits > b.bits ? a : b;
-}
-
-RoundedError worse(const RoundedError& a, const RoundedError& b) {
-  return {worse(a.surface, b.surface), worse(a.line, b.line), worse(a.degrees, b.degrees),
-          worse(a.texture, b.texture)};
-}
-
 }  // namespace
 
 BlockErrors::BlockErrors(const BlockHierarchy::Data& data)
@@ -46,8 +37,7 @@ void BlockErrors::tighten(std::uint32_t vertex, const RoundedError& error) {
 RoundedError BlockErrors::of_root(std::uint32_t root) const {
   const SplitId s = data_.hierarchy.vertices.split_of(data_.node_of_root[root]);
   if (s == kNoSplit) return of_vertex_[root];
-  const SplitBounds& bounds = bounds_[index_of(s)];
-  return {bounds.surface, bounds.line, bounds.degrees, bounds.texture};
+  return error_of(bounds_[index_of(s)]);
 }
 
 // Children come after their parents.
@@ -70,12 +60,9 @@ bool BlockErrors::settle() {
         codec::added_error(base[node].value(), data_.own_errors[i].value(), data_.coarse);
     error[node] = worse(worse(error[first], error[second]), RoundedError::from(added));
     SplitBounds& bounds = bounds_[i];
-    const RoundedError before{bounds.surface, bounds.line, bounds.degrees, bounds.texture};
+    const RoundedError before = error_of(bounds);
     has_changed |= h.is_root(NodeId{static_cast<std::uint32_t>(node)}) && !(before == error[node]);
-    bounds.surface = error[node].surface;
-    bounds.line = error[node].line;
-    bounds.degrees = error[node].degrees;
-    bounds.texture = error[node].texture;
+    set_error(bounds, error[node]);
   }
   return has_changed;
 }

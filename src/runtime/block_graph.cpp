@@ -56,10 +56,6 @@ Status BlockGraph::add_page(const DirectoryPage& page) {
 
 namespace {
 
-RoundedUp larger(RoundedUp a, RoundedUp b) {
-  return a.bits > b.bits ? a : b;
-}
-
 Vec3d to_double(const Vec3f& p) {
   return {p.x, p.y, p.z};
 }
@@ -67,10 +63,7 @@ Vec3d to_double(const Vec3f& p) {
 // The smallest sphere around both, a little larger.
 void hold(BlockBounds& outer, const BlockBounds& inner) {
   SplitBounds& bounds = outer.bounds;
-  bounds.surface = larger(bounds.surface, inner.bounds.surface);
-  bounds.line = larger(bounds.line, inner.bounds.line);
-  bounds.degrees = larger(bounds.degrees, inner.bounds.degrees);
-  bounds.texture = larger(bounds.texture, inner.bounds.texture);
+  set_error(bounds, worse(error_of(bounds), error_of(inner.bounds)));
   const Vec3d center = to_double(outer.center), way = to_double(inner.center) - center;
   const double away = length(way), own = bounds.radius.value(), other = inner.bounds.radius.value();
   if (away + other <= own) return;

@@ -6,31 +6,13 @@
 #include "crease/block_mesh.h"
 #include "crease/mesh_hierarchy.h"
 #include "crease/packed_indices.h"
-#include "crease/split_bounds.h"
+#include "runtime/rounded_error.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace crease {
-
-// A LevelError, rounded up.
-struct RoundedError {
-  RoundedUp surface, line, degrees, texture;
-
-  static RoundedError from(const LevelError& error) {
-    const auto rounded = [](float x) {
-      return RoundedUp::from(x >= 0 ? x : std::numeric_limits<float>::infinity());  // or no number
-    };
-    return {rounded(error.surface), rounded(error.line), rounded(error.degrees),
-            rounded(error.texture)};
-  }
-  LevelError value() const {
-    return {surface.value(), line.value(), degrees.value(), texture.value()};
-  }
-  bool operator==(const RoundedError&) const = default;
-};
 
 struct BlockHierarchy::Data {
   BlockId id{};

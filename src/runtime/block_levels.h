@@ -13,9 +13,9 @@
 #pragma once
 
 #include "crease/block_mesh.h"
-#include "runtime/active_cut.h"
-#include "runtime/block_hierarchy.h"
+#include "runtime/level_list.h"
 #include "runtime/resident_block.h"
+#include "runtime/rounded_error.h"
 
 #include <array>
 #include <cstddef>
@@ -41,19 +41,6 @@ struct LevelFacts {
   std::vector<LevelPiece> pieces;
 };
 
-// What a level shows, as a list of its own, group by group.
-struct LevelList {
-  int level = 0;
-  std::vector<std::uint64_t> done;  // a bit per split of the hierarchy that the job made
-  std::vector<Vec3f> positions, vertex_normals;
-  BlockPart sn, fn, nsn;
-  std::vector<BlockGroup> groups;                   // of no patch
-  std::array<PackedIndices<>, 3> part_of_triangle;  // per triangle of sn, fn, nsn; or empty
-  std::uint64_t revision = 0;
-
-  std::size_t bytes() const;
-};
-using LevelListPtr = std::shared_ptr<const LevelList>;
 using LevelFactsPtr = std::shared_ptr<const LevelFacts>;
 
 struct BlockLevels::Data {
@@ -72,8 +59,5 @@ struct BlockLevelsJob::Data {
   std::vector<Finer> finer;  // blocks that need it and of which something is known
   int level = 0;             // of which a list is wanted
 };
-
-// The cut of a level through the block's hierarchy.
-void split_as(const LevelList& list, ActiveCut& cut);
 
 }  // namespace crease

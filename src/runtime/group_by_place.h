@@ -13,12 +13,11 @@ namespace crease {
 // Of a group at most; it has at least half as many where there were more.
 inline constexpr std::size_t kGroupTriangles = 32;
 
-// Halves order[begin, end) until the groups are small, across the longest side; the order within
-// stays. `place_of(t)`: three numbers, sums of the corners for instance. Adds the groups' ends.
+// The middle of order[begin, end), on whose left side are those whose places are lowest along the
+// longest side of their box. `place_of(t)`: three numbers, sums of the corners for instance.
 template <typename PlaceOf>
-void group_by_place(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
-                    const PlaceOf& place_of, std::vector<std::size_t>& ends) {
-  if (end - begin <= kGroupTriangles) return ends.push_back(end);
+std::size_t halve_by_place(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
+                           const PlaceOf& place_of) {
   auto low = place_of(order[begin]), high = low;
   for (std::size_t i = begin; i < end; ++i) {
     const auto at = place_of(order[i]);
@@ -37,6 +36,17 @@ void group_by_place(std::vector<std::uint32_t>& order, std::size_t begin, std::s
     const auto x = place_of(a)[axis], y = place_of(b)[axis];
     return x != y ? x < y : a < b;
   });
+  return middle;
+}
+
+// Halves order[begin, end) until the groups are small; the order within stays. Adds the groups'
+// ends.
+template <typename PlaceOf>
+void group_by_place(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
+                    const PlaceOf& place_of, std::vector<std::size_t>& ends) {
+  if (end - begin <= kGroupTriangles) return ends.push_back(end);
+  const std::size_t middle = halve_by_place(order, begin, end, place_of);
+  const auto at = [&order](std::size_t i) { return order.begin() + std::ptrdiff_t(i); };
   std::sort(at(begin), at(middle));
   std::sort(at(middle), at(end));
   group_by_place(order, begin, middle, place_of, ends);

@@ -36,12 +36,8 @@ void LevelChoice::take(const BlockLevels& levels) {
   state.can_choose = !data.facts->of_root.empty() && !graph_.is_base(block);
   state.is_stale = false;
   for (std::size_t k = 0; k < kFullLevel; ++k) {
-    const RoundedError left = RoundedError::from(data.facts->left[k]);
     entry.bounds[k] = graph_.own(block).bounds;
-    entry.bounds[k].surface = left.surface;
-    entry.bounds[k].line = left.line;
-    entry.bounds[k].degrees = left.degrees;
-    entry.bounds[k].texture = left.texture;
+    set_error(entry.bounds[k], RoundedError::from(data.facts->left[k]));
   }
   if (data.list) {
     const auto level = static_cast<std::size_t>(data.list->level);
