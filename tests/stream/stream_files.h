@@ -81,7 +81,6 @@ inline const std::vector<std::byte>& city_bytes() {
 inline HttpOptions hasty() {
   HttpOptions options;
   options.first_pause = options.max_pause = std::chrono::milliseconds(1);
-  options.low_speed_seconds = 1;
   return options;
 }
 
