@@ -17,7 +17,7 @@ namespace crease {
 
 struct SimplifyOptions {
   Placement placement = Placement::Optimal;
-  std::uint32_t patch_triangles = 8'000;
+  std::uint32_t patch_triangles = 10'000;
   int threads = 0;  // 0: all. The result does not depend on it
   // How much a wrong normal costs beside a wrong distance: a normal that is off by one radian over
   // an area costs as much as a distance of normal_weight mean edge lengths there.

@@ -1,12 +1,12 @@
-// One patch of one band: pair contractions in the order of their cost until none costs less than
-// the band's limit.
+// One patch in one pass: pair contractions in the order of their cost until none costs less than
+// the pass's limit.
 //
 //   PatchSimplifier patch;  // one a thread: it keeps its memory from patch to patch
 //   patch.start(work, triangles, patch_id, steering);
 //   PatchResult result = patch.run();
 //
-// Inside, everything is local and small enough for the second-level cache: 8,000 triangles take
-// about 3 MB. Vertices that other patches share are locked: they neither move nor vanish.
+// Inside, everything is local: 10,000 triangles take about 4 MB. Vertices that other patches share
+// are locked: they neither move nor vanish.
 #pragma once
 
 #include "hierarchy/quadric.h"

@@ -25,8 +25,11 @@ namespace {
 // bits that a file takes: these vertices are few.
 constexpr double kCoarseShare = 0.1, kCoarseLeavesPair = 0.9;
 
-// A band should leave about this share of its triangles; its limit is steered towards that.
-constexpr double kBandShare = 0.6;
+// A pass should leave about this share of its triangles; its limit is steered towards that. A band
+// is one or more passes over the same patches, each with quadrics anew: fewer bands make smaller
+// files, which hold what all bands begin with, but the patches' borders stay where they are.
+constexpr double kPassShare = 0.6;
+constexpr int kPasses = 2, kPassesOfFirst = 1;  // so that half of the triangles see two borders
 
 // Below this many triangles one last band goes all the way.
 constexpr std::size_t kLastBand = 64;
@@ -158,7 +161,7 @@ class Simplifier {
   Result<ContractionSequence> run(SimplifyStatistics* statistics) {
     const std::size_t input_triangles = work_.live.size();
     double limit = 0, factor = 6;
-    for (int band = 0; work_.live.size() > 1; ++band) {
+    for (int band = 0, pass = 0; work_.live.size() > 1;) {
       const std::size_t before = work_.live.size();
       const double done = 1 - double(before) / double(input_triangles);
       if (options_.progress && !options_.progress("simplify", done)) {
@@ -169,9 +172,7 @@ class Simplifier {
       const double edge = std::sqrt(triangle_area * 2.3);  // of an equilateral triangle
       set_scales(work_, extent, options_.normal_weight, edge);
 
-      patches_ = partition_triangles(work_.positions, work_.vertex_of_corner, work_.live,
-                                     patch_triangles(), band);
-      find_owners(work_, patches_);
+      if (pass == 0) start_band(band);
       bool parts_join = false;
       if (work_.part_count > 1) {
         for (std::uint32_t v = 0; v < work_.positions.size(); ++v) {
@@ -187,24 +188,32 @@ class Simplifier {
         steering.leaves_pair = kCoarseLeavesPair;
       }
       const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= kMostStalls);
-      if (band == 0) limit = first_limit(steering, triangle_area);
+      if (band == 0 && pass == 0) limit = first_limit(steering, triangle_area);
       steering.cost_limit = last ? kNoLimit : limit;
       const double step = last ? kNoLimit : std::sqrt(limit / (triangle_area * 6));
       steering.virtual_distance = last || parts_join ? 2 * step : 0;
       steering.turn_distance = 4 * step;
-      if (!run_band(steering, input_triangles)) {
+      if (!run_pass(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");
       }
-      if (statistics) statistics->bands.push_back(band_statistics());
-      if (options_.record_bands) record_band();
-      if (last) break;
 
-      // Steer: a power law through the last band says which limit leaves kBandShare.
+      // Steer: a power law through the last pass says which limit leaves kPassShare.
       const double share = double(work_.live.size()) / double(before);
       stalled_ = share > 0.98 ? stalled_ + 1 : 0;
-      const double exponent = std::log(kBandShare) / std::log(std::min(share, 0.97));
+      const double exponent = std::log(kPassShare) / std::log(std::min(share, 0.97));
       factor = std::clamp(std::pow(factor, std::clamp(exponent, 0.3, 3.0)), 2.0, 4096.0);
       limit *= factor;
+
+      ++pass;
+      const bool ends = last || stalled_ > 0 || pass == (band == 0 ? kPassesOfFirst : kPasses);
+      if (!ends) {
+        drop_vanished(patches_);
+        continue;
+      }
+      if (statistics) statistics->bands.push_back(band_statistics());
+      if (last) break;
+      ++band;
+      pass = 0;
     }
     scale_errors();
     for (WorkLayer& layer : work_.layers)
@@ -245,7 +254,32 @@ class Simplifier {
     return std::max(noise, *third);
   }
 
-  bool run_band(const Steering& steering, std::size_t input_triangles) {
+  // Who owns a vertex holds for the whole band: a block knows its border by it.
+  void start_band(int number) {
+    patches_ = partition_triangles(work_.positions, work_.vertex_of_corner, work_.live,
+                                   patch_triangles(), number);
+    find_owners(work_, patches_);
+    contractions_in_band_ = 0;
+    if (!options_.record_bands) return;
+    Band& band = sequence_.bands.emplace_back();
+    for (std::uint32_t t : patches_.triangles) band.triangles.push_back(TriangleId{t});
+    band.first_triangle = patches_.first;
+  }
+
+  void drop_vanished(Patches& patches) const {
+    std::uint32_t left = 0, next = 0;
+    for (std::size_t p = 0; p < patches.count(); ++p) {
+      patches.first[p] = left;
+      for (; next < patches.first[p + 1]; ++next) {
+        const std::uint32_t t = patches.triangles[next];
+        if (work_.vertex_of_corner[3 * t] != kNone) patches.triangles[left++] = t;
+      }
+    }
+    patches.first.back() = left;
+    patches.triangles.resize(left);
+  }
+
+  bool run_pass(const Steering& steering, std::size_t input_triangles) {
     results_.assign(patches_.count(), {});
     std::atomic<bool> stop{false};
     std::atomic<std::size_t> left{work_.live.size()};
@@ -306,7 +340,7 @@ class Simplifier {
     });
   }
 
-  // One order for the band: by cost, which never falls inside a patch, then by patch.
+  // One order for the pass: by cost, which never falls inside a patch, then by patch.
   void append_contractions() {
     struct At {
       double key;
@@ -323,8 +357,9 @@ class Simplifier {
              : a.patch != b.patch ? a.patch < b.patch
                                   : a.index < b.index;
     });
-    contractions_in_band_ = static_cast<std::uint32_t>(order.size());
+    contractions_in_band_ += static_cast<std::uint32_t>(order.size());
     if (options_.record_bands) {
+      sequence_.bands.back().contraction_count = contractions_in_band_;
       for (const At& at : order) sequence_.patch_of_contraction.push_back(at.patch);
     }
     for (const At& at : order) {
@@ -346,13 +381,6 @@ class Simplifier {
       }
     }
     results_.clear();
-  }
-
-  void record_band() {
-    Band& band = sequence_.bands.emplace_back();
-    band.contraction_count = contractions_in_band_;
-    for (std::uint32_t t : patches_.triangles) band.triangles.push_back(TriangleId{t});
-    band.first_triangle = std::move(patches_.first);
   }
 
   BandStatistics band_statistics() const {

@@ -54,7 +54,7 @@ TEST_CASE("a model over HTTP is the model") {
   CHECK(a->blocks == b->blocks);
   CHECK((*source)->bytes_read() == host.sent_bytes());
   // Each band's blocks are neighbours: a request a band, instead of one a block.
-  CHECK(a->blocks.size() > 20);
+  CHECK(a->blocks.size() > 10);
   CHECK(host.request_count() <= 2 + remote->facts().bands.size());
   CHECK(host.sent_bytes() <= city_bytes().size() * 11 / 10);
 

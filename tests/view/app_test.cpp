@@ -242,7 +242,7 @@ TEST_CASE("beside the original the right half has all triangles, the left one wh
 
 TEST_CASE("two halves have settings of their own, and keys are for one of them") {
   const Folder folder;
-  ViewerOptions options = small_window(folder.crease_file("sphere.crease", smooth_sphere(48, 96)));
+  ViewerOptions options = small_window(folder.crease_file("sphere.crease", smooth_sphere(72, 144)));
   options.split = ViewSplit::Settings;
   options.right.pixels = 8;
   Running viewer(options);
