@@ -41,8 +41,8 @@ RoundedError BlockErrors::of_root(std::uint32_t root) const {
 }
 
 // Children come after their parents.
-bool BlockErrors::settle() {
-  if (!is_new_) return false;
+BlockErrors::Change BlockErrors::settle() {
+  if (!is_new_) return {};
   is_new_ = false;
   const VertexHierarchy& h = data_.hierarchy.vertices;
   std::vector<RoundedError> base(h.node_count()), error(h.node_count());  // at the fine end, here
@@ -50,7 +50,7 @@ bool BlockErrors::settle() {
     const std::size_t leaf = index_of(data_.leaf_of_vertex[v]);
     base[leaf] = error[leaf] = of_vertex_[v];
   }
-  bool has_changed = std::exchange(has_new_root_, false);
+  Change change{false, std::exchange(has_new_root_, false)};
   for (std::size_t i = h.split_count(); i-- > 0;) {
     const SplitId s{static_cast<std::uint32_t>(i)};
     const std::size_t node = index_of(h.node_of_split[i]);
@@ -61,10 +61,12 @@ bool BlockErrors::settle() {
     error[node] = worse(worse(error[first], error[second]), RoundedError::from(added));
     SplitBounds& bounds = bounds_[i];
     const RoundedError before = error_of(bounds);
-    has_changed |= h.is_root(NodeId{static_cast<std::uint32_t>(node)}) && !(before == error[node]);
+    if (before == error[node]) continue;
     set_error(bounds, error[node]);
+    change.of_splits = true;
+    change.of_roots |= h.is_root(NodeId{static_cast<std::uint32_t>(node)});
   }
-  return has_changed;
+  return change;
 }
 
 std::size_t BlockErrors::bytes() const {

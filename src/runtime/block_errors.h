@@ -6,7 +6,7 @@
 //
 //   BlockErrors errors(data);                    // by what the file says
 //   errors.tighten(vertex, finer.of_root(root)); // of any vertices of the fine end
-//   if (errors.settle()) ...                     // the roots' have changed
+//   if (errors.settle().of_roots) ...            // coarser blocks can know more
 //
 // They only get smaller, and are good whatever is dropped. Memory: 8 bytes a vertex, 14 a split.
 #pragma once
@@ -26,8 +26,11 @@ class BlockErrors {
   explicit BlockErrors(const BlockHierarchy::Data& data);
 
   void tighten(std::uint32_t vertex, const RoundedError& error);
-  // True if errors of roots have changed. Time O(vertices) if tighten() told anything new.
-  bool settle();
+  struct Change {
+    bool of_splits = false, of_roots = false;
+  };
+  // What is other than before. Time O(vertices) if tighten() told anything new.
+  Change settle();
 
   // Per split. Changes with settle().
   std::span<const SplitBounds> bounds() const { return bounds_; }

@@ -85,8 +85,9 @@ void VertexCuts::settle_errors(const Blocks& blocks) {
     if (!entry.is_stale) continue;
     entry.is_stale = false;
     tighten(block, blocks);
-    if (!entry.errors->settle()) continue;
-    if (entry.cut) entry.cut->look_anew();
+    const BlockErrors::Change change = entry.errors->settle();
+    if (change.of_splits && entry.cut) entry.cut->look_anew();
+    if (!change.of_roots) continue;
     for (const std::uint32_t coarser : graph_.dependencies(block)) mark_stale(coarser);
   }
 }

@@ -268,15 +268,15 @@ void check_by_vertex(const BlockMesh& mesh) {
   CHECK((drawn == drawn_of_mesh(shown, place)));
 }
 
-// How wrong the vertices of all resident blocks are, from fine to coarse, as the finer ones tell.
+// How wrong the vertices of all resident blocks are, from fine to coarse, as the finer ones tell:
+// also those that the cut does not go through any more.
 std::size_t check_levels_are_right(const BlockMesh& mesh, const ViewParameters& view) {
   const BlockMesh::Impl& impl = mesh.impl();
   const ViewError error(view, mesh.facts().grid);
   std::map<std::pair<std::uint32_t, std::uint32_t>, RoundedError> error_of_name;
   std::size_t between = 0, wrong = 0;
-  for (std::size_t i = impl.cut.size(); i-- > 0;) {
-    const std::uint32_t block = impl.cut[i];
-    if (impl.graph.is_base(block)) continue;
+  for (std::uint32_t block = static_cast<std::uint32_t>(impl.resident.size()); block-- > 0;) {
+    if (impl.resident[block] == nullptr || impl.graph.is_base(block)) continue;
     std::vector<ResidentBlockPtr> needed;
     for (const std::uint32_t n : impl.graph.dependencies(block)) {
       needed.push_back(impl.resident[n]);
@@ -296,15 +296,20 @@ std::size_t check_levels_are_right(const BlockMesh& mesh, const ViewParameters& 
       const codec::VertexName name = resident.root_names[r];
       error_of_name[{name.block, name.vertex}] = errors.of_root(r);
     }
+    const bool is_in_cut = std::ranges::binary_search(impl.cut, block);
     const int level = impl.levels.shown(block);
-    if (level == kFullLevel) continue;
+    if (!is_in_cut || level == kFullLevel) continue;
     const LevelList* const list = impl.levels.list(block);
     between += list != nullptr;
     const VertexHierarchy& h = data.hierarchy.vertices;
     for (std::size_t s = 0; s < h.split_count(); ++s) {
       if (list != nullptr && (list->done[s / 64] >> (s % 64) & 1) != 0) continue;
       const Vec3f position = error.position(h.position_of(h.node_of_split[s]));
-      wrong += error.is_wrong(error.watch(errors.bounds()[s], position, 1));
+      // It is inside its own sphere, and inside the block's.
+      SplitBounds in_block = impl.graph.own(block).bounds;
+      set_error(in_block, error_of(errors.bounds()[s]));
+      wrong += error.is_wrong(error.watch(errors.bounds()[s], position, 1)) &&
+               error.is_wrong(error.watch(in_block, impl.graph.own(block).center, 1));
     }
   }
   CHECK(wrong == 0);
