@@ -223,7 +223,7 @@ TEST_CASE("while the source fails what is shown stays, and says what is wrong") 
 }
 
 TEST_CASE("what is asked for at once is bounded, and cancelled when nobody wants it") {
-  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 300, 14, kCoarsePrecision);
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 100, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   const auto source = std::make_shared<UnsteadySource>(c.bytes, 5, 0);
   const StreamOptions options = hasty(1);

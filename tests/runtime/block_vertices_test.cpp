@@ -270,8 +270,8 @@ TEST_CASE("by vertex, random complexes are one cut as well") {
 
 TEST_CASE("by vertex, with all blocks there, hardly more is shown than of one hierarchy") {
   std::uint64_t seed = 400;
-  for (const Mesh& mesh : {city_blocks(6, 2), smooth_sphere(40, 60)}) {
-    const EncodedCase c = simplified_case(mesh, 250, 16, kCoarsePrecision);
+  for (const Mesh& mesh : {city_blocks(6, 2), smooth_sphere(60, 90)}) {
+    const EncodedCase c = simplified_case(mesh, 800, 16, kCoarsePrecision);
     const BlockFile file = opened(c.bytes);
     const Result<DecodedModel> model = decode_model(file);
     REQUIRE(model.ok());
