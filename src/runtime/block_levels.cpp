@@ -68,8 +68,8 @@ class Levels {
   std::array<float, kFullLevel> limit_{};
 };
 
-// Halves the splits of roots a few times: an error in one corner of a block does
-// not matter where only another one is near, or in view.
+// Halves the splits of roots a few times: an error in one corner of a block does not matter where
+// only another one is near, or in view.
 class PieceMaker {
  public:
   PieceMaker(const BlockHierarchy::Data& data, const Grid& grid, const Levels& levels,
@@ -86,42 +86,33 @@ class PieceMaker {
     }
   }
   void run() {
-    if (!order_.empty()) halve(0, order_.size(), kHalvings);
-    std::vector<std::uint32_t> piece_of_root(order_.size());
-    for (std::uint32_t piece = 0; piece < ends_.size(); ++piece) {
-      for (std::size_t i = piece == 0 ? 0 : ends_[piece - 1]; i < ends_[piece]; ++i) {
-        piece_of_root[order_[i]] = piece;
-      }
-    }
-    const std::size_t count = ends_.size();
-    for (int k = 1; k < kFullLevel; ++k) {
-      for (std::size_t i = 0; i < count; ++i) facts_.pieces.push_back(facts_.pieces[i]);
-    }
-    for (std::size_t s = 0; s < bounds_.size(); ++s) {
-      for (int k = 0; k < kFullLevel; ++k) {
-        if (levels_.is_done(s, k)) continue;
-        const std::size_t first = static_cast<std::size_t>(k) * count;
-        SplitBounds& left = facts_.pieces[first + piece_of_root[root_split_[s]]].left;
-        set_error(left, worse(error_of(left), error_of(bounds_[s])));
-      }
-    }
+    piece_of_root_.resize(order_.size());
+    if (!order_.empty()) add_piece(0, order_.size(), kHalvings);
+    facts_.left_in_piece.resize(kFullLevel * facts_.pieces.size());
+    for (int k = 0; k < kFullLevel; ++k) find_left(k);
   }
 
  private:
-  static constexpr int kHalvings = 3;
+  static constexpr int kHalvings = 5;
 
-  // Across the longest side, a few times.
-  void halve(std::size_t begin, std::size_t end, int halvings) {
-    if (halvings == 0 || end - begin < 2) return add_piece(begin, end);
-    const std::size_t middle = halve_by_place(order_, begin, end, [this](std::uint32_t s) {
-      return std::array{place_[s].x, place_[s].y, place_[s].z};
-    });
-    halve(begin, middle, halvings - 1);
-    halve(middle, end, halvings - 1);
+  // With its halves, across the longest side.
+  void add_piece(std::size_t begin, std::size_t end, int halvings) {
+    const auto piece = static_cast<std::uint16_t>(facts_.pieces.size());
+    facts_.pieces.push_back(sphere_of(begin, end));
+    if (halvings == 0 || end - begin < 2) {
+      for (std::size_t i = begin; i < end; ++i) piece_of_root_[order_[i]] = piece;
+    } else {
+      const std::size_t middle = halve_by_place(order_, begin, end, [this](std::uint32_t s) {
+        return std::array{place_[s].x, place_[s].y, place_[s].z};
+      });
+      add_piece(begin, middle, halvings - 1);
+      add_piece(middle, end, halvings - 1);
+    }
+    facts_.pieces[piece].next = static_cast<std::uint16_t>(facts_.pieces.size());
   }
 
   // The spheres of roots hold those below.
-  void add_piece(std::size_t begin, std::size_t end) {
+  LevelPiece sphere_of(std::size_t begin, std::size_t end) const {
     Vec3f low = place_[order_[begin]], high = low;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f& p = place_[order_[i]];
@@ -134,11 +125,22 @@ class PieceMaker {
       const float own = bounds_[order_[i]].radius.value();
       radius = std::max(radius, length(place_[order_[i]] - center) * 1.00001f + own);
     }
-    LevelPiece piece;
-    piece.center = center;
-    piece.left.radius = RoundedUp::from(radius);
-    facts_.pieces.push_back(piece);
-    ends_.push_back(end);
+    return {center, RoundedUp::from(radius)};
+  }
+
+  void find_left(int level) {
+    const std::size_t count = facts_.pieces.size();
+    const auto left = std::span(facts_.left_in_piece).subspan(std::size_t(level) * count, count);
+    for (std::size_t s = 0; s < bounds_.size(); ++s) {
+      if (levels_.is_done(s, level)) continue;
+      RoundedError& of_piece = left[piece_of_root_[root_split_[s]]];
+      of_piece = worse(of_piece, error_of(bounds_[s]));
+    }
+    for (std::size_t i = count; i-- > 0;) {
+      const std::size_t first = i + 1, end = facts_.pieces[i].next;
+      if (first == end) continue;
+      left[i] = worse(left[first], left[facts_.pieces[first].next]);
+    }
   }
 
   const VertexHierarchy& h_;
@@ -148,7 +150,7 @@ class PieceMaker {
   std::vector<std::uint32_t> order_;       // splits of roots, which are the first ones
   std::vector<Vec3f> place_;               // per split
   std::vector<std::uint32_t> root_split_;  // per split: the one of its root
-  std::vector<std::size_t> ends_;          // per piece, in order_
+  std::vector<std::uint16_t> piece_of_root_;
 };
 
 }  // namespace

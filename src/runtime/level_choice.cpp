@@ -5,7 +5,7 @@
 
 namespace crease {
 
-static_assert(kFullLevel <= 8, "a bit of State::lists each");
+static_assert(kFullLevel <= 16, "a bit of State::lists each");
 
 void LevelChoice::grow(std::size_t blocks) {
   if (blocks <= states_.size()) return;
@@ -43,7 +43,7 @@ void LevelChoice::take(const BlockLevels& levels) {
     const auto level = static_cast<std::size_t>(data.list->level);
     entry.lists[level] = data.list;
     entry.shown_at[level] = choices_;
-    state.lists = static_cast<std::uint8_t>(state.lists | 1u << level);
+    state.lists = static_cast<std::uint16_t>(state.lists | 1u << level);
   }
   resized_.push_back(block);
   lists_have_changed_ = true;
@@ -65,7 +65,7 @@ bool LevelChoice::drop_lists(std::uint32_t age) {
     for (std::size_t k = 1; k < kFullLevel; ++k) {
       if (!entry.lists[k] || state.shown == k || entry.shown_at[k] + age > choices_) continue;
       entry.lists[k] = nullptr;
-      state.lists = static_cast<std::uint8_t>(state.lists & ~(1u << k));
+      state.lists = static_cast<std::uint16_t>(state.lists & ~(1u << k));
       resized_.push_back(block);
       any = true;
     }
@@ -88,17 +88,22 @@ bool LevelChoice::is_wrong(std::uint32_t block, int level, const ViewError& erro
   const Entry& entry = entries_[block];
   const auto k = static_cast<std::size_t>(level);
   if (error.of(entry.bounds[k], graph_.own(block).center) <= limit) return false;
-  const std::size_t count = entry.facts->pieces.size() / kFullLevel;
-  const LevelPiece* const pieces = entry.facts->pieces.data() + k * count;
+  const LevelFacts& facts = *entry.facts;
   const auto is_piece_wrong = [&](std::size_t i) {
-    return error.of(pieces[i].left, pieces[i].center) > limit;
+    return error.of(facts.bounds_of_piece(level, i), facts.pieces[i].center) > limit;
   };
   std::uint8_t& last = states_[block].wrong_piece;
-  if (last < count && is_piece_wrong(last)) return true;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!is_piece_wrong(i)) continue;
-    last = static_cast<std::uint8_t>(i);
-    return true;
+  const auto has_parts = [&](std::size_t i) { return facts.pieces[i].next > i + 1; };
+  if (last < facts.pieces.size() && !has_parts(last) && is_piece_wrong(last)) return true;
+  for (std::size_t i = 0; i < facts.pieces.size();) {
+    if (!is_piece_wrong(i)) {
+      i = facts.pieces[i].next;
+    } else if (has_parts(i)) {
+      ++i;
+    } else {
+      last = static_cast<std::uint8_t>(i);
+      return true;
+    }
   }
   return false;
 }
@@ -196,7 +201,8 @@ std::size_t LevelChoice::bytes_of(std::uint32_t block) const {
   std::size_t bytes = 0;
   if (entry.facts) {
     bytes += sizeof(LevelFacts) + sizeof(RoundedError) * entry.facts->of_root.capacity() +
-             sizeof(LevelPiece) * entry.facts->pieces.capacity();
+             sizeof(LevelPiece) * entry.facts->pieces.capacity() +
+             sizeof(RoundedError) * entry.facts->left_in_piece.capacity();
   }
   for (const LevelListPtr& list : entry.lists) bytes += list ? list->bytes() : 0;
   return bytes;

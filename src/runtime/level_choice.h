@@ -71,7 +71,7 @@ class LevelChoice {
     std::uint32_t needed_at = 0, seen_at = 0;  // the last choice that had it so
     std::uint8_t wanted = 0, shown = 0;
     std::uint8_t wrong_piece = 0;  // the one that was wrong when it was looked at last
-    std::uint8_t lists = 0;        // a bit per level: its list is there
+    std::uint16_t lists = 0;       // a bit per level: its list is there
     bool is_known = false;
     bool can_choose = false;  // it is, and the block is not always whole
     bool is_stale = false;    // finer blocks know more
