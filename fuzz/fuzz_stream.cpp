@@ -60,7 +60,7 @@ struct Sound {
   std::vector<std::byte> bytes = built(smooth_sphere(12, 22)),
                          other = built(faceted_sphere(10, 18));
   BlockFile file = *BlockFile::open(memory_source(std::span<const std::byte>(bytes)));
-  std::vector<std::uint64_t> checksums = drawn_checksums(file);
+  std::vector<std::uint64_t> checksums = *drawn_checksums(file);
   // Of memory, at most. The base's: and its hierarchy, which is kept with it once it was by vertex.
   std::size_t base_bytes = 0, all_bytes = 0;
 

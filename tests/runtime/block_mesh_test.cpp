@@ -251,7 +251,7 @@ TEST_CASE("edges are open at the borders of a model and nowhere else, whatever i
     const EncodedCase c = simplified_case(is_closed ? smooth_sphere(30, 40) : height_field(24), 200,
                                           14, kCoarsePrecision);
     const BlockFile file = opened(c.bytes);
-    const std::vector<std::uint64_t> checksums = drawn_checksums(file);
+    const std::vector<std::uint64_t> checksums = *drawn_checksums(file);
     BlockMesh mesh = opened_mesh(file);
     std::mt19937_64 random(6);
     for (int trial = 0; trial < 6; ++trial) {

@@ -98,18 +98,21 @@ std::uint64_t drawn_checksum(const ResidentBlock& block) {
   return checksum(std::as_bytes(std::span(sums)));
 }
 
-std::vector<std::uint64_t> drawn_checksums(const BlockFile& file) {
+Result<std::vector<std::uint64_t>> drawn_checksums(const BlockFile& file) {
   Result<BlockMesh> mesh = BlockMesh::open(file);
-  CREASE_ASSERT(mesh.ok());
+  if (!mesh.ok()) return mesh.failure();
   std::vector<std::uint64_t> checksums;
   while (const std::optional<std::uint32_t> next = mesh->next_page()) {
     const Result<DirectoryPage> page = file.read_page(*next);
-    CREASE_ASSERT(page.ok() && mesh->add_page(*page).ok());
+    if (!page.ok()) return page.failure();
+    if (Status status = mesh->add_page(*page); !status.ok()) return status.failure();
     for (const BlockEntry& entry : page->blocks) {
       const Result<std::vector<std::byte>> payload = file.read_block(entry);
-      CREASE_ASSERT(payload.ok());
-      const Result<ResidentBlockPtr> block = mesh->decode_job(entry.id)->run(*payload);
-      CREASE_ASSERT(block.ok());
+      if (!payload.ok()) return payload.failure();
+      const std::optional<BlockDecodeJob> job = mesh->decode_job(entry.id);
+      CREASE_ASSERT(job.has_value());  // all that it needs lies before it
+      const Result<ResidentBlockPtr> block = job->run(*payload);
+      if (!block.ok()) return block.failure();
       checksums.push_back(drawn_checksum(**block));
       mesh->insert(*block);
     }

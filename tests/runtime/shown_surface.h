@@ -21,8 +21,8 @@ std::size_t open_edges(const BlockMesh& mesh);
 std::uint64_t drawn_checksum(const ResidentBlock& block);
 
 // Those of all blocks of a sound file, decoded one after the other as they lie there. Memory: that
-// of all blocks.
-std::vector<std::uint64_t> drawn_checksums(const BlockFile& file);
+// of all blocks. Fails where it is not sound.
+Result<std::vector<std::uint64_t>> drawn_checksums(const BlockFile& file);
 
 // Of the blocks that are shown, or of which a cut is, those that are not the file's.
 std::size_t wrong_blocks(const BlockMesh& mesh, std::span<const std::uint64_t> checksums);
