@@ -3,9 +3,11 @@
 //
 //   bench_stream city.crease --budget 256 --frames 1200
 //   bench_stream http://127.0.0.1:8080/city.crease --city --csv flight.csv
-//   bench_stream berlin.crease --vertex          by block, by vertex in blocks and by vertex over
-//   the
-//                                                whole model, at the same error
+//   bench_stream berlin.crease --vertex             by block, by vertex in blocks and by vertex
+//   over
+//                                                   the whole model, at the same error
+//   bench_stream URL --city --check 200 --sound city.crease     every 200th frame against brute
+//                                                   force; the clock stands still meanwhile
 //   bench_stream http://127.0.0.1:8080/city.crease --still      time and bytes until the model,
 //                                                   seen whole, has its first picture and is right
 //
@@ -18,17 +20,20 @@
 #include "crease/decode_model.h"
 #include "crease/file.h"
 #include "crease/http_source.h"
+#include "cut_check.h"
 #include "flight.h"
 
 #include <CLI/CLI.hpp>
 
 #include <sys/resource.h>
+#include <unistd.h>
 #include <ctime>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -54,15 +59,32 @@ double peak_megabytes() {
   return double(usage.ru_maxrss) / 1024;
 }
 
+double resident_megabytes() {
+  std::FILE* file = std::fopen("/proc/self/statm", "r");
+  if (file == nullptr) return 0;
+  long total = 0, resident = 0;
+  const int read = std::fscanf(file, "%ld %ld", &total, &resident);
+  std::fclose(file);
+  return read == 2 ? double(resident) * double(sysconf(_SC_PAGESIZE)) / 1e6 : 0;
+}
+
+// Times that this thread gave the processor away by itself: for a lock, a file, a line.
+long waits() {
+  rusage usage;
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_nvcsw;
+}
+
 struct Options {
-  std::string file, csv;
+  std::string file, csv, sound;
   double budget_mb = 256, pixels = 1, frames_per_second = 30;
-  int frames = 900, threads = 1;
+  int frames = 900, threads = 1, check_every = 0;
   bool is_city = false, by_vertex = false, in_blocks = false, is_still = false;
 };
 
 struct Frame {
-  double at = 0, wall = 0, cpu = 0;
+  double at = 0, wall = 0, cpu = 0, process_mb = 0;
+  long waits = 0;
   std::size_t triangles = 0, resident = 0, blocks = 0, missing = 0;
   float error = 0;
 };
@@ -98,9 +120,12 @@ Frame fly_one(BlockStreamer& streamer, const BlockViewParameters& parameters) {
   Frame frame;
   const Clock::time_point start = Clock::now();
   const double cpu = thread_seconds();
+  const long waited = waits();
   streamer.update(parameters);
+  frame.waits = waits() - waited;
   frame.cpu = thread_seconds() - cpu;
   frame.wall = seconds_since(start);
+  frame.process_mb = resident_megabytes();
   const BlockMesh& mesh = streamer.mesh();
   frame.triangles = mesh.triangle_count();
   frame.resident = mesh.resident_bytes();
@@ -118,10 +143,11 @@ double of_all(std::vector<double> all, double share) {
 void write_csv(const std::string& path, const std::vector<Frame>& frames) {
   std::FILE* out = std::fopen(path.c_str(), "w");
   if (out == nullptr) return;
-  std::fprintf(out, "seconds,update_ms,triangles,resident_mb,blocks,missing,error_pixels\n");
+  std::fprintf(out,
+               "seconds,update_ms,triangles,resident_mb,blocks,missing,error_pixels,process_mb\n");
   for (const Frame& f : frames) {
-    std::fprintf(out, "%.3f,%.4f,%zu,%.2f,%zu,%zu,%.3f\n", f.at, f.wall * 1e3, f.triangles,
-                 double(f.resident) / 1e6, f.blocks, f.missing, double(f.error));
+    std::fprintf(out, "%.3f,%.4f,%zu,%.2f,%zu,%zu,%.3f,%.1f\n", f.at, f.wall * 1e3, f.triangles,
+                 double(f.resident) / 1e6, f.blocks, f.missing, double(f.error), f.process_mb);
   }
   std::fclose(out);
 }
@@ -129,7 +155,8 @@ void write_csv(const std::string& path, const std::vector<Frame>& frames) {
 void report(const Options& options, const BlockStreamer& streamer,
             const std::vector<Frame>& frames) {
   std::vector<double> cpu, wall, triangles, errors, blocks;
-  std::size_t resident = 0, within = 0;
+  std::size_t resident = 0, within = 0, waiting = 0;
+  double process_mb = options.check_every > 0 ? 0 : peak_megabytes();  // a check takes memory too
   for (const Frame& f : frames) {
     cpu.push_back(f.cpu * 1e3);
     wall.push_back(f.wall * 1e3);
@@ -138,21 +165,24 @@ void report(const Options& options, const BlockStreamer& streamer,
     blocks.push_back(double(f.blocks));
     resident = std::max(resident, f.resident);
     within += f.error <= float(options.pixels);
+    waiting += f.waits > 0;
+    process_mb = std::max(process_mb, f.process_mb);
   }
   const StreamStatistics statistics = streamer.statistics();
   std::printf(
       "%s: %zu frames of %.1f s, budget %.0f MB\n"
       "  update: cpu %.3f ms median, %.3f 99 %%, %.3f most; by the clock %.3f ms 99 %%, %.3f most\n"
+      "  waited in update: %zu frames\n"
       "  shown: %.0f triangles median; error %.2f px median, %.2f 95 %%; within %.3g px in %.1f %% "
       "of the frames\n"
       "  resident: %.0f blocks median, %.1f MB most; process %.0f MB most\n"
       "  source: %.1f MB in %llu requests, latency mean %.1f ms, most %.1f ms, %llu retries\n"
       "  decoded %zu blocks in %.2f s, prefetched %zu, dropped %zu, failed %zu\n",
       options.file.c_str(), frames.size(), frames.back().at, options.budget_mb, of_all(cpu, 0.5),
-      of_all(cpu, 0.99), of_all(cpu, 1), of_all(wall, 0.99), of_all(wall, 1),
+      of_all(cpu, 0.99), of_all(cpu, 1), of_all(wall, 0.99), of_all(wall, 1), waiting,
       of_all(triangles, 0.5), of_all(errors, 0.5), of_all(errors, 0.95), options.pixels,
       100.0 * double(within) / double(frames.size()), of_all(blocks, 0.5), double(resident) / 1e6,
-      peak_megabytes(), double(statistics.source.bytes_transferred) / 1e6,
+      process_mb, double(statistics.source.bytes_transferred) / 1e6,
       static_cast<unsigned long long>(statistics.source.requests),
       statistics.source.latency_mean_seconds * 1e3, statistics.source.latency_max_seconds * 1e3,
       static_cast<unsigned long long>(statistics.source.retries), statistics.blocks_decoded,
@@ -160,7 +190,27 @@ void report(const Options& options, const BlockStreamer& streamer,
       statistics.blocks_failed);
 }
 
+// Frames that were looked at and those that were wrong.
+struct Checked {
+  std::size_t frames = 0, wrong = 0, triangles = 0;
+
+  void add(int frame, const CutCheck::Found& found) {
+    ++frames;
+    wrong += !found.is_right();
+    triangles += found.triangles;
+    if (found.is_right()) return;
+    std::printf("  frame %d: %zu open edges, %zu blocks that are not the file's, %zu differences\n",
+                frame, found.open_edges, found.wrong_blocks, found.differences);
+  }
+};
+
 int fly(const Options& options) {
+  std::optional<CutCheck> check;
+  if (options.check_every > 0) {
+    Result<CutCheck> sound = CutCheck::open(options.sound.empty() ? options.file : options.sound);
+    if (!sound.ok()) return failed(sound.failure());
+    check = *std::move(sound);
+  }
   const Clock::time_point start = Clock::now();
   Result<BlockStreamer> opened = open(options);
   if (!opened.ok()) return failed(opened.failure());
@@ -173,12 +223,18 @@ int fly(const Options& options) {
   parameters.max_bytes = std::size_t(options.budget_mb * 1e6);
   parameters.by_vertex = options.in_blocks;
   std::vector<Frame> frames;
-  const Clock::time_point begin = Clock::now();
+  Checked checked;
+  Clock::time_point begin = Clock::now();
   for (int f = 0; f < options.frames; ++f) {
     parameters.view.camera = camera_at(box, options.is_city, double(f) / options.frames);
     parameters.view.camera.pixels = options.pixels;
     frames.push_back(fly_one(streamer, parameters));
     frames.back().at = seconds_since(begin);
+    if (check && (f + 1) % options.check_every == 0) {
+      const Clock::time_point stopped = Clock::now();
+      checked.add(f, check->look(streamer.mesh()));
+      begin += Clock::now() - stopped;
+    }
     std::this_thread::sleep_until(
         begin + std::chrono::duration_cast<Clock::duration>(
                     std::chrono::duration<double>((f + 1) / options.frames_per_second)));
@@ -186,7 +242,10 @@ int fly(const Options& options) {
   if (streamer.trouble()) std::printf("trouble: %s\n", streamer.trouble()->message.c_str());
   report(options, streamer, frames);
   if (!options.csv.empty()) write_csv(options.csv, frames);
-  return 0;
+  if (!check) return 0;
+  std::printf("  checked %zu frames, %zu triangles: %zu wrong\n", checked.frames, checked.triangles,
+              checked.wrong);
+  return checked.wrong > 0 ? 6 : 0;
 }
 
 // A camera that sees the whole model and does not move.
@@ -345,6 +404,8 @@ int run(int argc, char** argv) {
   app.add_flag("--vertex", options.by_vertex, "beside the mesh by vertex, with all in memory");
   app.add_flag("--in-blocks", options.in_blocks, "the flight by vertex inside blocks");
   app.add_flag("--still", options.is_still, "until a camera that sees all of it is satisfied");
+  app.add_option("--check", options.check_every, "every so many frames against brute force");
+  app.add_option("--sound", options.sound, "with --check and a URL: the file that is there");
   app.add_option("--csv", options.csv, "a line for each frame");
   CLI11_PARSE(app, argc, argv);
   if (options.is_still) return stand_still(options);
