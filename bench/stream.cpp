@@ -248,6 +248,47 @@ int fly(const Options& options) {
   return checked.wrong > 0 ? 6 : 0;
 }
 
+Result<ByteSourcePtr> open_blocking(const std::string& file) {
+  return is_http_url(file) ? open_http_source(file) : open_file_source(file);
+}
+
+// What a file shows once its first 64 KiB are there, which are one request.
+Status report_first_bytes(const Options& options, const Camera& camera) {
+  const Result<ByteSourcePtr> source = open_blocking(options.file);
+  if (!source.ok()) return source.failure();
+  std::vector<std::byte> bytes(std::min<std::uint64_t>((*source)->size(), 64 * 1024));
+  if (Status status = (*source)->read(0, bytes); !status.ok()) return status;
+  const Result<BlockFile> file = BlockFile::open(memory_source(std::span<const std::byte>(bytes)));
+  if (!file.ok()) return file.failure();
+  const Result<std::uint32_t> complete = file->complete_blocks();
+  Result<BlockMesh> mesh = BlockMesh::open(*file);
+  const Result<DirectoryPage> page = file->read_page(0);
+  if (!complete.ok() || !mesh.ok() || !page.ok()) return Done{};  // not even the base
+  if (Status status = mesh->add_page(*page); !status.ok()) return status;
+  const std::size_t count = std::min<std::size_t>(*complete, page->blocks.size());
+  for (const BlockEntry& entry : std::span(page->blocks).first(count)) {
+    const Result<std::vector<std::byte>> payload = file->read_block(entry);
+    if (!payload.ok()) return payload.failure();
+    const Result<ResidentBlockPtr> block = mesh->decode_job(entry.id)->run(*payload);
+    if (!block.ok()) return block.failure();
+    mesh->insert(*block);
+  }
+  mesh->update({.view = {.camera = camera}, .in_levels = false});
+  std::printf("  the first %zu bytes show %zu triangles within %.1f px\n", bytes.size(),
+              mesh->triangle_count(), std::max(1.0, double(mesh->view_error()) * camera.pixels));
+  return Done{};
+}
+
+// All of the model at full HD.
+Camera camera_of_all(const Box& box) {
+  Camera camera;
+  camera.target = box.at(0.5, 0.5, 0.5);
+  camera.position = camera.target + normalized(Vec3d{0.6, -1, 0.7}) * (1.3 * box.diagonal());
+  camera.width_px = 1920;
+  camera.height_px = 1080;
+  return camera;
+}
+
 // A camera that sees the whole model and does not move.
 int stand_still(const Options& options) {
   const Clock::time_point start = Clock::now();
@@ -267,15 +308,15 @@ int stand_still(const Options& options) {
   report("first picture");
   BlockViewParameters parameters;
   parameters.max_bytes = std::size_t(options.budget_mb * 1e6);
-  Camera& camera = parameters.view.camera;
-  camera.target = box.at(0.5, 0.5, 0.5);
-  camera.position = camera.target + normalized(Vec3d{0.6, -1, 0.7}) * (1.3 * box.diagonal());
-  camera.width_px = 1920;
-  camera.height_px = 1080;
+  Camera& camera = parameters.view.camera = camera_of_all(box);
   for (const double pixels : {16.0, 4.0, 1.0}) {
     camera.pixels = pixels * options.pixels;
     while (!streamer.update(parameters).is_complete) streamer.wait(std::chrono::milliseconds(16));
     report(pixels > 10 ? "within 16 px" : pixels > 2 ? "within 4 px" : "within 1 px");
+  }
+  camera.pixels = options.pixels;
+  if (Status status = report_first_bytes(options, camera); !status.ok()) {
+    return failed(status.failure());
   }
   return 0;
 }

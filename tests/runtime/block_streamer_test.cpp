@@ -319,6 +319,31 @@ TEST_CASE("memory stays within the budget along a flight") {
   }
 }
 
+TEST_CASE("a budget by triangles is kept in every mode, at every moment") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  enum class Mode { Whole, InLevels, ByVertex };
+  for (const Mode mode : {Mode::Whole, Mode::InLevels, Mode::ByVertex}) {
+    BlockStreamer streamer = opened_streamer(file, async_memory_source(c.bytes), hasty(1));
+    BlockViewParameters parameters = view_of_all();
+    parameters.view.camera.pixels = 4;
+    parameters.in_levels = mode != Mode::Whole;
+    parameters.by_vertex = mode == Mode::ByVertex;
+    std::size_t before = 0;
+    for (const std::size_t triangles : {500, 2000, 1000, 3000}) {
+      parameters.view.max_triangles = triangles;
+      for (int more = 0; more < 200; ++more) {
+        const bool is_complete = streamer.update(parameters).is_complete;
+        CHECK(streamer.mesh().triangle_count() <= triangles);
+        if (is_complete && streamer.mesh().missing_levels().empty()) break;
+        streamer.wait(std::chrono::milliseconds(20));
+      }
+      CHECK(streamer.mesh().triangle_count() != before);
+      before = streamer.mesh().triangle_count();
+    }
+  }
+}
+
 TEST_CASE("a directory page that is not as long as it should be is asked for again") {
   const EncodedCase c = small_case();
   const BlockFile file = opened(c.bytes);
