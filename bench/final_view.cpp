@@ -77,9 +77,9 @@ class Table {
         peers.meshopt_gzip > 0 ? std::min(peers.draco, peers.meshopt_gzip) : peers.draco;
     const bool is_met = double(seen.bytes) <= kGoal * double(least);
     std::printf(
-        "| %s | %s | %zu | %.2f MB | %.2f MB | %.2f, %.2f MB | %s | %.2f MB | %s | %s | %s | %s "
+        "| %s | %s | %.0f k | %.2f MB | %.2f MB | %.2f, %.2f MB | %s | %.2f MB | %s | %s | %s | %s "
         "|\n",
-        model.c_str(), precision.c_str(), triangles, double(file_bytes) / 1e6,
+        model.c_str(), precision.c_str(), double(triangles) / 1e3, double(file_bytes) / 1e6,
         double(peers.draco) / 1e6, double(peers.meshopt) / 1e6, double(peers.meshopt_gzip) / 1e6,
         view, double(seen.bytes) / 1e6, percent(file_bytes).c_str(), percent(peers.draco).c_str(),
         percent(peers.meshopt_gzip).c_str(), is_met ? "met" : "missed");
@@ -214,13 +214,13 @@ Status measure_model(const ModelEntry& entry, const Options& options, Table& tab
   if (!mesh.ok()) return mesh.failure();
   const bool is_city = entry.kind == "city";
   Status coarse =
-      measure_bytes({entry.name, "14, 10", 14, is_city},
+      measure_bytes({entry.name, "14 and 10", 14, is_city},
                     encode_sized(simplify_sized(*mesh, Placement::Endpoint, true)), options, table);
   if (!coarse.ok()) return coarse;
   Result<Built> built = build_model(*mesh, {});
   if (!built.ok()) return built.failure();
-  return measure_bytes({entry.name, "24, 12", 24, is_city}, std::move(built->file_bytes), options,
-                       table);
+  return measure_bytes({entry.name, "24 and 12", 24, is_city}, std::move(built->file_bytes),
+                       options, table);
 }
 
 int run(int argc, char** argv) {

@@ -99,20 +99,34 @@ Result<BlockStreamer> open(const Options& options) {
                                       ? Result<AsyncSourcePtr>(open_async_http(options.file))
                                       : open_async_file(options.file);
   if (!source.ok()) return source.failure();
-  return BlockStreamer::open(*source, {.decode_threads = options.threads});
+  StreamOptions stream{.decode_threads = options.threads};
+  if (options.is_still) stream.prefetch_frames = 0;  // the camera leaps once, and then stays
+  return BlockStreamer::open(*source, stream);
 }
 
-// What the first blocks show, to know where to fly.
-Box box_of_start(BlockStreamer& streamer) {
-  BlockViewParameters none;
-  none.view.max_triangles = 0;
-  while (streamer.mesh().shown().empty()) {
-    streamer.update(none);
+// What the first blocks show, to know where to fly. A base may be two triangles and tells nothing
+// of how large a model is. `begins`: called once something is shown.
+template <typename Begins>
+Box box_of_start(BlockStreamer& streamer, Begins begins) {
+  constexpr std::size_t kEnough = 1000;
+  BlockViewParameters coarse;
+  coarse.view.max_triangles = std::clamp<std::size_t>(streamer.mesh().facts().triangle_count / 50,
+                                                      4 * kEnough, 20 * kEnough);
+  coarse.in_levels = false;
+  const BlockMesh& mesh = streamer.mesh();
+  bool has_begun = false;
+  for (;;) {
+    streamer.update(coarse);
+    if (!has_begun && !mesh.shown().empty()) begins();
+    has_begun |= !mesh.shown().empty();
+    if (has_begun && (mesh.missing().empty() || mesh.triangle_count() >= kEnough)) break;
     streamer.wait(std::chrono::milliseconds(100));
   }
-  const DrawList list = streamer.mesh().shown().front().block->draw_list();
   std::vector<Vec3d> positions;
-  for (const Vec3f& p : list.positions) positions.push_back(list.origin + Vec3d{p.x, p.y, p.z});
+  for (const ShownRange& range : mesh.shown()) {
+    const DrawList list = range.block->draw_list();
+    for (const Vec3f& p : list.positions) positions.push_back(list.origin + Vec3d{p.x, p.y, p.z});
+  }
   return box_of(positions);
 }
 
@@ -215,10 +229,10 @@ int fly(const Options& options) {
   Result<BlockStreamer> opened = open(options);
   if (!opened.ok()) return failed(opened.failure());
   BlockStreamer& streamer = *opened;
-  const Box box = box_of_start(streamer);
-  const StreamStatistics at_start = streamer.statistics();
-  std::printf("first picture after %.3f s, %.1f kB of blocks\n", seconds_since(start),
-              double(at_start.source.bytes_transferred) / 1e3);
+  const Box box = box_of_start(streamer, [&] {
+    std::printf("first triangles after %.3f s, %.1f kB\n", seconds_since(start),
+                double(streamer.statistics().source.bytes_transferred) / 1e3);
+  });
   BlockViewParameters parameters;
   parameters.max_bytes = std::size_t(options.budget_mb * 1e6);
   parameters.by_vertex = options.in_blocks;
@@ -298,14 +312,13 @@ int stand_still(const Options& options) {
   const std::uint64_t file_bytes = streamer.head().file_bytes;
   const auto report = [&](const char* what) {
     const double bytes = double(streamer.statistics().source.bytes_transferred);
-    std::printf("  %-14s %7.3f s  %9.1f kB  %5.1f %% of the file  %zu triangles, %.2f px\n", what,
+    std::printf("  %-15s %7.3f s  %9.1f kB  %5.1f %% of the file  %zu triangles, %.2f px\n", what,
                 seconds_since(start), bytes / 1e3, 100 * bytes / double(file_bytes),
                 streamer.mesh().triangle_count(),
                 double(streamer.mesh().view_error()) * options.pixels);
   };
   std::printf("%s\n", options.file.c_str());
-  const Box box = box_of_start(streamer);
-  report("first picture");
+  const Box box = box_of_start(streamer, [&] { report("first triangles"); });
   BlockViewParameters parameters;
   parameters.max_bytes = std::size_t(options.budget_mb * 1e6);
   Camera& camera = parameters.view.camera = camera_of_all(box);
