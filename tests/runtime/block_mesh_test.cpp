@@ -206,6 +206,12 @@ TEST_CASE("pages and payloads that are not the next ones are refused") {
   DirectoryPage later = *page;
   later.first = BlockId{kBlocksPerPage};
   CHECK(!mesh->add_page(later).ok());
+  // One that goes wrong at its end leaves nothing behind: the next update() has no block to look
+  // at.
+  DirectoryPage wrong = *page;
+  wrong.blocks.back().facts.patch += 1;
+  CHECK(!mesh->add_page(wrong).ok());
+  CHECK(mesh->update(view_of_all()).evaluated == 0);
   REQUIRE(mesh->add_page(*page).ok());
   CHECK(!mesh->next_page());
   const BlockId last = page->blocks.back().id;
