@@ -15,8 +15,6 @@ namespace crease::bench {
 
 namespace {
 
-constexpr int kNormalBits = 10;
-
 // Quantization by 1 over 2^bits - 1 steps leaves integers alone; no more bits than the mesh has.
 struct Extent {
   std::array<float, 3> low{};
@@ -133,7 +131,7 @@ DracoMesh::DracoMesh(const Mesh& snapped, const Grid& grid, bool with_normals, b
 
 DracoMesh::~DracoMesh() = default;
 
-std::vector<char> DracoMesh::encode() const {
+std::vector<char> DracoMesh::encode(int normal_bits) const {
   draco::Encoder encoder;
   encoder.SetSpeedOptions(0, 0);
   encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
@@ -141,7 +139,7 @@ std::vector<char> DracoMesh::encode() const {
                                            3, data_->extent.low.data(),
                                            float((std::int32_t(1) << data_->extent.bits) - 1));
   if (data_->has_normals) {
-    encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, kNormalBits);
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, normal_bits);
   }
   draco::EncoderBuffer buffer;
   if (!encoder.EncodeMeshToBuffer(data_->mesh, &buffer).ok()) return {};

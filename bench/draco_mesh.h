@@ -26,8 +26,8 @@ class DracoMesh {
   DracoMesh(const DracoMesh&) = delete;
   DracoMesh& operator=(const DracoMesh&) = delete;
 
-  // 10 bits a component for normals. Empty where Draco refuses.
-  std::vector<char> encode() const;
+  // `normal_bits`: a component. Empty where Draco refuses.
+  std::vector<char> encode(int normal_bits = 10) const;
 
  private:
   struct Data;

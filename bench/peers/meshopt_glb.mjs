@@ -1,7 +1,9 @@
 // A mesh as a GLB with EXT_meshopt_compression, as gltfpack makes it: positions of 14 bits, normals
-// of 10 bits a component (octahedral filter), vertices split by (position, normal).
+// of 10 bits a component (octahedral filter), vertices split by (position, normal). Positions of
+// more than 16 bits, which KHR_mesh_quantization has not, are floats through the exponential
+// filter, as with gltfpack -vpf.
 //
-//   node meshopt_glb.mjs MODULES IN OUT
+//   node meshopt_glb.mjs MODULES IN OUT [POSITION_BITS NORMAL_BITS]
 //
 // Prints the bytes of the GLB and of the GLB after gzip -9, and writes the mesh that it holds to OUT.
 // The file format is that of exchange.h.
@@ -10,7 +12,7 @@ import path from 'node:path';
 import zlib from 'node:zlib';
 import { pathToFileURL } from 'node:url';
 
-const [modules, inPath, outPath] = process.argv.slice(2);
+const [modules, inPath, outPath, positionBits = '14', normalBits = '10'] = process.argv.slice(2);
 const library = (file) =>
     import(pathToFileURL(path.join(modules, 'node_modules/meshoptimizer', file)));
 const { MeshoptEncoder } = await library('meshopt_encoder.js');
@@ -18,7 +20,8 @@ const { MeshoptDecoder } = await library('meshopt_decoder.mjs');
 await MeshoptEncoder.ready;
 await MeshoptDecoder.ready;
 
-const kPositionBits = 14, kNormalBits = 10;
+const kPositionBits = Number(positionBits), kNormalBits = Number(normalBits);
+const hasFloats = kPositionBits > 16;
 
 const file = fs.readFileSync(inPath);
 const buffer = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength);
@@ -51,17 +54,19 @@ for (let c = 0; c < corners.length; ++c) {
 
 // Triangles and vertices in the order that compresses best; reorderMesh() rewrites the indices.
 const [remap, count] = MeshoptEncoder.reorderMesh(indices, true, true);
-const coded = new Uint16Array(4 * count), vectors = new Float32Array(4 * count);
+const width = hasFloats ? 3 : 4;  // of three, padded to four bytes where they are shorts
+const coded = hasFloats ? new Float32Array(3 * count) : new Uint16Array(4 * count);
+const vectors = new Float32Array(4 * count);
 places.forEach((place, i) => {
   if (remap[i] === 0xffffffff) return;
-  coded.set(place, 4 * remap[i]);
+  coded.set(hasFloats ? place.map((x) => x * step) : place, width * remap[i]);
   vectors.set(directions[i], 4 * remap[i]);
 });
 const filtered = MeshoptEncoder.encodeFilterOct(vectors, count, 8, kNormalBits);
 const bytesOf = (array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
 const narrow = count <= 65536 ? new Uint16Array(indices) : indices;
 const views = [
-  { data: MeshoptEncoder.encodeGltfBuffer(bytesOf(coded), count, 8, 'ATTRIBUTES', 0), count, stride: 8, mode: 'ATTRIBUTES' },
+  positionView(),
   { data: MeshoptEncoder.encodeGltfBuffer(filtered, count, 8, 'ATTRIBUTES', 0), count, stride: 8, mode: 'ATTRIBUTES', filter: 'OCTAHEDRAL' },
   { data: MeshoptEncoder.encodeGltfBuffer(bytesOf(narrow), indices.length, narrow.BYTES_PER_ELEMENT, 'TRIANGLES', 0),
     count: indices.length, stride: narrow.BYTES_PER_ELEMENT, mode: 'TRIANGLES' },
@@ -69,6 +74,14 @@ const views = [
 const glb = pack();
 console.log(glb.length, zlib.gzipSync(glb, { level: 9 }).length);
 writeDecoded();
+
+function positionView() {
+  if (!hasFloats) {
+    return { data: MeshoptEncoder.encodeGltfBuffer(bytesOf(coded), count, 8, 'ATTRIBUTES', 0), count, stride: 8, mode: 'ATTRIBUTES' };
+  }
+  const places = MeshoptEncoder.encodeFilterExp(coded, count, 12, Math.min(24, kPositionBits), 'SharedComponent');
+  return { data: MeshoptEncoder.encodeGltfBuffer(places, count, 12, 'ATTRIBUTES', 0), count, stride: 12, mode: 'ATTRIBUTES', filter: 'EXPONENTIAL' };
+}
 
 function pack() {
   let at = 0, plain = 0;
@@ -91,12 +104,13 @@ function pack() {
     buffers: [{ byteLength: at }, { byteLength: plain, extensions: { EXT_meshopt_compression: { fallback: true } } }],
     bufferViews,
     accessors: [
-      { bufferView: 0, componentType: 5123, count, type: 'VEC3', min: [0, 0, 0], max: [0, 1, 2].map((k) => Math.round((high[k] - low[k]) / step)) },
+      { bufferView: 0, componentType: hasFloats ? 5126 : 5123, count, type: 'VEC3', min: [0, 0, 0],
+        max: [0, 1, 2].map((k) => Math.round((high[k] - low[k]) / step) * (hasFloats ? step : 1)) },
       { bufferView: 1, componentType: 5122, normalized: true, count, type: 'VEC3' },
       { bufferView: 2, componentType: narrow.BYTES_PER_ELEMENT === 2 ? 5123 : 5125, count: indices.length, type: 'SCALAR' },
     ],
     meshes: [{ primitives: [{ attributes: { POSITION: 0, NORMAL: 1 }, indices: 2 }] }],
-    nodes: [{ mesh: 0, translation: low, scale: [step, step, step] }],
+    nodes: [{ mesh: 0, translation: low, scale: Array(3).fill(hasFloats ? 1 : step) }],
     scenes: [{ nodes: [0] }], scene: 0,
   });
   const text = Buffer.from(json.padEnd((json.length + 3) & ~3, ' '));
@@ -124,14 +138,14 @@ function writeDecoded() {
     MeshoptDecoder.decodeGltfBuffer(target, v.count, v.stride, v.data, v.mode, v.filter);
     return target;
   });
-  const place = new Uint16Array(p.buffer), direction = new Int16Array(n.buffer);
+  const place = hasFloats ? new Float32Array(p.buffer) : new Uint16Array(p.buffer), direction = new Int16Array(n.buffer);
   const corner = narrow.BYTES_PER_ELEMENT === 2 ? new Uint16Array(c.buffer) : new Uint32Array(c.buffer);
   const after = 16 + 24 * count;
   const bytes = new ArrayBuffer(after + 48 * triangleCount);
   new Uint8Array(bytes).set([67, 82, 77, 88]);
   new Uint32Array(bytes, 4, 3).set([count, triangleCount, 1]);
   const q = new Float64Array(bytes, 16, 3 * count);
-  for (let i = 0; i < count; ++i) for (let k = 0; k < 3; ++k) q[3 * i + k] = low[k] + step * place[4 * i + k];
+  for (let i = 0; i < count; ++i) for (let k = 0; k < 3; ++k) q[3 * i + k] = low[k] + (hasFloats ? 1 : step) * place[width * i + k];
   new Uint32Array(bytes, after, 3 * triangleCount).set(corner);
   const m = new Float32Array(bytes, after + 12 * triangleCount, 9 * triangleCount);
   corner.forEach((v, i) => {

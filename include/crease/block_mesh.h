@@ -175,8 +175,10 @@ class BlockLevelsJob {
 struct BlockViewParameters {
   // By block, of these: camera, degrees, max_triangles, hysteresis, coarse_outside,
   // silhouette_weight. The errors are bounds of whole blocks. By vertex, inside the blocks that are
-  // refined so, all others as well; but max_triangles stays a bound of what would be shown by
-  // block, and max_seconds leaves some blocks as they were seen before, for the next update().
+  // refined so, all others as well; but max_seconds leaves some blocks as they were seen before,
+  // for the next update(). max_triangles counts the blocks of the cut whole in every mode: no more
+  // than that is ever shown, and between their ends or by vertex it is less. To count what they
+  // show would make blocks come and go, as finer ones want all of what coarser ones have.
   ViewParameters view;
   // Of resident blocks. The most visible errors first; what does not fit stays coarse. By vertex,
   // hierarchies and cuts count as well, and cuts that grow may exceed it until the next update().

@@ -4,6 +4,8 @@
 #include "codec/layer_values.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <utility>
 
@@ -47,6 +49,23 @@ bool is_on_grid(const DecodedBlock& block, int grid_bits) {
                      [&](const Split& split) { return is_inside(split.parent_position); });
 }
 
+// Floats that are kept bit by bit may be anything. What derived triangles say of normals nobody
+// looks at.
+bool has_finite_values(const ModelSchema& schema, const PatchMesh& mesh) {
+  for (std::size_t l = 0; l < schema.codings.size(); ++l) {
+    if (schema.codings[l].kind != LayerCoding::Kind::Exact) continue;
+    const bool is_normal = schema.facts.layers[l].role == AttributeRole::Normal;
+    const std::size_t dimension = schema.facts.layers[l].dimension;
+    for (std::size_t corner = 0; corner < mesh.values[l].size(); ++corner) {
+      if (is_normal && !mesh.derived.empty() && mesh.derived[corner / 3] != 0) continue;
+      for (std::size_t k = 0; k < dimension; ++k) {
+        if (!std::isfinite(std::bit_cast<float>(mesh.values[l][corner][k]))) return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<DecodedBlock> decode_block_of(const ModelSchema& schema, const BlockEntry& entry,
@@ -67,6 +86,9 @@ Result<DecodedBlock> decode_block_of(const ModelSchema& schema, const BlockEntry
   }
   if (!is_on_grid(*block, schema.facts.grid_bits)) {
     return bad_block(entry.id, "a vertex lies outside of the grid");
+  }
+  if (!has_finite_values(schema, block->end.mesh)) {
+    return bad_block(entry.id, "a value of an attribute is not finite");
   }
   return block;
 }

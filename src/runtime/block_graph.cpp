@@ -21,28 +21,43 @@ std::uint32_t BlockGraph::next_finer(std::uint16_t band, std::uint32_t patch) co
   return first_of_band_[band - 1u] + patch;
 }
 
-Status BlockGraph::add_page(const DirectoryPage& page) {
+// Before anything of it is added: a page comes as a whole or not at all.
+Status BlockGraph::check(const DirectoryPage& page) const {
   const auto bad = [](BlockId id, const char* what) {
     return fail(Error::BadFormat, "block " + std::to_string(index_of(id)) + ": " + what);
   };
   if (index_of(page.first) != nodes_.size()) {
     return bad(page.first, "its page is not the next one");
   }
+  const auto band_of = [&](BlockId id) {
+    return page.has(id) ? page.block(id).facts.band : nodes_[index_of(id)].entry.facts.band;
+  };
+  std::uint32_t block = size();
   for (const BlockEntry& entry : page.blocks) {
-    const std::uint32_t block = size();
     const BlockFacts& facts = entry.facts;
     const bool is_base = facts.band == patches_.size();
     if (is_base ? block != 0 : next_finer(facts.band + 1, facts.patch) != block) {
       return bad(entry.id, "its band and patch are not those of its place");
     }
-    Node node;
-    node.entry = entry;
-    node.own = node.all = bounds_of(facts, grid_);
-    for (const BlockId id : page.dependencies_of(entry.id)) {
-      const auto needed = static_cast<std::uint32_t>(index_of(id));
-      if (needed >= block || nodes_[needed].entry.facts.band <= facts.band) {
+    for (const BlockId needed : page.dependencies_of(entry.id)) {
+      if (index_of(needed) >= block || band_of(needed) <= facts.band) {
         return bad(entry.id, "it needs a block that is not coarser");
       }
+    }
+    ++block;
+  }
+  return Done{};
+}
+
+Status BlockGraph::add_page(const DirectoryPage& page) {
+  if (Status status = check(page); !status.ok()) return status.failure();
+  for (const BlockEntry& entry : page.blocks) {
+    const std::uint32_t block = size();
+    Node node;
+    node.entry = entry;
+    node.own = node.all = bounds_of(entry.facts, grid_);
+    for (const BlockId id : page.dependencies_of(entry.id)) {
+      const auto needed = static_cast<std::uint32_t>(index_of(id));
       node.dependencies.push_back(needed);
       nodes_[needed].dependents.push_back(block);
     }

@@ -14,7 +14,7 @@ class BlockGraph {
  public:
   BlockGraph(const ModelFacts& facts, std::uint32_t block_count);
 
-  // Pages come in order.
+  // Pages come in order, as a whole: of one that fails nothing is added.
   std::uint32_t pages_added() const { return pages_; }
   Status add_page(const DirectoryPage& page);
 
@@ -44,6 +44,7 @@ class BlockGraph {
     BlockBounds own, all;
   };
 
+  Status check(const DirectoryPage& page) const;
   void grow_bounds();
 
   Grid grid_;

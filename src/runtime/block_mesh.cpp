@@ -59,6 +59,9 @@ BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
   has_changed = false;
   last = parameters;
   ++updates;
+  // Before blocks are chosen, so that what levels take counts against the budget at once.
+  levels.take_waiting();
+  count_resized_levels();
   const std::span<const std::uint32_t> chosen = chooser.choose(parameters.view, limits(parameters));
   report.evaluated = chooser.evaluated();
   missing.clear();
@@ -92,8 +95,12 @@ bool BlockMesh::Impl::choose_levels(const BlockViewParameters& parameters) {
   if (are_too_many || updates % kUpdatesOfList == 0) {
     levels.drop_lists(are_too_many ? 0 : kUpdatesOfList);
   }
-  for (const std::uint32_t block : levels.take_resized()) count_bytes(block);
+  count_resized_levels();
   return have_changed;
+}
+
+void BlockMesh::Impl::count_resized_levels() {
+  for (const std::uint32_t block : levels.take_resized()) count_bytes(block);
 }
 
 void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, bool have_changed,

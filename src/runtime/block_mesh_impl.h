@@ -54,6 +54,7 @@ struct BlockMesh::Impl {
   void list_cuts();
   void list_missing_hierarchies();
   void count_bytes(std::uint32_t block);
+  void count_resized_levels();
   void list_shown();
   void list_shown_of(std::uint32_t block);
   std::vector<PatchRun> runs_of(const ResidentBlock& block) const;

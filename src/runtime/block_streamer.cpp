@@ -144,7 +144,9 @@ void BlockStreamer::Impl::take_answers() {
 void BlockStreamer::Impl::take_page(Result<std::vector<std::byte>> bytes) {
   const std::uint32_t page = *meshes.front().next_page();
   Status added = Done{};
-  if (bytes.ok()) {
+  if (bytes.ok() && bytes->size() != head.pages[page].bytes) {
+    added = fail(Error::Truncated, source->name() + ": an answer is not as long as was asked for");
+  } else if (bytes.ok()) {
     const Result<DirectoryPage> decoded = decode_page(*bytes, head, page, Checksums::Verify);
     added = decoded.ok() ? Status(Done{}) : Status(decoded.failure());
     for (std::size_t v = 0; added.ok() && v < meshes.size(); ++v) {

@@ -30,6 +30,8 @@ class LevelChoice {
 
   // Of a block that is resident. What is shown does not change until the next choice.
   void insert(BlockLevelsPtr levels) { waiting_.push_back(std::move(levels)); }
+  // What was inserted counts from here on; else from the next choice.
+  void take_waiting();
   void drop(std::uint32_t block);  // it is not resident any more
   // Lists that were not shown for so many choices, or at all in the last one. True if any.
   bool drop_lists(std::uint32_t age);
@@ -77,7 +79,6 @@ class LevelChoice {
     bool is_stale = false;    // finer blocks know more
   };
 
-  void take_waiting();
   void take(const BlockLevels& levels);
   int wanted_level(std::uint32_t block, const ViewError& error, float keep);
   bool is_wrong(std::uint32_t block, int level, const ViewError& error, float limit);

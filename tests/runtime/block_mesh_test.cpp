@@ -1,12 +1,14 @@
 // The mesh by block against the definition: what is shown is the model of the refined blocks,
 // whatever came in which order, was dropped, and came again.
 #include "runtime/block_mesh_oracle.h"
+#include "runtime/shown_surface.h"
 #include "support/described_mesh.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
 
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <random>
 
 namespace crease {
@@ -208,6 +210,12 @@ TEST_CASE("pages and payloads that are not the next ones are refused") {
   DirectoryPage later = *page;
   later.first = BlockId{kBlocksPerPage};
   CHECK(!mesh->add_page(later).ok());
+  // One that goes wrong at its end leaves nothing behind: the next update() has no block to look
+  // at.
+  DirectoryPage wrong = *page;
+  wrong.blocks.back().facts.patch += 1;
+  CHECK(!mesh->add_page(wrong).ok());
+  CHECK(mesh->update(view_of_all()).evaluated == 0);
   REQUIRE(mesh->add_page(*page).ok());
   CHECK(!mesh->next_page());
   const BlockId last = page->blocks.back().id;
@@ -222,6 +230,49 @@ TEST_CASE("pages and payloads that are not the next ones are refused") {
   REQUIRE(!block.ok());
   CHECK(block.failure().error == Error::BadChecksum);
   CHECK(block.failure().message.find("block 0") != std::string::npos);
+}
+
+// A model that says so in its floats, which no checksum forbids.
+TEST_CASE("a block with a value that is not finite is refused") {
+  Mesh mesh = smooth_sphere(4, 6);
+  mesh.layers[0].values[4] = std::numeric_limits<float>::infinity();
+  const EncodedCase c = simplified_case(std::move(mesh), 100, 14, kExactPrecision);
+  const BlockFile file = opened(c.bytes);
+  BlockMesh blocks = opened_mesh(file);
+  std::size_t refused = 0;
+  for (const BlockEntry& entry : all_entries(file)) {
+    const std::optional<BlockDecodeJob> job = blocks.decode_job(entry.id);
+    if (!job) continue;
+    const Result<ResidentBlockPtr> block = job->run(*file.read_block(entry));
+    if (block.ok()) {
+      blocks.insert(*block);
+      continue;
+    }
+    ++refused;
+    CHECK(block.failure().message == "block " + std::to_string(index_of(entry.id)) +
+                                         ": a value of an attribute is not finite");
+  }
+  CHECK(refused > 0);
+  CHECK(!decode_model(file).ok());
+}
+
+TEST_CASE("edges are open at the borders of a model and nowhere else, whatever is refined") {
+  for (const bool is_closed : {true, false}) {
+    const EncodedCase c = simplified_case(is_closed ? smooth_sphere(30, 40) : height_field(24), 200,
+                                          14, kCoarsePrecision);
+    const BlockFile file = opened(c.bytes);
+    const std::vector<std::uint64_t> checksums = *drawn_checksums(file);
+    BlockMesh mesh = opened_mesh(file);
+    std::mt19937_64 random(6);
+    for (int trial = 0; trial < 6; ++trial) {
+      load_all_missing(file, mesh, random_view(c.mesh, random));
+      CHECK((open_edges(mesh) == 0) == is_closed);
+      CHECK(wrong_blocks(mesh, checksums) == 0);
+    }
+    std::vector<std::uint64_t> others = checksums;
+    for (std::uint64_t& other : others) other ^= 1;
+    CHECK(wrong_blocks(mesh, others) > 0);
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "crease/block_streamer.h"
 #include "runtime/block_mesh_oracle.h"
 #include "runtime/block_vertices_oracle.h"
+#include "runtime/faulty_source.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
 
@@ -281,26 +282,87 @@ TEST_CASE("a camera that moves on finds what it will want") {
 TEST_CASE("memory stays within the budget along a flight") {
   const EncodedCase c = simplified_case(smooth_sphere(80, 120), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
-  BlockStreamer streamer = opened_streamer(file, async_memory_source(c.bytes), hasty(1));
-  BlockViewParameters parameters = view_of_all();
-  finish(streamer, parameters);
-  const std::size_t all = streamer.mesh().resident_bytes();
-  parameters.max_bytes = all / 3;
-  parameters.view.coarse_outside = true;
-  parameters.view.camera.pixels = 0.25;
-  std::size_t dropped = 0;
-  for (int frame = 0; frame < 200; ++frame) {
-    const double angle = 0.05 * frame;
-    parameters.view.camera.position = {1.6 * std::cos(angle), 1.6 * std::sin(angle), 0.3};
-    parameters.view.camera.target = {0, 0, 0};
-    dropped += streamer.update(parameters).cut.dropped.size();
-    CHECK(streamer.mesh().resident_bytes() <= parameters.max_bytes);
-    if (frame % 20 == 0) {
+  for (const bool in_levels : {false, true}) {
+    BlockStreamer streamer = opened_streamer(file, async_memory_source(c.bytes), hasty(1));
+    BlockViewParameters parameters = view_of_all();
+    finish(streamer, parameters);
+    const std::size_t all = streamer.mesh().resident_bytes();
+    parameters.max_bytes = all / 3;
+    parameters.in_levels = in_levels;
+    parameters.view.coarse_outside = true;
+    parameters.view.camera.pixels = 0.25;
+    std::size_t dropped = 0, lists = 0;
+    for (int frame = 0; frame < 200; ++frame) {
+      const double angle = 0.05 * frame;
+      parameters.view.camera.position = {1.6 * std::cos(angle), 1.6 * std::sin(angle), 0.3};
+      parameters.view.camera.target = {0, 0, 0};
+      dropped += streamer.update(parameters).cut.dropped.size();
+      CHECK(streamer.mesh().resident_bytes() <= parameters.max_bytes);
+      lists += streamer.mesh().shown_cuts().size();
+      if (frame % 20 != 0) continue;
       finish(streamer, parameters);
-      check_shown(file, streamer.mesh(), refined_blocks(file, streamer.mesh()));
+      // With levels the blocks take more, once those are there.
+      for (int more = 0; in_levels && more < 100; ++more) {
+        streamer.wait(std::chrono::milliseconds(20));
+        dropped += streamer.update(parameters).cut.dropped.size();
+        CHECK(streamer.mesh().resident_bytes() <= parameters.max_bytes);
+        if (streamer.mesh().missing_levels().empty()) break;
+      }
+      if (in_levels) {
+        check_by_vertex(streamer.mesh());
+      } else {
+        check_shown(file, streamer.mesh(), refined_blocks(file, streamer.mesh()));
+      }
+    }
+    CHECK(dropped > 0);
+    CHECK((lists > 0) == in_levels);
+  }
+}
+
+TEST_CASE("a budget by triangles is kept in every mode, at every moment") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 300, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  enum class Mode { Whole, InLevels, ByVertex };
+  for (const Mode mode : {Mode::Whole, Mode::InLevels, Mode::ByVertex}) {
+    BlockStreamer streamer = opened_streamer(file, async_memory_source(c.bytes), hasty(1));
+    BlockViewParameters parameters = view_of_all();
+    parameters.view.camera.pixels = 4;
+    parameters.in_levels = mode != Mode::Whole;
+    parameters.by_vertex = mode == Mode::ByVertex;
+    std::size_t before = 0;
+    for (const std::size_t triangles : {500, 2000, 1000, 3000}) {
+      parameters.view.max_triangles = triangles;
+      for (int more = 0; more < 200; ++more) {
+        const bool is_complete = streamer.update(parameters).is_complete;
+        CHECK(streamer.mesh().triangle_count() <= triangles);
+        if (is_complete && streamer.mesh().missing_levels().empty()) break;
+        streamer.wait(std::chrono::milliseconds(20));
+      }
+      CHECK(streamer.mesh().triangle_count() != before);
+      before = streamer.mesh().triangle_count();
     }
   }
-  CHECK(dropped > 0);
+}
+
+TEST_CASE("a directory page that is not as long as it should be is asked for again") {
+  const EncodedCase c = small_case();
+  const BlockFile file = opened(c.bytes);
+  for (const Fault fault : {Fault::Truncated, Fault::Longer, Fault::Corrupted}) {
+    const auto source = std::make_shared<FaultySource>(c.bytes);
+    BlockStreamer streamer = opened_streamer(file, source, hasty(0));
+    streamer.update(view_of_all());
+    REQUIRE(source->waiting_count() == 1);
+    source->answer(0, fault, 5);
+    streamer.update(view_of_all());
+    CHECK(streamer.trouble().has_value());
+    for (int updates = 0; !streamer.update(view_of_all()).is_complete; ++updates) {
+      REQUIRE(updates < 10'000);
+      streamer.wait(std::chrono::milliseconds(5));
+      source->answer_all();
+    }
+    CHECK(!streamer.trouble());
+    CHECK(streamer.mesh().triangle_count() == c.mesh.triangle_count());
+  }
 }
 
 }  // namespace
