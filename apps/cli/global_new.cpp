@@ -10,11 +10,16 @@ namespace crease::cli {
 namespace {
 
 std::atomic<MemoryLimit*> limit_of_process{nullptr};
+std::atomic<bool> is_over{false};
 
 }  // namespace
 
 void allocate_from(MemoryLimit& limit) {
   limit_of_process.store(&limit, std::memory_order_release);
+}
+
+void allocate_without_limit() {
+  is_over = true;
 }
 
 MemoryLimit* memory_limit() {
@@ -32,7 +37,8 @@ void* allocate_or_null(std::size_t size, std::size_t alignment) {
   crease::MemoryLimit* limit = crease::cli::memory_limit();
   if (alignment == 0) {
     size = std::max<std::size_t>(size, 1);
-    return limit == nullptr ? std::malloc(size) : limit->allocate(size);
+    const bool is_limited = limit != nullptr && !crease::cli::is_over;
+    return is_limited ? limit->allocate(size) : std::malloc(size);
   }
   return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
 }

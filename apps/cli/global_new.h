@@ -14,9 +14,11 @@ inline constexpr bool kCanLimitMemory = false;
 inline constexpr bool kCanLimitMemory = true;
 #endif
 
-// All allocations go there from now on, to the end of the process.
+// All allocations go there from now on.
 void allocate_from(MemoryLimit& limit);
-// Null before.
+// From malloc() again, so that there is memory to say that there was none.
+void allocate_without_limit();
+// Null before allocate_from().
 MemoryLimit* memory_limit();
 
 }  // namespace crease::cli

@@ -81,9 +81,9 @@ Result<MemoryOption> limit_memory(const std::string& size, const std::filesystem
     log(common, "  --memory: " + folder.string() +
                     " is in memory itself, so that nothing is saved: set TMPDIR to one on a disk");
   }
+  watch_for_lost_pages(folder, common);
   const Result<MemoryLimit*> limit = MemoryLimit::start({.bytes = *bytes, .folder = folder});
   if (!limit.ok()) return limit.failure();
-  watch_for_lost_pages(folder, common);
   allocate_from(**limit);
   return MemoryOption{*bytes, folder};
 }
@@ -99,6 +99,7 @@ std::string MemoryOption::spilled_line() const {
 }
 
 std::optional<Failure> spill_failure() {
+  allocate_without_limit();
   const MemoryLimit* used = memory_limit();
   if (used == nullptr || used->failure().empty()) return std::nullopt;
   return fail(Error::WriteFailed, used->failure());

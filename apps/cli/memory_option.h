@@ -32,7 +32,8 @@ void add_memory_option(CLI::App& command, std::string& size);
 Result<MemoryOption> limit_memory(const std::string& size, const std::filesystem::path& output,
                                   const Common& common);
 
-// After std::bad_alloc: why, if the disk had no room for an allocation.
+// After std::bad_alloc: why, if the disk had no room for an allocation. What is allocated from then
+// on is ordinary memory.
 std::optional<Failure> spill_failure();
 
 }  // namespace crease::cli
