@@ -52,7 +52,10 @@ std::filesystem::path choose_folder(const std::filesystem::path& output) {
   if (temporary != nullptr && *temporary != 0 && !MemoryLimit::is_in_memory(temporary)) {
     return temporary;
   }
-  return output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
+  if (output.has_parent_path()) return output.parent_path();
+  std::error_code error;
+  const std::filesystem::path here = std::filesystem::current_path(error);  // messages name it
+  return error ? "." : here;
 }
 
 }  // namespace
