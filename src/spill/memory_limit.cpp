@@ -13,7 +13,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
-#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -35,8 +34,8 @@ constexpr std::uint64_t kStep = 4 << 20;
 constexpr std::uint64_t kMostMargin = 32 << 20;
 
 constexpr std::chrono::milliseconds kWatch{1};
-// Where all processors are busy the watching thread may have to wait for long: whoever allocates
-// looks if nobody did for so long.
+// Where all processors are busy the watching thread may have to wait for long, even while it
+// unmaps: whoever allocates an array looks if nobody did for so long.
 constexpr std::chrono::milliseconds kLate{3};
 // When all went out and that was not enough, it is no use to look again at once.
 constexpr std::chrono::milliseconds kRest{4};
@@ -54,7 +53,6 @@ struct MemoryLimit::State {
   std::atomic<std::uint64_t> ordinary_seen{0};   // resident and of no file, when last looked at
   std::chrono::steady_clock::time_point next_trim{};  // of the watching thread
   std::atomic<std::chrono::steady_clock::time_point> last_look{};
-  std::mutex look_mutex;  // one looks at a time
 
   std::uint64_t margin() const { return std::min(limit / 8, kMostMargin); }
   // What is for ordinary memory and for the window of the files.
@@ -149,6 +147,7 @@ bool MemoryLimit::State::unmap_down_to(std::uint64_t window) {
   for (spill::SpillFile* file : {arrays.get(), pages_of_pieces.get()}) {
     for (std::uint64_t done = 0; done < file->size(); done += kStep) {
       file->unmap_next(kStep);
+      last_look = std::chrono::steady_clock::now();
       if (spill::resident_memory().of_files <= at_start.of_files + window) return true;
     }
   }
@@ -163,31 +162,24 @@ void MemoryLimit::State::trim_now_and_then() {
   next_trim = now + kTrim;
 }
 
-// Unmaps what is too much. False: that was not enough. Under look_mutex.
+// Unmaps what is too much. False: that was not enough.
 bool MemoryLimit::State::look() {
+  last_look = std::chrono::steady_clock::now();
   const spill::ResidentMemory now = spill::resident_memory();
   ordinary_seen = now.ordinary;
   const std::uint64_t others = now.ordinary + at_start.of_files + margin();
   const std::uint64_t window = std::max(limit > others ? limit - others : 0, kLeastWindow);
-  const bool is_enough =
-      now.of_files <= at_start.of_files + window || unmap_down_to(window - window / 8);
-  last_look = std::chrono::steady_clock::now();
-  return is_enough;
+  return now.of_files <= at_start.of_files + window || unmap_down_to(window - window / 8);
 }
 
 void MemoryLimit::State::look_if_late() {
-  if (std::chrono::steady_clock::now() < last_look.load() + kLate) return;
-  if (const std::unique_lock lock(look_mutex, std::try_to_lock); lock) look();
+  if (std::chrono::steady_clock::now() >= last_look.load() + kLate) look();
 }
 
 void MemoryLimit::State::watch() {
   while (true) {
     trim_now_and_then();
-    bool is_enough = true;
-    {
-      const std::lock_guard lock(look_mutex);
-      is_enough = look();
-    }
+    const bool is_enough = look();
     std::this_thread::sleep_for(is_enough ? kWatch : kRest);
   }
 }

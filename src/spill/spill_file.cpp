@@ -113,10 +113,9 @@ void SpillFile::throw_away(const Range& range) const {
 
 void SpillFile::unmap_next(std::uint64_t bytes) {
   const std::uint64_t all = size_;
-  const std::uint64_t from = next_to_unmap_ < all ? next_to_unmap_ : 0;
-  const std::uint64_t end = std::min(from + bytes, all);
-  next_to_unmap_ = end;
-  if (end > from) ::madvise(base_ + from, end - from, MADV_DONTNEED);
+  if (all == 0) return;
+  const std::uint64_t from = next_to_unmap_.fetch_add(bytes) % all;
+  ::madvise(base_ + from, std::min(bytes, all - from), MADV_DONTNEED);
 }
 
 std::uint64_t SpillFile::most_used() const {

@@ -42,7 +42,6 @@ class SpillFile {
            kMostBytes;
   }
   // Takes the next `bytes` of the file out of memory, round and round. Waits for no other call.
-  // One thread at a time.
   void unmap_next(std::uint64_t bytes);
   std::uint64_t size() const { return size_; }  // bytes, free ones among them
 
@@ -57,10 +56,10 @@ class SpillFile {
 
   const std::filesystem::path folder_;
   const int descriptor_;
-  std::byte* const base_;               // where offset 0 of the file is
-  std::atomic<std::uint64_t> size_{0};  // of the file; all of it is mapped
-  std::uint64_t next_to_unmap_ = 0;
-  mutable std::mutex mutex_;  // guards what follows
+  std::byte* const base_;                        // where offset 0 of the file is
+  std::atomic<std::uint64_t> size_{0};           // of the file; all of it is mapped
+  std::atomic<std::uint64_t> next_to_unmap_{0};  // counted on through all rounds
+  mutable std::mutex mutex_;                     // guards what follows
   FileRanges ranges_;
   std::uint64_t most_used_ = 0;
   int error_ = 0;  // the system's, of the last allocation that failed

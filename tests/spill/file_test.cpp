@@ -89,7 +89,8 @@ TEST_CASE("what was unmapped is as it was, and what lies beside it too") {
 
 TEST_CASE("several threads share a file while it is unmapped") {
   const std::unique_ptr<SpillFile> file = new_file();
-  spill::SmallPieces pieces(*new_file().release());  // to the end, as in the tool
+  const std::unique_ptr<SpillFile> pages_of_pieces = new_file();
+  spill::SmallPieces pieces(*pages_of_pieces);
   std::atomic<bool> is_done = false;
   std::thread unmapping([&] {
     while (!is_done) file->unmap_next(1 << 20);
