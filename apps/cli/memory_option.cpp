@@ -62,10 +62,9 @@ std::filesystem::path choose_folder(const std::filesystem::path& output) {
 
 void add_memory_option(CLI::App& command, std::string& size) {
   command
-      .add_option(
-          "--memory", size,
-          "keep to about so much memory, 4GB or 512MiB: large arrays beyond it are in a file "
-          "in TMPDIR, or beside the output; slower, with the same result. 0: no limit")
+      .add_option("--memory", size,
+                  "keep to about so much memory, 4GB or 512MiB: what is beyond it is in a file "
+                  "in TMPDIR, or beside the output; slower, with the same result. 0: no limit")
       ->type_name("SIZE")
       ->capture_default_str();
 }

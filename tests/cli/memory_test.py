@@ -49,14 +49,14 @@ class Memory(tool.Case):
         free, bound = self.path("free.crease"), self.path("bound.crease")
         before = self.json("build", city, "-o", free)
         self.assertEqual((before["memory_limit"], before["spilled_bytes"]), (0, 0))
-        after = self.json("build", city, "-o", bound, "--memory", "32MB")
+        after = self.json("build", city, "-o", bound, "--memory", "48MB")
         self.assertEqual(self.digest(free), self.digest(bound))
         self.assertEqual(self.files(), ["bound.crease", "city.ply", "free.crease"])
         if SANITIZED:
             self.assertEqual((after["memory_limit"], after["spilled_bytes"]), (0, 0))
             return
-        self.assertEqual(after["memory_limit"], 32 * MB)
-        self.assertGreater(after["spilled_bytes"], 40 * MB)
+        self.assertEqual(after["memory_limit"], 48 * MB)
+        self.assertGreater(after["spilled_bytes"], 30 * MB)
         self.assertLess(after["peak_memory"], before["peak_memory"])
 
     def test_enough_memory_needs_no_file(self):
@@ -75,6 +75,9 @@ class Memory(tool.Case):
 
     @unittest.skipIf(SANITIZED, "keeps the sanitizer's own memory")
     def test_the_file_is_beside_the_output_or_in_tmpdir_and_gone_after_an_interrupt(self):
+        kind = tool.run(["stat", "-f", "-c", "%T", str(self.folder)]).stdout.strip()
+        if kind in ("tmpfs", "ramfs"):
+            self.skipTest("temporary files are in memory here, where the file does not go")
         city = self.city(150000)
         other = pathlib.Path(self.path("other"))
         other.mkdir()
