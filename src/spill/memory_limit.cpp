@@ -28,17 +28,18 @@ constexpr std::size_t kArray = 16 << 10;
 // have one part in so many, and all the rest.
 constexpr std::uint64_t kOfArrays = 2, kOfPieces = 4;
 
-// So much of a file goes out of memory at a time, and from so far below the limit on, since memory
-// goes on growing while somebody looks.
-constexpr std::uint64_t kStep = 4 << 20;
-constexpr std::uint64_t kMostMargin = 32 << 20;
+// So much of a file goes out of memory at a time, or this part of it, so that a round takes no more
+// than milliseconds.
+constexpr std::uint64_t kStep = 4 << 20, kStepsOfRound = 128;
 
-constexpr std::chrono::milliseconds kWatch{1};
+// How long until the next look, and sooner after one that found too much: a read of one page brings
+// its neighbours in too, so that memory may grow by gigabytes a second.
+constexpr std::chrono::microseconds kWatch{1000}, kWatchSharply{200};
 // Where all processors are busy the watching thread may have to wait for long, even while it
 // unmaps: whoever allocates an array looks if nobody did for so long.
-constexpr std::chrono::milliseconds kLate{3};
+constexpr std::chrono::milliseconds kLate{1};
 // When all went out and that was not enough, it is no use to look again at once.
-constexpr std::chrono::milliseconds kRest{4};
+constexpr std::chrono::microseconds kRest{4000};
 // malloc() keeps what small pieces were freed into; to have it look takes it milliseconds.
 constexpr std::chrono::milliseconds kTrim{200};
 
@@ -54,7 +55,8 @@ struct MemoryLimit::State {
   std::chrono::steady_clock::time_point next_trim{};  // of the watching thread
   std::atomic<std::chrono::steady_clock::time_point> last_look{};
 
-  std::uint64_t margin() const { return std::min(limit / 8, kMostMargin); }
+  // Memory grows while somebody looks.
+  std::uint64_t margin() const { return limit / 8; }
   // What is for ordinary memory and for the window of the files.
   std::uint64_t available() const {
     const std::uint64_t others = at_start.of_files + at_start.ordinary + margin();
@@ -71,7 +73,7 @@ struct MemoryLimit::State {
   }
   void* allocate_array(std::size_t bytes);
   [[noreturn]] void watch();
-  bool look();
+  std::chrono::microseconds look();
   void look_if_late();
   void trim_now_and_then();
   bool unmap_down_to(std::uint64_t window);
@@ -145,8 +147,9 @@ void MemoryLimit::free(void* memory) noexcept {
 // One round of the files at most, the denser one with the pieces last. False: that was not enough.
 bool MemoryLimit::State::unmap_down_to(std::uint64_t window) {
   for (spill::SpillFile* file : {arrays.get(), pages_of_pieces.get()}) {
-    for (std::uint64_t done = 0; done < file->size(); done += kStep) {
-      file->unmap_next(kStep);
+    const std::uint64_t step = std::max(kStep, file->size() / (kStepsOfRound * kStep) * kStep);
+    for (std::uint64_t done = 0; done < file->size(); done += step) {
+      file->unmap_next(step);
       last_look = std::chrono::steady_clock::now();
       if (spill::resident_memory().of_files <= at_start.of_files + window) return true;
     }
@@ -162,14 +165,15 @@ void MemoryLimit::State::trim_now_and_then() {
   next_trim = now + kTrim;
 }
 
-// Unmaps what is too much. False: that was not enough.
-bool MemoryLimit::State::look() {
+// Unmaps what is too much. Returns how long that will do.
+std::chrono::microseconds MemoryLimit::State::look() {
   last_look = std::chrono::steady_clock::now();
   const spill::ResidentMemory now = spill::resident_memory();
   ordinary_seen = now.ordinary;
   const std::uint64_t others = now.ordinary + at_start.of_files + margin();
   const std::uint64_t window = std::max(limit > others ? limit - others : 0, kLeastWindow);
-  return now.of_files <= at_start.of_files + window || unmap_down_to(window - window / 8);
+  if (now.of_files <= at_start.of_files + window) return kWatch;
+  return unmap_down_to(window - window / 8) ? kWatchSharply : kRest;
 }
 
 void MemoryLimit::State::look_if_late() {
@@ -179,8 +183,7 @@ void MemoryLimit::State::look_if_late() {
 void MemoryLimit::State::watch() {
   while (true) {
     trim_now_and_then();
-    const bool is_enough = look();
-    std::this_thread::sleep_for(is_enough ? kWatch : kRest);
+    std::this_thread::sleep_for(look());
   }
 }
 
