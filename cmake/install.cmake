@@ -4,8 +4,9 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/crease)
-# The viewer comes with the tool, and is no library that others link.
-install(DIRECTORY include/crease DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} PATTERN viewer.h EXCLUDE)
+# The viewer and the limit of memory come with the tool, and are no libraries that others link.
+install(DIRECTORY include/crease DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  PATTERN viewer.h EXCLUDE PATTERN memory_limit.h EXCLUDE)
 foreach(library IN ITEMS crease_runtime crease)
   if(TARGET ${library})
     install(TARGETS ${library} EXPORT ${library}-targets

@@ -2,7 +2,7 @@
 # belong to those. The test `layers` reads every #include of the tree against these two tables.
 set(CREASE_FOLDERS
   base parallel mesh hierarchy assemble io generate measure simplify codec pipeline
-  stream http serve runtime render view)
+  stream http serve spill runtime render view)
 
 set(CREASE_LAYER_base      )
 set(CREASE_LAYER_parallel  )
@@ -19,6 +19,7 @@ set(CREASE_LAYER_pipeline  base parallel mesh hierarchy io simplify codec codec_
 set(CREASE_LAYER_stream    base codec)
 set(CREASE_LAYER_http      base codec stream)
 set(CREASE_LAYER_serve     base)
+set(CREASE_LAYER_spill     base)
 set(CREASE_LAYER_runtime   base mesh hierarchy assemble codec stream)
 set(CREASE_LAYER_render    base mesh runtime)
 set(CREASE_LAYER_view      base parallel mesh hierarchy assemble io codec codec_encode pipeline stream
@@ -39,6 +40,7 @@ set(CREASE_HEADERS_codec     file.h byte_source.h block_file.h decode_model.h)
 set(CREASE_HEADERS_stream    async_source.h limited_source.h)
 set(CREASE_HEADERS_http      http_source.h)
 set(CREASE_HEADERS_serve     file_server.h)
+set(CREASE_HEADERS_spill     memory_limit.h)
 set(CREASE_HEADERS_pipeline  attribute_precision.h build.h)
 set(CREASE_HEADERS_runtime   camera.h draw_list.h draw_changes.h progressive_mesh.h
                            adaptive_mesh.h block_view.h block_mesh.h block_streamer.h)

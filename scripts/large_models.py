@@ -127,6 +127,7 @@ Build times are wall clock on two cores, the whole sequence down to a handful of
 Distances are in millionths of the diagonal, from the original to the level / back, by {SAMPLES:,}
 points on each surface; normals are compared at the corners. The last table has the run-time bytes
 of the arrays at full resolution and, apart from them, of the records that switch levels.
+[memory.md](memory.md) builds with less memory than that.
 """
 
 

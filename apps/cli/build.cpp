@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/fields.h"
+#include "cli/memory_option.h"
 #include "cli/model.h"
 #include "cli/text.h"
 
@@ -17,6 +18,7 @@ struct BuildArguments {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   ReadOptions read;
+  std::string memory = "0";
 };
 
 Result<Imported> import_inputs(const BuildArguments& options, const Common& common) {
@@ -69,6 +71,8 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
   }
   Result<BuildOptions> build = build_options(options.read, common);  // before any work is done
   if (!build.ok()) return build.failure();
+  const Result<MemoryOption> memory = limit_memory(options.memory, options.output, common);
+  if (!memory.ok()) return memory.failure();
   Result<Imported> imported = import_inputs(options, common);
   if (!imported.ok()) return imported.failure();
   const double import_seconds = watch.seconds();
@@ -86,6 +90,7 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
   const Status written = write_crease(options.output, built->file_bytes);
   if (!written.ok()) return written.failure();
 
+  if (memory->limit > 0) log(common, memory->spilled_line());
   const std::size_t bytes = built->file_bytes.size();
   const double bits =
       8.0 * static_cast<double>(bytes - image_bytes) / static_cast<double>(vertices);
@@ -97,6 +102,8 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
                  {"import_seconds", import_seconds},
                  {"build_seconds", build_seconds},
                  {"peak_memory", peak_memory()},
+                 {"memory_limit", memory->limit},
+                 {"spilled_bytes", memory->spilled_bytes()},
                  {"bytes", bytes},
                  {"image_bytes", image_bytes},
                  {"bits_per_vertex", bits},
@@ -126,6 +133,7 @@ Command add_build(CLI::App& app, const Common& common) {
       ->required()
       ->type_name("OUT");
   add_build_options(*command, options->read);
+  add_memory_option(*command, options->memory);
   command->footer(
       "Example:\n  crease build bunny.ply -o bunny.crease --normals crease:30 --precision 14bits");
   return {command, [options, &common] { return run_build(*options, common); }};

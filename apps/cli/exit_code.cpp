@@ -1,5 +1,7 @@
 #include "cli/exit_code.h"
 
+#include "cli/command.h"
+
 namespace crease::cli {
 
 namespace {
@@ -47,6 +49,15 @@ ExitCode exit_code_of(Error error) {
 std::string_view name_of(Error error) {
   const Row* row = find_row(error);
   return row ? row->name : "Unknown";
+}
+
+std::string failure_json(const Failure& failure) {
+  const Json json = {{"error",
+                      {{"code", static_cast<int>(failure.error)},
+                       {"name", name_of(failure.error)},
+                       {"message", failure.message}}},
+                     {"exit_status", static_cast<int>(exit_code_of(failure.error))}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace crease::cli

@@ -3,6 +3,7 @@
 
 #include "crease/result.h"
 
+#include <string>
 #include <string_view>
 
 namespace crease::cli {
@@ -22,5 +23,8 @@ ExitCode exit_code_of(Error error);
 
 // The error's name as docs/errors.md lists it, for --json.
 std::string_view name_of(Error error);
+
+// What --json prints of a failure: one object.
+std::string failure_json(const Failure& failure);
 
 }  // namespace crease::cli

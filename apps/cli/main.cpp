@@ -2,10 +2,13 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/exit_code.h"
+#include "cli/memory_option.h"
 
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace crease::cli {
@@ -23,17 +26,9 @@ void add_common_options(CLI::App& command, Common& common) {
 
 int print_failure(const Failure& failure, const Common& common) {
   wipe_progress_bar();
-  const int code = static_cast<int>(exit_code_of(failure.error));
   std::fprintf(stderr, "crease: %s\n", failure.message.c_str());
-  if (common.json) {
-    const Json error = {{"error",
-                         {{"code", static_cast<int>(failure.error)},
-                          {"name", name_of(failure.error)},
-                          {"message", failure.message}}},
-                        {"exit_status", code}};
-    std::printf("%s\n", error.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
-  }
-  return code;
+  if (common.json) std::printf("%s\n", failure_json(failure).c_str());
+  return static_cast<int>(exit_code_of(failure.error));
 }
 
 int print_report(const Report& report, const Common& common) {
@@ -51,6 +46,16 @@ int print_report(const Report& report, const Common& common) {
     return static_cast<int>(exit_code_of(report.short_of));
   }
   return static_cast<int>(printed ? ExitCode::Done : ExitCode::CannotWrite);
+}
+
+Result<Report> run_command(const Command& command) {
+  try {
+    return command.run();
+  } catch (const std::bad_alloc&) {
+    std::optional<Failure> failure = spill_failure();
+    if (!failure) throw;
+    return *std::move(failure);
+  }
 }
 
 int run_main(int argc, char** argv) {
@@ -78,7 +83,7 @@ int run_main(int argc, char** argv) {
   watch_for_interrupts();
   for (const Command& command : commands) {
     if (!command.app->parsed()) continue;
-    const Result<Report> report = command.run();
+    const Result<Report> report = run_command(command);
     return report.ok() ? print_report(*report, common) : print_failure(report.failure(), common);
   }
   return static_cast<int>(ExitCode::CommandLine);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <span>
 
 namespace crease::cli {
 
@@ -27,6 +28,27 @@ std::optional<int> parse_int(std::string_view text, int low, int high) {
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   if (value < low || value > high) return std::nullopt;
   return value;
+}
+
+struct Unit {
+  std::string_view name;  // in small letters
+  double size;
+};
+
+// A number and a unit, the first of `units` that the text ends with; blanks between them are fine.
+std::optional<double> parse_in_units(std::string_view text, std::span<const Unit> units) {
+  std::string lowered(text);
+  for (char& c : lowered) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const Unit& unit : units) {
+    if (!lowered.ends_with(unit.name)) continue;
+    std::string_view number = lowered;
+    number.remove_suffix(unit.name.size());
+    while (number.ends_with(' ')) number.remove_suffix(1);
+    const auto count = parse_number(number);
+    if (!count) return std::nullopt;
+    return *count * unit.size;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -113,10 +135,6 @@ Result<std::vector<double>> parse_ratios(std::string_view text) {
 }
 
 Result<double> parse_rate(std::string_view text) {
-  struct Unit {
-    std::string_view name;
-    double bytes;
-  };
   constexpr Unit kUnits[] = {{"kbit", 1e3 / 8},
                              {"mbit", 1e6 / 8},
                              {"gbit", 1e9 / 8},
@@ -124,16 +142,22 @@ Result<double> parse_rate(std::string_view text) {
                              {"mb", 1e6},
                              {"gb", 1e9},
                              {"", 1}};
-  std::string lowered(text);
-  for (char& c : lowered) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  for (const Unit& unit : kUnits) {
-    if (!lowered.ends_with(unit.name)) continue;
-    const auto count =
-        parse_number(std::string_view(lowered).substr(0, lowered.size() - unit.name.size()));
-    if (count && *count > 0) return *count * unit.bytes;
-  }
+  const auto rate = parse_in_units(text, kUnits);
+  if (rate && *rate > 0) return *rate;
   return fail(Error::CommandLine, "--limit: '" + std::string(text) +
                                       "' is no rate like 20Mbit, 2.5MB or 1000 (bytes a second)");
+}
+
+Result<std::uint64_t> parse_memory(std::string_view text) {
+  constexpr Unit kUnits[] = {
+      {"kib", 1 << 10}, {"mib", 1 << 20}, {"gib", 1 << 30}, {"tib", double(std::uint64_t(1) << 40)},
+      {"kb", 1e3},      {"mb", 1e6},      {"gb", 1e9},      {"tb", 1e12},
+      {"", 1}};
+  constexpr double kMost = 1e18;
+  const auto bytes = parse_in_units(text, kUnits);
+  if (bytes && *bytes >= 0 && *bytes <= kMost) return static_cast<std::uint64_t>(*bytes);
+  return fail(Error::CommandLine, "--memory: '" + std::string(text) +
+                                      "' is no size like 4GB, 512MiB or 1000000000 (bytes)");
 }
 
 Result<std::pair<int, int>> parse_size(std::string_view text) {

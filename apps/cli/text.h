@@ -31,6 +31,8 @@ Result<int> parse_bits(std::string_view option, std::string_view text, int low, 
 Result<std::vector<double>> parse_ratios(std::string_view text);
 // "20Mbit", "500kbit", "2.5MB", "64kB", "1000": bytes a second; letters in any case.
 Result<double> parse_rate(std::string_view text);
+// "4GB", "512 MiB", "1000000": bytes, above 0 or 0; letters in any case.
+Result<std::uint64_t> parse_memory(std::string_view text);
 // "1920x1080".
 Result<std::pair<int, int>> parse_size(std::string_view text);
 

@@ -58,6 +58,8 @@ void bound(const codec::BlockPlan& plan, BlockFacts& facts) {
   facts.radius = static_cast<std::uint32_t>(std::ceil(std::sqrt(squared) + 1e-6));
 }
 
+constexpr std::uint16_t kFinest = 0;  // nobody starts from where this band ends
+
 class BandEncoder {
  public:
   BandEncoder(const codec::BlockCoding& coding) : coding_(coding) {}
@@ -78,6 +80,7 @@ class BandEncoder {
       ids[p].block = BlockId{first + static_cast<std::uint32_t>(p)};
       encode_patch(plans, p, std::move(starts[p]), block, ends[p], ids[p]);
     });
+    if (band == kFinest) return;
     ends_ = std::move(ends);
     ids_ = std::move(ids);
     for (std::size_t e = 0; e < ends_.size(); ++e) {
@@ -92,7 +95,7 @@ class BandEncoder {
  private:
   void encode_patch(const BandPlans& plans, std::size_t p, codec::CoarseEnd start,
                     CodedBlock& block, codec::FineEnd& end, EndIds& ids) {
-    const codec::BlockPlan& plan = plans.plans[p];
+    const codec::BlockPlan plan = plans.plan(p);
     PlanIndices& index = indices_.local();
     number(index.of_vertex, plans.vertex_ids[p]);
     number(index.of_triangle, plans.triangle_ids[p]);
@@ -138,6 +141,7 @@ class BandEncoder {
         codec::encode_block(plan, static_cast<std::uint32_t>(index_of(ids.block)), coding_,
                             std::move(start), triangles, vertices, names);
     block.bytes = std::move(encoded.bytes);
+    if (facts.band == kFinest) return;
     ids.vertex_ids = of_each(plans.vertex_ids[p], encoded.plan_of_vertex);
     ids.triangle_ids = of_each(plans.triangle_ids[p], encoded.plan_of_triangle);
     end = std::move(encoded.decoded.end);
@@ -152,12 +156,13 @@ class BandEncoder {
 
 }  // namespace
 
-std::vector<CodedBlock> encode_blocks(const std::vector<BandPlans>& plans,
+std::vector<CodedBlock> encode_blocks(std::vector<BandPlans> plans,
                                       const codec::BlockCoding& coding) {
   std::vector<CodedBlock> blocks;
   BandEncoder encoder(coding);
   for (std::size_t i = 0; i < plans.size(); ++i) {
     encoder.encode(plans[i], static_cast<std::uint16_t>(plans.size() - 1 - i), blocks);
+    plans[i] = {};
   }
   return blocks;
 }

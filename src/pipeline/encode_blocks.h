@@ -17,8 +17,9 @@ struct CodedBlock {
   codec::BlockLimits limits() const { return {facts.vertices, facts.triangles_fine}; }
 };
 
-// Block i of the result has the id i. `plans`: the base first. The blocks of a band on all threads.
-std::vector<CodedBlock> encode_blocks(const std::vector<BandPlans>& plans,
+// Block i of the result has the id i. `plans`: the base first; each band is gone once it is
+// encoded. The blocks of a band on all threads.
+std::vector<CodedBlock> encode_blocks(std::vector<BandPlans> plans,
                                       const codec::BlockCoding& coding);
 
 }  // namespace crease

@@ -17,10 +17,14 @@ class Planner {
   Planner(const Mesh& snapped, const ContractionSequence& sequence,
           std::span<const LayerCoding> codings)
       : mesh_(snapped), sequence_(sequence) {
+    auto values = std::make_shared<std::vector<std::vector<codec::CodedValue>>>();
     for (std::size_t l = 0; l < mesh_.layers.size(); ++l) {
-      add_codes(LayerValues(codings[l], mesh_.layers[l].dimension), l);
+      values->push_back(all_values(LayerValues(codings[l], mesh_.layers[l].dimension), l));
     }
+    values_ = std::move(values);
+    positions_.reserve(mesh_.positions.size());
     for (const Vec3d& p : mesh_.positions) positions_.push_back(sequence_.grid.nearest(p));
+    corners_.reserve(mesh_.triangles.size());
     for (const Triangle& t : mesh_.triangles) {
       corners_.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
                           static_cast<std::uint32_t>(t[2])});
@@ -36,7 +40,9 @@ class Planner {
   // The patches of the next band, at their fine ends; then its contractions.
   BandPlans plan_band(const Band& band) {
     BandPlans result;
+    result.values = values_;
     result.plans.resize(band.patch_count());
+    result.value_ids.resize(band.patch_count());
     result.vertex_ids.resize(band.patch_count());
     result.triangle_ids.resize(band.patch_count());
     result.errors.resize(band.patch_count());
@@ -46,10 +52,13 @@ class Planner {
       contractions[sequence_.patch_of_contraction[next_]].push_back(next_);
     }
     for (std::uint32_t p = 0; p < band.patch_count(); ++p) {
-      for (TriangleId t : band.triangles_of(p)) {
+      const auto triangles = band.triangles_of(p);
+      result.triangle_ids[p].reserve(triangles.size());
+      for (TriangleId t : triangles) {
         result.triangle_ids[p].push_back(static_cast<std::uint32_t>(t));
       }
-      result.plans[p] = plan_patch(result.triangle_ids[p], result.vertex_ids[p]);
+      result.plans[p] =
+          plan_patch(result.triangle_ids[p], result.vertex_ids[p], result.value_ids[p]);
       result.errors[p].fine = largest_error(result.vertex_ids[p]);
       contract(contractions[p], result.plans[p], result.triangle_ids[p], result.vertex_ids[p]);
       result.errors[p].coarse = largest_error(result.vertex_ids[p]);
@@ -62,12 +71,15 @@ class Planner {
   // What is left when all bands are done.
   BandPlans plan_base() {
     BandPlans result;
+    result.values = values_;
     result.triangle_ids.resize(1);
     result.vertex_ids.resize(1);
+    result.value_ids.resize(1);
     for (std::uint32_t t = 0; t < corners_.size(); ++t) {
       if (is_alive_[t]) result.triangle_ids[0].push_back(t);
     }
-    result.plans.push_back(plan_patch(result.triangle_ids[0], result.vertex_ids[0]));
+    result.plans.push_back(
+        plan_patch(result.triangle_ids[0], result.vertex_ids[0], result.value_ids[0]));
     const LevelError error = largest_error(result.vertex_ids[0]);
     result.errors.push_back({error, error});
     return result;
@@ -75,10 +87,10 @@ class Planner {
 
  private:
   // Of all values at once: corners of every band have them.
-  void add_codes(const LayerValues& values, std::size_t l) {
+  std::vector<codec::CodedValue> all_values(const LayerValues& values, std::size_t l) {
     const AttributeLayer& layer = mesh_.layers[l];
     const std::size_t dimension = static_cast<std::size_t>(layer.dimension);
-    std::vector<codec::CodedValue>& codes = codes_.emplace_back();
+    std::vector<codec::CodedValue> codes;
     const auto add = [&](std::span<const float> all) {
       for (std::size_t i = 0; dimension > 0 && i < all.size(); i += dimension) {
         codes.push_back(values.code(all.subspan(i, dimension)));
@@ -86,12 +98,19 @@ class Planner {
     };
     add(layer.values);
     if (l < sequence_.new_values.size()) add(sequence_.new_values[l]);
+    return codes;
   }
 
   codec::BlockPlan plan_patch(const std::vector<std::uint32_t>& triangles,
-                              std::vector<std::uint32_t>& vertices) {
+                              std::vector<std::uint32_t>& vertices,
+                              std::vector<std::vector<AttributeId>>& values) {
     codec::BlockPlan plan;
-    plan.fine.values.resize(mesh_.layers.size());
+    plan.fine.triangles.reserve(triangles.size());
+    plan.fine.category.reserve(triangles.size());
+    plan.fine.derived.reserve(triangles.size());
+    plan.labels.reserve(triangles.size());
+    values.resize(mesh_.layers.size());
+    for (std::vector<AttributeId>& of_layer : values) of_layer.reserve(3 * triangles.size());
     for (const std::uint32_t t : triangles) {
       codec::Corners corners = corners_[t];
       for (std::uint32_t& v : corners) {
@@ -108,12 +127,12 @@ class Planner {
       plan.fine.derived.push_back(derived_[t]);
       plan.labels.push_back(label_[t]);
       for (std::size_t l = 0; l < mesh_.layers.size(); ++l) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          plan.fine.values[l].push_back(codes_[l][index_of(of_corner_[l][3 * t + c])]);
-        }
+        for (std::size_t c = 0; c < 3; ++c) values[l].push_back(of_corner_[l][3 * t + c]);
       }
     }
     for (const std::uint32_t v : vertices) slot_of_vertex_[v] = kNone;
+    vertices.shrink_to_fit();
+    plan.fine.positions.shrink_to_fit();
     return plan;
   }
 
@@ -154,6 +173,7 @@ class Planner {
     for (const std::uint32_t t : triangles) {
       for (const std::uint32_t v : corners_[t]) around.add(slot_of_vertex_[v], t);
     }
+    plan.steps.reserve(contractions.size());
     for (const std::size_t i : contractions) {
       const Contraction& c = sequence_.contractions[i];
       const std::uint32_t removed = static_cast<std::uint32_t>(c.removed);
@@ -210,15 +230,15 @@ class Planner {
 
   const Mesh& mesh_;
   const ContractionSequence& sequence_;
-  std::vector<std::vector<codec::CodedValue>> codes_;  // per layer and value
-  std::size_t next_ = 0;                               // in the sequence
-  std::vector<Vec3i> positions_;                       // per vertex
-  std::vector<LevelError> error_;                      // per vertex
-  std::vector<codec::Corners> corners_;                // per triangle
-  std::vector<std::vector<AttributeId>> of_corner_;    // per layer, 3 a triangle
-  std::vector<char> is_alive_, derived_;               // per triangle
-  std::vector<std::uint32_t> label_;                   // per triangle: its patch in the band before
-  std::vector<std::uint32_t> slot_of_vertex_;          // all kNone between patches
+  std::shared_ptr<const std::vector<std::vector<codec::CodedValue>>> values_;  // per layer
+  std::size_t next_ = 0;                                                       // in the sequence
+  std::vector<Vec3i> positions_;                                               // per vertex
+  std::vector<LevelError> error_;                                              // per vertex
+  std::vector<codec::Corners> corners_;                                        // per triangle
+  std::vector<std::vector<AttributeId>> of_corner_;  // per layer, 3 a triangle
+  std::vector<char> is_alive_, derived_;             // per triangle
+  std::vector<std::uint32_t> label_;                 // per triangle: its patch in the band before
+  std::vector<std::uint32_t> slot_of_vertex_;        // all kNone between patches
 };
 
 AttributeCoding coding_of(LayerCoding::Kind kind) {
@@ -236,6 +256,18 @@ AttributeCoding coding_of(LayerCoding::Kind kind) {
 }
 
 }  // namespace
+
+codec::BlockPlan BandPlans::plan(std::size_t p) const {
+  codec::BlockPlan whole = plans[p];
+  whole.fine.values.resize(value_ids[p].size());
+  for (std::size_t l = 0; l < value_ids[p].size(); ++l) {
+    whole.fine.values[l].reserve(value_ids[p][l].size());
+    for (const AttributeId a : value_ids[p][l]) {
+      whole.fine.values[l].push_back((*values)[l][index_of(a)]);
+    }
+  }
+  return whole;
+}
 
 std::vector<LayerSchema> schema_of(const Mesh& mesh, std::span<const LayerCoding> codings) {
   std::vector<LayerSchema> layers;

@@ -6,7 +6,9 @@
 #include "crease/contraction.h"
 #include "crease/mesh.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,7 +19,14 @@ struct BandPlans {
   struct Errors {
     LevelError coarse, fine;  // the largest at either end
   };
+  // The plan of patch p.
+  codec::BlockPlan plan(std::size_t p) const;
+
+  // Of its values only which they are: bands stay in memory together, and a value is four times as
+  // large. Per layer, 3 a triangle, into `values`, which all bands share.
   std::vector<codec::BlockPlan> plans;
+  std::vector<std::vector<std::vector<AttributeId>>> value_ids;
+  std::shared_ptr<const std::vector<std::vector<codec::CodedValue>>> values;
   std::vector<Errors> errors;
   std::vector<std::vector<std::uint32_t>> vertex_ids, triangle_ids;
   // Of those vertices, which stand at the coarse end without a triangle of their patch there.

@@ -74,7 +74,7 @@ void check_blocks(const Mesh& mesh, const ContractionSequence& sequence,
       CHECK(block->end.labels.size() == block->end.mesh.triangles.size());
       splits += block->splits.size();
       describe(block->end.mesh, coding, decoded);
-      describe(plans[band].plans[p].fine, coding, expected);
+      describe(plans[band].plan(p).fine, coding, expected);
       next_ends.push_back(std::move(block->end));
     }
     ends = std::move(next_ends);
