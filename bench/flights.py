@@ -31,7 +31,7 @@ BUILD = pathlib.Path(os.environ.get("CREASE_BENCH_BUILD", HERE.parent / "build/b
 MBIT, ROUND_TRIP_MS = 20, 50
 # What a process may take beyond the budget: the program, 1 MiB of payloads, what decoding a block takes
 # and eight that wait for the next update, and what the allocator keeps of blocks that were dropped.
-BEYOND_MB = 48
+BEYOND_MB = 80
 
 NGINX = """daemon off; master_process off; pid {work}/pid; error_log stderr;
 events {{ }}
