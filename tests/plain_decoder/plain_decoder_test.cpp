@@ -212,7 +212,7 @@ TEST_CASE("the plain decoder finds what the codec does, in small models of every
               .bytes);
     }
   }
-  CHECK(blocks > (kSanitized ? 100 : 800));
+  CHECK(blocks > (kSanitized ? 80 : 800));
 }
 
 TEST_CASE("the plain decoder finds what the codec does, in real models") {
