@@ -35,8 +35,8 @@ namespace {
 // `alignment` 0: malloc()'s.
 void* allocate_or_null(std::size_t size, std::size_t alignment) {
   crease::MemoryLimit* limit = crease::cli::memory_limit();
+  size = std::max<std::size_t>(size, 1);
   if (alignment == 0) {
-    size = std::max<std::size_t>(size, 1);
     const bool is_limited = limit != nullptr && !crease::cli::is_over;
     return is_limited ? limit->allocate(size) : std::malloc(size);
   }
