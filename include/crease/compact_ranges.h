@@ -109,10 +109,16 @@ class CompactRanges {
     return found;
   }
   bool is_usual(std::size_t key) const { return !is_unusual_.test(key); }
-  // How many items the unusual keys before this one have.
-  std::uint32_t unusual_before(std::size_t key) const {
-    const std::uint32_t rank = is_unusual_.rank(key);
-    return rank * usual_ + excess_[rank];
+  // And how many items the unusual keys before this one have.
+  struct RangeAmongUnusual {
+    Range range;
+    std::uint32_t unusual_before;
+  };
+  RangeAmongUnusual range_among_unusual(std::size_t key) const {
+    const std::uint32_t rank = is_unusual_.rank(key), before = excess_[rank];
+    const std::uint32_t begin = static_cast<std::uint32_t>(key) * usual_ + before;
+    const std::uint32_t more = is_unusual_.test(key) ? excess_[rank + 1] - before : 0;
+    return {{begin, begin + usual_ + more}, rank * usual_ + before};
   }
   std::uint32_t total() const {
     return static_cast<std::uint32_t>(size()) * usual_ + excess_.back();
