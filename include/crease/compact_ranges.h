@@ -40,14 +40,10 @@ class RankedBits {
     set_count_ += bit ? 1 : 0;
     ++size_;
   }
-  bool test(std::size_t key) const {
-    const Word& word = words_[key / 64];
-    return ((key % 64 < 32 ? word.low : word.high) >> (key % 32) & 1) != 0;
-  }
+  bool test(std::size_t key) const { return (words_[key / 64].bits() >> (key % 64) & 1) != 0; }
   std::uint32_t rank(std::size_t key) const {
     const Word& word = words_[key / 64];
-    const std::uint64_t bits = std::uint64_t(word.high) << 32 | word.low;
-    const std::uint64_t before = bits & ((std::uint64_t(1) << (key % 64)) - 1);
+    const std::uint64_t before = word.bits() & ((std::uint64_t(1) << (key % 64)) - 1);
     return word.rank + popcount_inline(before);
   }
   void prefetch(std::size_t key) const { __builtin_prefetch(&words_[key / 64]); }
@@ -59,6 +55,8 @@ class RankedBits {
   struct Word {
     std::uint32_t low, high;
     std::uint32_t rank;  // of its first key
+
+    std::uint64_t bits() const { return std::uint64_t(high) << 32 | low; }
   };
   std::vector<Word> words_;
   std::size_t size_ = 0;
