@@ -92,14 +92,12 @@ TEST_CASE("of many watches that are far away few are looked at") {
   watches.resize(kCount, false);
   for (std::size_t i = 0; i < kCount; ++i) watches.set(i, house(i, 20, 1));
   Flight flight;
-  std::size_t looked_at = 0;
-  for (int f = 0; f < 20; ++f) {
-    flight.move_to({100.0 * f, 0, 10}, {100.0 * f + 1, 0, 10});
-    const std::size_t count =
+  for (int f = 0; f < 6; ++f) {  // so far that every date has passed
+    flight.move_to({kCount / 2, f % 2 == 0 ? 1e6 : -1e6, 10}, {kCount / 2, 0, 10});
+    const std::size_t looked_at =
         watches.find<true>(flight.error, flight.odometer, [](std::uint32_t) {});
-    if (f >= 2) looked_at += count;
+    if (f >= 2) CHECK(looked_at <= kCount / 64);
   }
-  CHECK(looked_at / 18 < kCount / 64);  // without bounds of groups a tenth
 }
 
 TEST_CASE("the slack is until something may be found") {
