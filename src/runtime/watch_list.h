@@ -14,8 +14,9 @@
 // three.
 //
 // What the simplifier leaves of a large model are many roots that have nothing to show, and they
-// stand in order of place (ActiveCut). So 64 in a row have a date as well, and where none of them
-// was set for some frames, a watch that bounds theirs: while that is not wrong, none of them is.
+// are numbered along a curve (make_forest()), as their slots are. So 64 in a row have a date as
+// well, and where none of them was set since the last frame, a watch that bounds theirs: while that
+// is not wrong, none of them is.
 //
 // Memory per watch: 22.5 bytes, and 24 more while facing counts.
 #pragma once
