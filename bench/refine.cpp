@@ -19,7 +19,10 @@
 #include <ctime>
 
 #include <algorithm>
+#include <bit>
+#include <cinttypes>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -34,7 +37,34 @@ double processor_seconds() {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
+// Of what is drawn, in whatever order: equal for equal positions, normals and shading kinds.
+std::uint64_t hash_of(const DrawList& list) {
+  std::uint64_t sum = 0;
+  const auto mix = [](std::uint64_t& h, const Vec3f& v) {
+    for (const float x : {v.x, v.y, v.z}) {
+      h = (h ^ std::bit_cast<std::uint32_t>(x)) * 0x9e3779b97f4a7c15u;
+      h ^= h >> 29;
+    }
+  };
+  std::uint64_t kind = 0;
+  for (const DrawPart* part : {&list.sn, &list.fn, &list.nsn}) {
+    ++kind;
+    for (std::size_t c = 0; c < part->indices.size(); c += 3) {
+      std::uint64_t triangle = kind;
+      for (std::size_t k = c; k < c + 3; ++k) {
+        mix(triangle, list.positions[part->indices[k]]);
+        mix(triangle, kind == 1   ? list.vertex_normals[part->indices[k]]
+                      : kind == 2 ? part->normals[c / 3]
+                                  : part->normals[k]);
+      }
+      sum += triangle;
+    }
+  }
+  return sum;
+}
+
 struct Flight {
+  std::uint64_t hash = 0;  // of what is drawn in all frames, if asked for
   std::size_t moves = 0, evaluated = 0, triangles = 0, frames = 0, most_moves = 0;
   std::vector<double> seconds_of_frame;
 
@@ -46,7 +76,7 @@ struct Flight {
 // Every round does the same moves in the same frames; of each frame the fastest counts, which is
 // the one that others on the machine disturbed least.
 Flight fly(AdaptiveMesh& mesh, const ViewParameters& start, const Box& box, bool is_city,
-           int frames, const Flight* before) {
+           int frames, const Flight* before, bool hashes = false) {
   Flight flight;
   for (int f = 0; f < frames; ++f) {
     ViewParameters view = start;
@@ -55,6 +85,7 @@ Flight fly(AdaptiveMesh& mesh, const ViewParameters& start, const Box& box, bool
     const double began = processor_seconds();
     const UpdateReport report = mesh.update(view);
     double seconds = processor_seconds() - began;
+    if (hashes) flight.hash = 31 * flight.hash + hash_of(mesh.draw_list());
     if (f == 0) continue;  // from the coarsest cut
     if (before != nullptr) seconds = std::min(seconds, before->seconds_of_frame[flight.frames]);
     flight.seconds_of_frame.push_back(seconds);
@@ -122,7 +153,7 @@ double pixels_for(const std::shared_ptr<const MeshHierarchy>& hierarchy, const B
 }
 
 bool measure(const ModelEntry& entry, int frames, int rounds, double pixels,
-             std::size_t triangles_wanted, bool one_root) {
+             std::size_t triangles_wanted, bool one_root, bool hashes) {
   Result<DecodedModel> opened = open_model(entry);
   if (!opened.ok()) {
     std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), opened.failure().message.c_str());
@@ -149,7 +180,7 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels,
     flight = fly(mesh, view, box, is_city, frames, r == 1 ? nullptr : &flight);
   }
   AdaptiveMesh mesh(hierarchy);
-  flight = fly(mesh, view, box, is_city, frames, rounds == 1 ? nullptr : &flight);
+  flight = fly(mesh, view, box, is_city, frames, rounds == 1 ? nullptr : &flight, hashes);
   const double worst_frame = *std::ranges::max_element(flight.seconds_of_frame);
   const double moves = double(std::max<std::size_t>(1, flight.moves));
   view.camera = camera_at(box, is_city, double(frames - 1) / frames);
@@ -177,6 +208,7 @@ bool measure(const ModelEntry& entry, int frames, int rounds, double pixels,
       flight.seconds() / moves * 1e9, flight.seconds() / double(flight.frames) * 1e3,
       worst_frame * 1e3, still * 1e6, evaluated, mesh.triangle_count(), mesh.vertex_count(),
       uniform, double(uniform) / double(mesh.triangle_count()));
+  if (hashes) std::printf("  drawn: %016" PRIx64 "\n", flight.hash);
   std::fflush(stdout);
   return true;
 }
@@ -187,7 +219,7 @@ int run(int argc, char** argv) {
   int frames = 600, rounds = 3;
   double pixels = 1;
   std::size_t cut_triangles = 0;
-  bool is_city = false, one_root = false;
+  bool is_city = false, one_root = false, hashes = false;
   CLI::App app("Flights over adaptive meshes");
   app.add_option("--models", models, "names of models.txt, generate:N, or .crease files")
       ->delimiter(',');
@@ -199,6 +231,7 @@ int run(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   app.add_option("--pixels", pixels, "error allowed on the screen");
   app.add_option("--cut", cut_triangles, "as many pixels as give a cut of so many triangles");
+  app.add_flag("--hash", hashes, "of what is drawn in every frame, equal for equal commits");
   CLI11_PARSE(app, argc, argv);
   Result<std::vector<ModelEntry>> entries = read_models(list);
   if (!entries.ok()) {
@@ -208,18 +241,18 @@ int run(int argc, char** argv) {
   bool good = true;
   for (const std::string& name : models) {
     if (name.starts_with("generate:")) {
-      good =
-          measure({name, "city", "keep", name}, frames, rounds, pixels, cut_triangles, one_root) &&
-          good;
+      good = measure({name, "city", "keep", name}, frames, rounds, pixels, cut_triangles, one_root,
+                     hashes) &&
+             good;
     } else if (name.ends_with(".crease")) {
       const std::string stem = std::filesystem::path(name).stem().string();
       good = measure({stem, is_city ? "city" : "scan", "keep", name}, frames, rounds, pixels,
-                     cut_triangles, one_root) &&
+                     cut_triangles, one_root, hashes) &&
              good;
     }
     for (const ModelEntry& entry : *entries) {
       if (entry.name == name)
-        good = measure(entry, frames, rounds, pixels, cut_triangles, one_root) && good;
+        good = measure(entry, frames, rounds, pixels, cut_triangles, one_root, hashes) && good;
     }
   }
   return good ? 0 : 2;

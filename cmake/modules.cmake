@@ -26,6 +26,10 @@ function(crease_module name)
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_compile_options(crease_${name}_objects PRIVATE -ffp-contract=off ${CREASE_FALSE_WARNINGS})
+  if(name MATCHES "^(hierarchy|runtime)$" AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # Else GCC inlines no function that another library might replace, not even within a file.
+    target_compile_options(crease_${name}_objects PRIVATE -fno-semantic-interposition)
+  endif()
   if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # GCC takes what several files are put together in for a header.
     target_compile_options(crease_${name}_objects PRIVATE -Wno-subobject-linkage)

@@ -40,14 +40,10 @@ class RankedBits {
     set_count_ += bit ? 1 : 0;
     ++size_;
   }
-  bool test(std::size_t key) const {
-    const Word& word = words_[key / 64];
-    return ((key % 64 < 32 ? word.low : word.high) >> (key % 32) & 1) != 0;
-  }
+  bool test(std::size_t key) const { return (words_[key / 64].bits() >> (key % 64) & 1) != 0; }
   std::uint32_t rank(std::size_t key) const {
     const Word& word = words_[key / 64];
-    const std::uint64_t bits = std::uint64_t(word.high) << 32 | word.low;
-    const std::uint64_t before = bits & ((std::uint64_t(1) << (key % 64)) - 1);
+    const std::uint64_t before = word.bits() & ((std::uint64_t(1) << (key % 64)) - 1);
     return word.rank + popcount_inline(before);
   }
   void prefetch(std::size_t key) const { __builtin_prefetch(&words_[key / 64]); }
@@ -59,6 +55,8 @@ class RankedBits {
   struct Word {
     std::uint32_t low, high;
     std::uint32_t rank;  // of its first key
+
+    std::uint64_t bits() const { return std::uint64_t(high) << 32 | low; }
   };
   std::vector<Word> words_;
   std::size_t size_ = 0;
@@ -109,10 +107,16 @@ class CompactRanges {
     return found;
   }
   bool is_usual(std::size_t key) const { return !is_unusual_.test(key); }
-  // How many items the unusual keys before this one have.
-  std::uint32_t unusual_before(std::size_t key) const {
-    const std::uint32_t rank = is_unusual_.rank(key);
-    return rank * usual_ + excess_[rank];
+  // And how many items the unusual keys before this one have.
+  struct RangeAmongUnusual {
+    Range range;
+    std::uint32_t unusual_before;
+  };
+  RangeAmongUnusual range_among_unusual(std::size_t key) const {
+    const std::uint32_t rank = is_unusual_.rank(key), before = excess_[rank];
+    const std::uint32_t begin = static_cast<std::uint32_t>(key) * usual_ + before;
+    const std::uint32_t more = is_unusual_.test(key) ? excess_[rank + 1] - before : 0;
+    return {{begin, begin + usual_ + more}, rank * usual_ + before};
   }
   std::uint32_t total() const {
     return static_cast<std::uint32_t>(size()) * usual_ + excess_.back();

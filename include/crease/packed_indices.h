@@ -14,6 +14,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace crease {
@@ -35,9 +36,20 @@ class BitArray {
     size_ += bits;
   }
   std::uint32_t read(std::size_t bit, unsigned bits) const {
+    const std::uint64_t mask = (std::uint64_t(1) << bits) - 1;
+    if constexpr (std::endian::native == std::endian::little) {
+      return static_cast<std::uint32_t>(read_57(bit) & mask);
+    }
     const std::uint64_t low = words_[bit / 64] >> (bit % 64);
     const std::uint64_t high = words_[bit / 64 + 1] << 1 << (63 - bit % 64);
-    return static_cast<std::uint32_t>((low | high) & ((std::uint64_t(1) << bits) - 1));
+    return static_cast<std::uint32_t>((low | high) & mask);
+  }
+  // At least so many bits from there on, where bytes of words lie in the order of bits: one load,
+  // wherever it begins. What is beyond the end is of no meaning.
+  std::uint64_t read_57(std::size_t bit) const {
+    std::uint64_t word;
+    std::memcpy(&word, reinterpret_cast<const char*>(words_.data()) + bit / 8, sizeof(word));
+    return word >> (bit % 8);
   }
   // The 64 bits from there on; what is beyond the end is of no meaning.
   std::uint64_t read_word(std::size_t bit) const {
@@ -71,7 +83,9 @@ class PackedIndices {
   // Those from i on. Three of up to 21 bits each are one look-up.
   std::array<Index, 3> three_from(std::size_t i) const {
     if (3 * bits_ > 64) return {(*this)[i], (*this)[i + 1], (*this)[i + 2]};
-    const std::uint64_t word = packed_.read_word(i * bits_);
+    const bool is_one_load = std::endian::native == std::endian::little && 3 * bits_ <= 57;
+    const std::uint64_t word =
+        is_one_load ? packed_.read_57(i * bits_) : packed_.read_word(i * bits_);
     const std::uint64_t mask = (std::uint64_t(1) << bits_) - 1;
     const auto field = [&](unsigned k) {
       return static_cast<Index>(static_cast<std::uint32_t>(word >> (k * bits_) & mask));

@@ -25,7 +25,7 @@ Result<MeshHierarchy> build_hierarchy(const Mesh& snapped, const ContractionSequ
   leaf_positions.reserve(snapped.vertex_count());
   for (const Vec3d& p : snapped.positions) leaf_positions.push_back(sequence.grid.nearest(p));
 
-  const VertexForest forest = make_forest(snapped.vertex_count(), sequence.contractions);
+  const VertexForest forest = make_forest(leaf_positions, sequence.contractions);
   hierarchy.vertices = number_nodes(forest, leaf_positions, sequence);
   const LeafWedges wedges = find_wedges(snapped, forest, hierarchy.vertices);
   const TriangleTimes times =

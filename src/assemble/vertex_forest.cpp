@@ -1,5 +1,6 @@
 #include "assemble/vertex_forest.h"
 
+#include "hierarchy/curve_order.h"
 #include "hierarchy/grid_sum.h"
 
 #include <algorithm>
@@ -27,7 +28,9 @@ std::vector<std::uint32_t> left_to_right(const VertexForest& forest) {
 
 }  // namespace
 
-VertexForest make_forest(std::size_t vertex_count, const std::vector<Contraction>& contractions) {
+VertexForest make_forest(const std::vector<Vec3i>& leaf_positions,
+                         const std::vector<Contraction>& contractions) {
+  const std::size_t vertex_count = leaf_positions.size();
   VertexForest forest;
   forest.leaf_count = static_cast<std::uint32_t>(vertex_count);
   std::vector<std::uint32_t> birth_of_slot(vertex_count);
@@ -45,6 +48,14 @@ VertexForest make_forest(std::size_t vertex_count, const std::vector<Contraction
   for (std::uint32_t birth = 0; birth < has_parent.size(); ++birth) {
     if (!has_parent[birth]) forest.birth_of_node.push_back(birth);
   }
+  const auto position = [&](std::uint32_t birth) -> const Vec3i& {
+    return birth < vertex_count ? leaf_positions[birth]
+                                : contractions[birth - vertex_count].position;
+  };
+  std::stable_sort(forest.birth_of_node.begin(), forest.birth_of_node.end(),
+                   [&](std::uint32_t a, std::uint32_t b) {
+                     return is_before_on_curve(position(a), position(b));
+                   });
   forest.root_count = static_cast<std::uint32_t>(forest.birth_of_node.size());
   forest.birth_of_node.reserve(has_parent.size());
   forest.split_of_contraction.resize(contractions.size());

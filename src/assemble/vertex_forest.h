@@ -30,7 +30,10 @@ struct VertexForest {
   std::vector<std::uint32_t> from_left_to_right;
 };
 
-VertexForest make_forest(std::size_t vertex_count, const std::vector<Contraction>& contractions);
+// Roots are numbered along a curve through space, and with them all that is below them: what a view
+// needs next is near in memory, and a WatchList looks at neighbours together.
+VertexForest make_forest(const std::vector<Vec3i>& leaf_positions,
+                         const std::vector<Contraction>& contractions);
 
 // Roots, splits, positions and errors. Wedges, triangles, radii and cones come later.
 VertexHierarchy number_nodes(const VertexForest& forest, const std::vector<Vec3i>& leaf_positions,

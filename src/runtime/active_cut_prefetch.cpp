@@ -46,8 +46,13 @@ void ActiveCut::prefetch_merge_further(std::uint32_t slot, SplitId s) const {
 }
 
 void ActiveCut::prefetch_corners(std::uint32_t slot) const {
-  for (const CornerAt at : corners_of(slot)) {
-    __builtin_prefetch(&parts_[at.corner.part()].slots[3 * std::size_t(at.corner.triangle())]);
+  // So many whatever there are: those beyond the end were there once, and do no harm.
+  constexpr std::size_t kMost = 8;
+  const CornerList& list = vertices_[slot].corners;
+  if (!list.is_own()) return;
+  for (std::size_t i = 0; i < kMost; ++i) {
+    const CornerRef corner = list.refs[i];
+    __builtin_prefetch(parts_[corner.part()].slots.data() + 3 * std::size_t(corner.triangle()));
   }
 }
 

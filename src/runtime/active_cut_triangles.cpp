@@ -27,7 +27,9 @@ Part ActiveCut::kind_of(bool is_derived, std::span<const std::uint32_t, 3> slots
       continue;
     }
     std::uint32_t& value = values[k * tracked_.size() + place];
-    value = at[k] = v.has_one_normal() ? v.normal : value;
+    // Not stored only where it changes, which nobody can foretell.
+    const std::uint32_t keeps = v.has_one_normal() ? 0 : ~std::uint32_t(0);
+    value = at[k] = (v.normal & ~keeps) | (value & keeps);
   }
   return at[0] == at[1] && at[1] == at[2] ? kFnPart : kNsnPart;
 }

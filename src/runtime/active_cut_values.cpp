@@ -19,8 +19,9 @@ std::uint32_t ActiveCut::value_at(std::size_t place, const ActiveVertex& v, Wedg
   const std::uint32_t l = tracked_[place];
   if (!orders_[place].empty()) {
     const AttributeHierarchy& layer = hierarchy_.layers[l];
-    const AttributeOrder::Node node = AttributeOrder::node(layer, v.node);
-    return hierarchy_.value_index(l, v.node, orders_[place].attribute_at(node, wedge));
+    const AttributeOrder::Node node = orders_[place].node(layer, v.node);
+    return layer.stored_value(layer.place_of_value(node.begin) +
+                              orders_[place].attribute_at(node, wedge));
   }
   const PackedIndices<>& constants = hierarchy_.layers[l].constant_of_wedge;
   const std::uint32_t constant = constants.empty() ? 0 : constants[index_of(wedge)];
@@ -57,9 +58,8 @@ void ActiveCut::pass_down(SplitId s, std::uint32_t first, std::uint32_t second,
 void ActiveCut::renew_values(std::uint32_t slot, std::size_t place) {
   if (slot == kNoSlot || !has_several(place, vertices_[slot])) return;
   const AttributeHierarchy& layer = hierarchy_.layers[tracked_[place]];
-  const std::size_t n = index_of(vertices_[slot].node);
-  const AttributeOrder::Node node = AttributeOrder::node(layer, vertices_[slot].node);
-  const std::uint32_t first = layer.place_of_value(layer.attribute_ranges.begin(n));
+  const AttributeOrder::Node node = orders_[place].node(layer, vertices_[slot].node);
+  const std::uint32_t first = layer.place_of_value(node.begin);
   for (const CornerAt at : corners_of(slot)) {
     const std::uint32_t value =
         layer.stored_value(first + orders_[place].attribute_at(node, at.wedge));

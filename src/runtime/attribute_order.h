@@ -18,6 +18,8 @@
 
 #include "crease/mesh_hierarchy.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -30,24 +32,37 @@ class AttributeOrder {
   AttributeOrder(const MeshHierarchy& hierarchy, std::size_t layer);
 
   bool empty() const { return place_of_wedge_.empty(); }
-  // Of a corner that can stand at a node with several. Time O(attributes of the node).
+  // Of the attributes of a node with several, the first few as numbers.
   struct Node {
+    static constexpr std::uint32_t kFew = 4;
     std::size_t first;
+    std::uint32_t begin;  // of its attributes, in the layer
     std::uint32_t count;
+    std::array<std::uint32_t, kFew> begins;
   };
-  static Node node(const AttributeHierarchy& layer, NodeId n) {
-    return {layer.attribute_ranges.unusual_before(index_of(n)), layer.attribute_count(n)};
+  Node node(const AttributeHierarchy& layer, NodeId n) const {
+    const auto at = layer.attribute_ranges.range_among_unusual(index_of(n));
+    Node node{at.unusual_before, at.range.begin, at.range.end - at.range.begin, {}};
+    const std::uint32_t last = node.count - (node.count > 0 ? 1 : 0);
+    for (std::uint32_t a = 0; a < Node::kFew; ++a) {
+      const std::uint32_t beyond = 0 - std::uint32_t(a >= node.count);  // all bits
+      node.begins[a] = begin_of_attribute_[node.first + std::min(a, last)] | beyond;
+    }
+    return node;
   }
+  // Of a corner that can stand there. Time O(attributes of the node).
   RelativeAttribute attribute_at(const Node& node, WedgeId wedge) const {
     const std::uint32_t place = place_of_wedge_[index_of(wedge)];
-    std::uint32_t found = 0, begin = 0;
-    for (std::uint32_t a = 0; a < node.count; ++a) {
-      const std::uint32_t next = begin_of_attribute_[node.first + a];
-      const bool is_later = next <= place && next >= begin;
-      found = is_later ? a : found;
-      begin = is_later ? next : begin;
+    std::uint64_t last = 0;  // its begin, and then which it is
+    const auto look_at = [&](std::uint32_t a, std::uint32_t begin) {
+      const std::uint64_t counts = 0 - std::uint64_t(begin <= place);  // all bits, or none
+      last = std::max(last, (std::uint64_t(begin) << 32 | a) & counts);
+    };
+    for (std::uint32_t a = 0; a < Node::kFew; ++a) look_at(a, node.begins[a]);
+    for (std::uint32_t a = Node::kFew; a < node.count; ++a) {
+      look_at(a, begin_of_attribute_[node.first + a]);
     }
-    return static_cast<RelativeAttribute>(found);
+    return static_cast<RelativeAttribute>(last);
   }
   std::size_t bytes() const { return place_of_wedge_.bytes() + begin_of_attribute_.bytes(); }
 

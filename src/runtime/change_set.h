@@ -64,12 +64,15 @@ class ChangeSet {
       bits &= active <= first ? 0 : ~std::uint64_t(0) >> (64 - (active - first));
     }
     words_[w] &= ~bits;
+    // One by one: where a run ends nobody can foretell.
+    for (std::uint64_t left = bits; left != 0; left &= left - 1) {
+      refresh(first + static_cast<std::size_t>(std::countr_zero(left)));
+    }
     while (bits != 0) {
       const auto begin = static_cast<unsigned>(std::countr_zero(bits));
       const auto count = static_cast<unsigned>(std::countr_one(bits >> begin));
       bits &= bits + (std::uint64_t(1) << begin);  // the run is done
       const auto i = static_cast<std::uint32_t>(first + begin);
-      for (std::uint32_t k = 0; k < count; ++k) refresh(std::size_t(i) + k);
       if (!ranges.empty() && ranges.back().first + ranges.back().count == i) {
         ranges.back().count += count;
       } else {

@@ -13,7 +13,12 @@
 // before: a fast camera found two thirds of them due in every frame, each for a cache miss or
 // three.
 //
-// Memory per watch: 22 bytes, and 24 more while facing counts.
+// What the simplifier leaves of a large model are many roots that have nothing to show, and they
+// are numbered along a curve (make_forest()), as their slots are. So 64 in a row have a date as
+// well, and where none of them was set since the last frame, a watch that bounds theirs: while that
+// is not wrong, none of them is.
+//
+// Memory per watch: 22.5 bytes, and 24 more while facing counts.
 #pragma once
 
 #include "runtime/view_error.h"
@@ -43,6 +48,7 @@ class WatchList {
     if (blocks > spheres_.size()) {
       spheres_.resize(blocks, kOff);
       due_.resize((blocks + kLanes - 1) / kLanes, kNow);
+      groups_.resize((due_.size() + kLanes - 1) / kLanes);
     }
     if (!with_facing) return facings_.clear();
     if (spheres_.size() > facings_.size()) facings_.resize(spheres_.size());
@@ -57,6 +63,7 @@ class WatchList {
   void set(std::size_t i, const Watch& watch) {
     const std::size_t lane = i % kLanes;
     set_due(i / kLanes, -kNever, -kNever);
+    groups_[i / kGroup] = {};
     Spheres& s = spheres_[i / kLanes];
     s.x[lane] = watch.center.x, s.y[lane] = watch.center.y, s.z[lane] = watch.center.z;
     s.reach[lane] = watch.reach;
@@ -81,7 +88,10 @@ class WatchList {
     return watch;
   }
   void turn_off(std::size_t i) { set(i, {}); }
-  void look_at_all() { due_.assign(due_.size(), kNow); }
+  void look_at_all() {
+    due_.assign(due_.size(), kNow);
+    groups_.assign(groups_.size(), {});
+  }
 
   // Calls found(i), ascending, for each that is seen to be wrong, or for each other one. Returns
   // how many it looked at.
@@ -93,19 +103,31 @@ class WatchList {
                     static_cast<float>(now.turn * (1 - 1e-6)) - kRounding};
     std::size_t looked_at = 0;
     const std::size_t block_count = (size_ + kLanes - 1) / kLanes;
-    for (std::size_t first = 0; first < block_count; first += kLanes) {
-      const Dates& due = due_[first / kLanes];
-      std::uint32_t left = negative_lanes((due.travel <= travel) | (due.turn <= turn));
-      for (; left != 0; left &= left - 1) {
-        const std::size_t b = first + static_cast<std::size_t>(std::countr_zero(left));
-        if (b >= block_count) break;
-        looked_at += kLanes;
-        std::uint32_t hit = negative_lanes(look<kWrong>(error, from, b));
-        for (; hit != 0; hit &= hit - 1) {
-          const std::size_t i = kLanes * b + static_cast<std::size_t>(std::countr_zero(hit));
-          if (i < size_) found(static_cast<std::uint32_t>(i));
+    for (std::size_t g = 0; g * kGroup < size_; ++g) {
+      if (groups_[g].due.travel > travel && groups_[g].due.turn > turn) continue;
+      if (kWrong && groups_[g].has_bound()) {
+        ++looked_at;
+        if (is_far(error, from, groups_[g])) continue;
+      }
+      const std::size_t end = std::min(block_count, (g + 1) * kGroup / kLanes);
+      for (std::size_t first = g * kGroup / kLanes; first < end; first += kLanes) {
+        const Dates& due = due_[first / kLanes];
+        std::uint32_t left = negative_lanes((due.travel <= travel) | (due.turn <= turn));
+        for (; left != 0; left &= left - 1) {
+          const std::size_t b = first + static_cast<std::size_t>(std::countr_zero(left));
+          if (b >= end) {  // until it is set
+            set_due(b, kNever, kNever);
+            continue;
+          }
+          looked_at += kLanes;
+          std::uint32_t hit = negative_lanes(look<kWrong>(error, from, b));
+          for (; hit != 0; hit &= hit - 1) {
+            const std::size_t i = kLanes * b + static_cast<std::size_t>(std::countr_zero(hit));
+            if (i < size_) found(static_cast<std::uint32_t>(i));
+          }
         }
       }
+      date_group<kWrong>(g);
     }
     return looked_at;
   }
@@ -115,26 +137,21 @@ class WatchList {
     double travel, turn;
   };
   Slack slack(const Odometer& now) const {
-    const std::size_t block_count = (size_ + kLanes - 1) / kLanes, whole = block_count / kLanes;
-    Dates first{FourFloats{} + kNever, FourFloats{} + kNever};
-    for (std::size_t i = 0; i < whole; ++i) {
-      first.travel = lesser(first.travel, due_[i].travel);
-      first.turn = lesser(first.turn, due_[i].turn);
+    Date first{kNever, kNever};
+    for (std::size_t g = 0; g * kGroup < size_; ++g) {
+      first.travel = std::min(first.travel, groups_[g].due.travel);
+      first.turn = std::min(first.turn, groups_[g].due.turn);
     }
-    for (std::size_t lane = 0; lane < block_count % kLanes; ++lane) {
-      first.travel[lane] = std::min(first.travel[lane], due_[whole].travel[lane]);
-      first.turn[lane] = std::min(first.turn[lane], due_[whole].turn[lane]);
-    }
-    return {double(least(first.travel)) - now.travel, double(least(first.turn)) - now.turn};
+    return {double(first.travel) - now.travel, double(first.turn) - now.turn};
   }
 
   std::size_t bytes() const {
     return sizeof(Spheres) * spheres_.capacity() + sizeof(Facings) * facings_.capacity() +
-           sizeof(Dates) * due_.capacity();
+           sizeof(Dates) * due_.capacity() + sizeof(Group) * groups_.capacity();
   }
 
  private:
-  static constexpr std::size_t kLanes = 4;
+  static constexpr std::size_t kLanes = 4, kGroup = 64;
   struct Spheres {
     FourFloats x, y, z, reach, radius;
   };
@@ -147,10 +164,88 @@ class WatchList {
   struct Dates {  // of four blocks
     FourFloats travel, turn;
   };
-  static constexpr float kRounding = 1e-6f;
+  // Since one of them was set.
+  struct Group {
+    Date due{-kNever, -kNever};
+    Vec3f center;
+    float reach = 0, radius = 0;
+    std::uint32_t finds = 0;  // how often it was looked at
+
+    bool has_bound() const { return finds > kFindsToBound; }
+  };
+  static constexpr std::uint32_t kFindsToBound = 1;
+  static constexpr float kRounding = 1e-6f, kSafe = 0.999f;
   static constexpr Dates kNow{{-kNever, -kNever, -kNever, -kNever},
                               {-kNever, -kNever, -kNever, -kNever}};
   static constexpr Spheres kOff{{}, {}, {}, {-kNever, -kNever, -kNever, -kNever}, {}};
+
+  // Whether no watch of the group can be wrong; then it is dated.
+  static bool is_far(const ViewError& error, const Date& from, Group& g) {
+    const Vec3f& c = g.center;
+    const float distance = error.distance(c.x, c.y, c.z);
+    if (distance >= g.reach) {
+      g.due = {from.travel + kSafe * (distance - g.reach), kNever};
+      return true;
+    }
+    const float outside = -(error.inside(c.x, c.y, c.z) + g.radius);
+    if (!(outside > 0)) return false;
+    const float half = 0.5f * outside;
+    g.due = {from.travel + kSafe * (half - kRounding * distance),
+             from.turn + kSafe * (half / (distance + half))};
+    return true;
+  }
+
+  // The group was looked at.
+  template <bool kWrong>
+  void date_group(std::size_t g) {
+    Dates first = due_[kLanes * g];
+    const std::size_t end = std::min(due_.size(), kLanes * (g + 1));
+    for (std::size_t i = kLanes * g + 1; i < end; ++i) {
+      first.travel = lesser(first.travel, due_[i].travel);
+      first.turn = lesser(first.turn, due_[i].turn);
+    }
+    groups_[g].due = {least(first.travel), least(first.turn)};
+    if (kWrong && facings_.empty() && groups_[g].finds <= kFindsToBound &&
+        ++groups_[g].finds > kFindsToBound) {
+      bound(g);
+    }
+  }
+
+  // A sphere around what is on; somewhat larger, so that no rounding matters.
+  void bound(std::size_t g) {
+    const std::size_t begin = g * kGroup / kLanes;
+    const std::size_t end = std::min(spheres_.size(), begin + kGroup / kLanes);
+    const FourFloats never = FourFloats{} + kNever;
+    FourFloats low[3] = {never, never, never}, high[3] = {-never, -never, -never};
+    for (std::size_t b = begin; b < end; ++b) {
+      const Spheres& s = spheres_[b];
+      const FourInts is_on = s.reach > -kNever;
+      const FourFloats* const at[3] = {&s.x, &s.y, &s.z};
+      for (int k = 0; k < 3; ++k) {
+        low[k] = lesser(is_on ? *at[k] : never, low[k]);
+        high[k] = greater(is_on ? *at[k] : -never, high[k]);
+      }
+    }
+    Group& group = groups_[g];
+    float middle[3];
+    for (int k = 0; k < 3; ++k) middle[k] = 0.5f * (least(low[k]) - least(-high[k]));
+    if (!(least(low[0]) < kNever)) middle[0] = middle[1] = middle[2] = 0;
+    group.center = {middle[0], middle[1], middle[2]};
+    FourFloats reach = -never, radius{};
+    for (std::size_t b = begin; b < end; ++b) {
+      const Spheres& s = spheres_[b];
+      const FourFloats x = s.x - middle[0], y = s.y - middle[1], z = s.z - middle[2];
+      const FourFloats aside = root(x * x + y * y + z * z);
+      const FourInts is_on = s.reach > -kNever;
+      reach = greater(is_on ? aside + s.reach : -never, reach);
+      radius = greater(is_on ? aside + s.radius : FourFloats{}, radius);
+    }
+    constexpr float kMore = 1e-5f;
+    const float slack =
+        kMore * (magnitude(middle[0]) + magnitude(middle[1]) + magnitude(middle[2]));
+    group.reach = (1 + kMore) * -least(-reach) + slack;
+    group.radius = (1 + kMore) * -least(-radius) + slack;
+  }
 
   // The lanes to be found. Dates what has none.
   template <bool kWrong>
@@ -161,7 +256,9 @@ class WatchList {
     const FourFloats gap = magnitude(s.reach - distance);
     // Hardly any of what is not split is near, unless it is out of view.
     if (kWrong && !any(is_near)) {
-      date(from, b, distance, gap, FourFloats{} + kNever);
+      if (facings_.empty()) {
+        set_due(b, from.travel + kSafe * least(gap - kRounding * distance), kNever);
+      }
       return is_near;
     }
     const FourFloats never = FourFloats{} + kNever;
@@ -184,7 +281,7 @@ class WatchList {
   void date(const Date& from, std::size_t b, const FourFloats& distance, const FourFloats& gap,
             const FourFloats& inside) {
     if (!facings_.empty()) return;  // what faces where changes sooner
-    constexpr float kSafe = 0.999f, kFar = 1e30f;
+    constexpr float kFar = 1e30f;
     const FourFloats half = lesser(0.5f * inside, FourFloats{} + kFar);
     const FourFloats turn = half / (distance + half);  // 1 and more is never: all around
     const FourFloats travel = lesser(gap, half) - kRounding * distance;
@@ -208,6 +305,7 @@ class WatchList {
   std::vector<Spheres> spheres_;
   std::vector<Facings> facings_;  // or empty
   std::vector<Dates> due_;        // per four of them
+  std::vector<Group> groups_;     // per four of those
   std::size_t size_ = 0;
 };
 

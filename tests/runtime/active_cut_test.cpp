@@ -36,8 +36,7 @@ void check_order(const MeshHierarchy& hierarchy, const ActiveCut& cut, std::size
       const NodeId node = cut.vertices()[slot].node;
       if (node == kNoNode || layer.attribute_count(node) < 2) continue;
       for (const CornerAt at : cut.corners_of(slot)) {
-        const RelativeAttribute found =
-            order.attribute_at(AttributeOrder::node(layer, node), at.wedge);
+        const RelativeAttribute found = order.attribute_at(order.node(layer, node), at.wedge);
         REQUIRE(found == hierarchy.attribute_at(l, node, at.wedge));
         ++compared;
       }
