@@ -21,7 +21,7 @@ struct SimplifyOptions {
   int threads = 0;  // 0: all. The result does not depend on it
   // How much a wrong normal costs beside a wrong distance: a normal that is off by one radian over
   // an area costs as much as a distance of normal_weight mean edge lengths there.
-  double normal_weight = 0.94;
+  double normal_weight = 0.97;
   bool record_bands = false;  // ContractionSequence::bands, which a file needs: 14 bytes a triangle
   ProgressCallback progress;
 };

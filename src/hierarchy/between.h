@@ -24,7 +24,7 @@ struct Between {
 };
 inline constexpr std::int32_t kMostSteps = 64;
 
-inline constexpr int kBetweenBits = 7;  // by which a step is shorter than the longer one
+inline constexpr int kBetweenBits = 6;  // by which a step is shorter than the longer one
 
 // Of the grid, in units, where the ends are so far apart along the other two axes.
 inline std::int64_t between_step(std::int64_t apart_first, std::int64_t apart_second) {

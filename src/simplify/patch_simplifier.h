@@ -28,7 +28,7 @@ struct Steering {
   // A place between the ends is taken if it is this much cheaper than the better end, and the
   // optimum if it is this much cheaper than either: a file needs about 5 bits more for the one and
   // 17 for the other.
-  double leaves_ends = 0.8, leaves_pair = 0.5;
+  double leaves_ends = 0.6, leaves_pair = 0.3;
   double normal_scale = 0;  // what a normal off by one radian is worth, grid units
   bool keep_one_triangle = true;
 };

@@ -13,7 +13,7 @@ namespace {
 
 // A place costs a file more bits if it is not in the middle, and if its steps are not along the
 // axis that is nearest to the normal: then it must be cheaper by this.
-constexpr double kOffMiddle = 0.95, kOffAxis = 0.8;
+constexpr double kOffMiddle = 0.9, kOffAxis = 0.9;
 
 Vec3d half_gradient(const Quadric& q, const Vec3d& x) {
   const Row t = x.x * q.row[0] + x.y * q.row[1] + x.z * q.row[2];

@@ -5,6 +5,7 @@
 #include "base/assert.h"
 #include "parallel/parallel.h"
 #include "simplify/partition.h"
+#include "simplify/pass_limits.h"
 #include "simplify/patch_simplifier.h"
 #include "simplify/work_mesh.h"
 
@@ -15,6 +16,7 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
+#include <optional>
 
 namespace crease {
 
@@ -25,11 +27,10 @@ namespace {
 // bits that a file takes: these vertices are few.
 constexpr double kCoarseShare = 0.1, kCoarseLeavesPair = 0.9;
 
-// A pass should leave about this share of its triangles; its limit is steered towards that. A band
-// is one or more passes over the same patches, each with quadrics anew: fewer bands make smaller
-// files, which hold what all bands begin with, but the patches' borders stay where they are.
-constexpr double kPassShare = 0.6;
-constexpr int kPasses = 2, kPassesOfFirst = 1;  // so that half of the triangles see two borders
+// The first pass contracts pairs that cost no more than this share of all do: with more of them its
+// borders show in levels of half the triangles, with fewer the first band is hardly worth a file's
+// while.
+constexpr double kFirstPairs = 0.45;
 
 // Below this many triangles one last band goes all the way.
 constexpr std::size_t kLastBand = 64;
@@ -160,8 +161,8 @@ class Simplifier {
 
   Result<ContractionSequence> run(SimplifyStatistics* statistics) {
     const std::size_t input_triangles = work_.live.size();
-    double limit = 0, factor = 6;
-    for (int band = 0, pass = 0; work_.live.size() > 1;) {
+    std::optional<PassLimits> limits;  // once the first one is known
+    for (int band = 0; work_.live.size() > 1;) {
       const std::size_t before = work_.live.size();
       const double done = 1 - double(before) / double(input_triangles);
       if (options_.progress && !options_.progress("simplify", done)) {
@@ -172,7 +173,7 @@ class Simplifier {
       const double edge = std::sqrt(triangle_area * 2.3);  // of an equilateral triangle
       set_scales(work_, extent, options_.normal_weight, edge);
 
-      if (pass == 0) start_band(band);
+      if (!limits || limits->begins_band()) start_band(band);
       bool parts_join = false;
       if (work_.part_count > 1) {
         for (std::uint32_t v = 0; v < work_.positions.size(); ++v) {
@@ -188,32 +189,24 @@ class Simplifier {
         steering.leaves_pair = kCoarseLeavesPair;
       }
       const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= kMostStalls);
-      if (band == 0 && pass == 0) limit = first_limit(steering, triangle_area);
-      steering.cost_limit = last ? kNoLimit : limit;
-      const double step = last ? kNoLimit : std::sqrt(limit / (triangle_area * 6));
+      if (!limits) limits.emplace(first_limit(steering, triangle_area));
+      steering.cost_limit = last ? kNoLimit : limits->limit();
+      const double step = last ? kNoLimit : std::sqrt(limits->limit() / (triangle_area * 6));
       steering.virtual_distance = last || parts_join ? 2 * step : 0;
       steering.turn_distance = 4 * step;
       if (!run_pass(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");
       }
 
-      // Steer: a power law through the last pass says which limit leaves kPassShare.
       const double share = double(work_.live.size()) / double(before);
       stalled_ = share > 0.98 ? stalled_ + 1 : 0;
-      const double exponent = std::log(kPassShare) / std::log(std::min(share, 0.97));
-      factor = std::clamp(std::pow(factor, std::clamp(exponent, 0.3, 3.0)), 2.0, 4096.0);
-      limit *= factor;
-
-      ++pass;
-      const bool ends = last || stalled_ > 0 || pass == (band == 0 ? kPassesOfFirst : kPasses);
-      if (!ends) {
+      if (!limits->advance(share, last || stalled_ > 0)) {
         drop_vanished(patches_);
         continue;
       }
       if (statistics) statistics->bands.push_back(band_statistics());
       if (last) break;
       ++band;
-      pass = 0;
     }
     scale_errors();
     for (WorkLayer& layer : work_.layers)
@@ -230,8 +223,7 @@ class Simplifier {
         std::min<std::uint64_t>(triangles, std::numeric_limits<std::uint32_t>::max()));
   }
 
-  // The limit under which about a third of the pairs lie, from a sample of an eighth of the
-  // patches.
+  // The limit under which kFirstPairs of the pairs lie, from a sample of an eighth of the patches.
   double first_limit(const Steering& steering, double triangle_area) {
     constexpr std::size_t kSample = 16, kStride = 8;
     std::vector<double> costs;
@@ -249,9 +241,10 @@ class Simplifier {
     });
     const double noise = triangle_area * 6 * kGridNoise * kGridNoise;
     if (costs.empty()) return noise;
-    const auto third = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 3);
-    std::nth_element(costs.begin(), third, costs.end());
-    return std::max(noise, *third);
+    const auto most =
+        costs.begin() + static_cast<std::ptrdiff_t>(kFirstPairs * double(costs.size()));
+    std::nth_element(costs.begin(), most, costs.end());
+    return std::max(noise, *most);
   }
 
   // Who owns a vertex holds for the whole band: a block knows its border by it.

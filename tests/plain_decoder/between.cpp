@@ -73,7 +73,7 @@ std::int32_t read_other(RangeDecoder& in, std::int32_t b, std::int64_t whole,
 std::int64_t step_of(std::int64_t apart_1, std::int64_t apart_2) {
   const auto greater = static_cast<std::uint64_t>(std::max(std::abs(apart_1), std::abs(apart_2)));
   const int w = static_cast<int>(std::bit_width(greater));
-  return w < 7 ? 1 : std::int64_t(1) << (w - 7);
+  return w < 6 ? 1 : std::int64_t(1) << (w - 6);
 }
 
 }  // namespace plain

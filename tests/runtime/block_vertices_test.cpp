@@ -271,7 +271,7 @@ TEST_CASE("by vertex, random complexes are one cut as well") {
 TEST_CASE("by vertex, with all blocks there, hardly more is shown than of one hierarchy") {
   std::uint64_t seed = 400;
   for (const Mesh& mesh : {city_blocks(6, 2), smooth_sphere(60, 90)}) {
-    const EncodedCase c = simplified_case(mesh, 800, 16, kCoarsePrecision);
+    const EncodedCase c = simplified_case(mesh, 2000, 16, kCoarsePrecision);
     const BlockFile file = opened(c.bytes);
     const Result<DecodedModel> model = decode_model(file);
     REQUIRE(model.ok());
