@@ -140,6 +140,8 @@ class BlockCoder {
     bool single = false;
   };
   bool code_splits();
+  bool look_around(std::uint32_t v);
+  void forget_ring_if_large(std::uint32_t v);
   bool code_flag(std::uint32_t v, bool fan, bool splits);
   struct Beside {  // the vertices beside one
     Spot sizes{};
@@ -228,6 +230,8 @@ class BlockCoder {
   std::uint32_t coarse_triangles_ = 0, coarse_vertices_ = 0;
   bool corrupt_ = false;
   TriangleLists around_;                  // per vertex
+  // Per vertex, of its list: what is one of the fan leaves fans in order behind.
+  std::vector<RingKind> ring_kind_;
   std::vector<std::uint8_t> generation_;  // splits above, per vertex
   std::vector<FourFloats> miss_;  // per vertex: tangent, normal, and 1 where it was looked for
   float mean_size_ = 0;           // of an edge at the coarse end

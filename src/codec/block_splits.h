@@ -59,6 +59,7 @@ bool BlockCoder<Coder, Guide>::code_roots() {
 template <class Coder, class Guide>
 bool BlockCoder<Coder, Guide>::code_splits() {
   generation_.assign(mesh_.positions.size(), 0);
+  ring_kind_.assign(mesh_.positions.size(), RingKind::Unknown);
   has_moved_.assign(mesh_.positions.size(), 0);
   for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v) origin_.push_back(v);
   miss_.assign(mesh_.positions.size(), FourFloats{});
@@ -76,11 +77,12 @@ bool BlockCoder<Coder, Guide>::code_splits() {
   for (std::uint32_t v = 0; v < queue.size(); ++v) queue[v] = v;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const std::uint32_t v = queue[i];
-    const bool fan = find_ring(mesh_.triangles, around_[v], v, ring_);
+    const bool fan = look_around(v);
     if (fan && ring_.triangles.data() != around_[v].data()) {
       around_.reorder(v, ring_.triangles);
       ring_.triangles = around_[v];
     }
+    if (fan) ring_kind_[v] = ring_.closed ? RingKind::Closed : RingKind::Open;
     bool splits = false;
     if constexpr (Coder::kEncodes) splits = guide_.is_split(v);
     coder_.enter(Stream::Flags);
@@ -89,6 +91,14 @@ bool BlockCoder<Coder, Guide>::code_splits() {
     queue.push_back(v);
     queue.push_back(static_cast<std::uint32_t>(mesh_.positions.size() - 1));
   }
+  return true;
+}
+
+// Whether the triangles at v are one fan: ring_, then.
+template <class Coder, class Guide>
+bool BlockCoder<Coder, Guide>::look_around(std::uint32_t v) {
+  if (ring_kind_[v] == RingKind::Unknown) return find_ring(mesh_.triangles, around_[v], v, ring_);
+  fill_ring(mesh_.triangles, around_[v], v, ring_kind_[v], ring_);
   return true;
 }
 
@@ -161,6 +171,7 @@ bool BlockCoder<Coder, Guide>::split(std::uint32_t v, bool fan) {
   const std::uint32_t u = add_vertex(s);
   generation_[v] = static_cast<std::uint8_t>(std::min(generation_[v] + 1, 255));
   generation_.push_back(generation_[v]);
+  ring_kind_.push_back(RingKind::Unknown);
   miss_.push_back(miss_[v]);
   origin_.push_back(origin_[v]);
   has_moved_.push_back(has_moved_[v]);
@@ -347,6 +358,8 @@ void BlockCoder<Coder, Guide>::apply_fan(std::uint32_t v, std::uint32_t u) {
   }
   *go++ = at_last;
   if (!fan_.single) *go = at_first;
+  ring_kind_[u] = fan_.single ? RingKind::Open : RingKind::Closed;
+  for (const std::uint32_t child : {v, u}) forget_ring_if_large(child);
   const std::uint32_t w_last = ring_.vertices[fan_.last], w_first = ring_.vertices[fan_.first];
   if (fan_.last > 0) {
     add_beside(w_last, triangles[fan_.last - 1], 0, at_last);
@@ -367,6 +380,12 @@ void BlockCoder<Coder, Guide>::add_beside(std::uint32_t v, std::uint32_t neighbo
   if (list.size() > kLargestRing) return around_.add(v, triangle);
   const auto found = std::find(list.begin(), list.end(), neighbour);
   around_.insert(v, std::size_t(found - list.begin()) + after, triangle);
+  forget_ring_if_large(v);
+}
+
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::forget_ring_if_large(std::uint32_t v) {
+  if (around_[v].size() > kLargestRing) ring_kind_[v] = RingKind::Unknown;
 }
 
 template <class Coder, class Guide>
@@ -374,6 +393,7 @@ void BlockCoder<Coder, Guide>::apply(std::uint32_t v, std::uint32_t u) {
   around_.clear(v);
   for (std::size_t i = 0; i < shape_.triangles.size(); ++i) {
     const std::uint32_t t = shape_.triangles[i];
+    for (const std::uint32_t w : mesh_.triangles[t]) ring_kind_[w] = RingKind::Unknown;
     if (shape_.to_second[i]) {
       mesh_.triangles[t][corner_of(mesh_.triangles[t], v)] = u;
       around_.add(u, t);
@@ -382,6 +402,7 @@ void BlockCoder<Coder, Guide>::apply(std::uint32_t v, std::uint32_t u) {
     }
   }
   for (const Introduced& introduced : shape_.introduced) {
+    ring_kind_[introduced.third] = RingKind::Unknown;
     add_triangle(introduced.first_leads ? Corners{v, u, introduced.third}
                                         : Corners{u, v, introduced.third});
   }

@@ -52,7 +52,7 @@ void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<
   const auto shows = [&](std::uint32_t t) { return !(layer.is_normal && mesh_.derived[t]); };
   if (knows_corners(layer, v)) return;
   corners_.clear();
-  const bool fan = find_ring(mesh_.triangles, around_[v], v, ring_);
+  const bool fan = look_around(v);
   CodedValue known{};
   std::size_t known_values = 0;  // distinct ones, up to two
   for (std::uint32_t t : fan ? ring_.triangles : around_[v]) {

@@ -98,4 +98,20 @@ bool find_ring(std::span<const Corners> triangles, std::span<const std::uint32_t
   return are_distinct(ring.vertices);
 }
 
+void fill_ring(std::span<const Corners> triangles, std::span<const std::uint32_t> around,
+               std::uint32_t center, RingKind kind, Ring& ring) {
+  const std::size_t n = around.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Corners& t = triangles[around[i]];
+    ring.from[i] = t[kCornerAfter[corner_of(t, center)]];
+  }
+  ring.triangles = around;
+  ring.closed = kind == RingKind::Closed;
+  ring.vertices = {ring.from.data(), n};
+  if (ring.closed) return;
+  const Corners& last = triangles[around[n - 1]];
+  ring.from[n] = last[kCornerBefore[corner_of(last, center)]];
+  ring.vertices = {ring.from.data(), n + 1};
+}
+
 }  // namespace crease::codec

@@ -27,4 +27,11 @@ struct Ring {
 bool find_ring(std::span<const Corners> triangles, std::span<const std::uint32_t> around,
                std::uint32_t center, Ring& ring);
 
+// What is known of the triangles around a vertex: nothing, or that they are such a fan in order.
+enum class RingKind : std::uint8_t { Unknown, Closed, Open };
+
+// The same of a fan whose triangles are in order already; `kind` says which.
+void fill_ring(std::span<const Corners> triangles, std::span<const std::uint32_t> around,
+               std::uint32_t center, RingKind kind, Ring& ring);
+
 }  // namespace crease::codec
