@@ -43,11 +43,11 @@ class CostEstimator {
     if (std::find(is_face_.begin(), is_face_.end(), 1) != is_face_.end()) {
       faces_.emplace(block, coding, values, is_face_);
       if (!faces_->is_empty()) positions_ = block.end.positions;
+      const double count = 3 * double(std::max<std::size_t>(1, block.end.triangles.size()));
+      turn_weight_ = kTurnWeight * geometry_.edge_sum(block.end.triangles) / count;
+      turn_weight_ *= turn_weight_;
     }
     add_surfaces(block.end);
-    const double count = 3 * double(std::max<std::size_t>(1, block.end.triangles.size()));
-    turn_weight_ = kTurnWeight * geometry_.edge_sum() / count;
-    turn_weight_ *= turn_weight_;
   }
 
   // Of contracting `second` into `first`, which then stands at `parent`. See own() as well.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace crease::codec {
@@ -25,13 +26,7 @@ class PatchGeometry {
     places_.reserve(mesh.positions.size());
     for (const Vec3i& p : mesh.positions) places_.push_back(from_origin(p));
     normals_.resize(mesh.triangles.size());
-    for (std::uint32_t t = 0; t < normals_.size(); ++t) {
-      const Corners& corners = mesh.triangles[t];
-      find_normal(t, corners);
-      for (std::size_t c = 0; c < 3; ++c) {
-        edge_sum_ += length(place(corners[(c + 1) % 3]) - place(corners[c]));
-      }
-    }
+    for (std::uint32_t t = 0; t < normals_.size(); ++t) find_normal(t, mesh.triangles[t]);
   }
 
   Vec3d from_origin(const Vec3i& p) const { return real(p) - origin_; }
@@ -53,8 +48,14 @@ class PatchGeometry {
     }
     return longest;
   }
-  // The lengths of all triangles' sides, at the fine end.
-  double edge_sum() const { return edge_sum_; }
+  // The lengths of these triangles' sides.
+  double edge_sum(std::span<const Corners> triangles) const {
+    double sum = 0;
+    for (const Corners& t : triangles) {
+      for (std::size_t c = 0; c < 3; ++c) sum += length(place(t[(c + 1) % 3]) - place(t[c]));
+    }
+    return sum;
+  }
 
  private:
   static Vec3d real(const Vec3i& p) { return {double(p.x), double(p.y), double(p.z)}; }
@@ -62,7 +63,6 @@ class PatchGeometry {
   Vec3d origin_;
   std::vector<Vec3d> places_;          // per vertex
   std::vector<ScaledNormal> normals_;  // per triangle
-  double edge_sum_ = 0;
 };
 
 }  // namespace crease::codec
