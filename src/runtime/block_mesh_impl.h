@@ -76,6 +76,7 @@ struct BlockMesh::Impl {
   BlockChooser chooser;
   // Per block.
   std::vector<ResidentBlockPtr> resident;
+  std::vector<ResidentBlockPtr> dropped;    // by the last update
   std::vector<std::size_t> bytes_of_block;  // what it takes, or at most would
   std::vector<std::size_t> more_bytes;      // what levels and being by vertex take
   std::vector<std::vector<PatchRun>> runs;  // of resident ones
