@@ -243,6 +243,9 @@ class BlockMesh {
   // what the view wants is never dropped. Time: O(blocks near the cut), nothing while neither view
   // nor blocks change.
   BlockUpdate update(const BlockViewParameters& parameters);
+  // What the last update() dropped. The next one frees what was not taken; but freeing may wait for
+  // threads that allocate, and so is better done by those.
+  std::vector<ResidentBlockPtr> take_dropped();
   // Of the last update(): wanted and not resident, most valuable first, what a block needs before
   // it.
   std::span<const BlockEntry> missing() const;

@@ -3,6 +3,7 @@
 #include "runtime/view_error.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace crease {
@@ -12,16 +13,62 @@ namespace {
 // To say which of the spheres around the eye are worst, something in them is so near.
 constexpr float kNearestRadii = 0.05f;
 
+bool is_wrong(const BlockBounds& block, const ViewError& error, const ViewError::Reaches& reaches) {
+  const SplitBounds& bounds = block.bounds;
+  const float radius = ViewError::decoded(bounds.radius);
+  const float reach =
+      error.reach(worse(bounds.surface, bounds.line), bounds.degrees, radius, reaches);
+  return ViewError::is_near(reach, radius, error.distance2(block.center)) &&
+         error.is_in_view(block.center, radius);
+}
+
 }  // namespace
 
 std::span<const std::uint32_t> BlockChooser::choose(const ViewParameters& view,
                                                     const Limits& limits) {
   ++round_;
   chosen_at_.resize(graph_.size(), 0);
-  seen_at_.resize(graph_.size(), 0);
-  open_dependencies_.resize(graph_.size(), 0);
+  seen_.resize(graph_.size());
   chosen_.clear();
   find_wrong(view, limits);
+  has_all_ = choose_all(view, limits);
+  if (!has_all_) choose_most_visible(view, limits);
+  return chosen_;
+}
+
+// False if they are more than the limits, or some are not resident: then their order counts.
+bool BlockChooser::choose_all(const ViewParameters& view, const Limits& limits) {
+  needed_bits_.assign(graph_.size() / 64 + 1, 0);
+  const auto need = [this](std::uint32_t b) { needed_bits_[b / 64] |= std::uint64_t(1) << b % 64; };
+  for (const Candidate& candidate : wrong_) need(candidate.block);
+  std::size_t bytes = 0, triangles = 0;
+  // What a block needs comes before it, so that one pass from the last one finds all.
+  for (std::size_t word = needed_bits_.size(); word-- > 0;) {
+    for (int bit = 63; bit >= 0; --bit) {
+      bit -= std::countl_zero(needed_bits_[word] << (63 - bit));
+      if (bit < 0) break;
+      const auto block = static_cast<std::uint32_t>(64 * word + unsigned(bit));
+      if (!limits.is_refined[block] && !limits.resident[block]) return false;
+      bytes += limits.bytes_of_block[block];
+      triangles += graph_.more_triangles(block);
+      for (const std::uint32_t needed : graph_.dependencies(block)) need(needed);
+      chosen_.push_back(block);
+    }
+    if (bytes > limits.max_bytes || triangles > view.max_triangles) return false;
+  }
+  std::reverse(chosen_.begin(), chosen_.end());
+  return true;
+}
+
+void BlockChooser::choose_most_visible(const ViewParameters& view, const Limits& limits) {
+  chosen_.clear();
+  const ViewError error(view, grid_);
+  for (Candidate& candidate : wrong_) {
+    const BlockBounds& own = graph_.own(candidate.block);
+    candidate.error = graph_.is_base(candidate.block)
+                          ? std::numeric_limits<float>::infinity()
+                          : error.of(own.bounds, own.center, kNearestRadii);
+  }
   // A heap: mostly the budget ends long before the list.
   const auto is_less = [](const Candidate& a, const Candidate& b) {
     return a.error != b.error ? a.error < b.error : a.block > b.block;
@@ -34,10 +81,8 @@ std::span<const std::uint32_t> BlockChooser::choose(const ViewParameters& view,
     collect_needed(candidate.block);
     std::size_t more_bytes = 0, more_triangles = 0;
     for (const std::uint32_t block : needed_) {
-      const BlockFacts& facts = graph_.entry(block).facts;
       more_bytes += limits.bytes_of_block[block];
-      more_triangles +=
-          facts.triangles_fine - std::min(facts.triangles_coarse, facts.triangles_fine);
+      more_triangles += graph_.more_triangles(block);
     }
     const bool is_base = candidate.error == std::numeric_limits<float>::infinity();
     if (!is_base && (bytes + more_bytes > limits.max_bytes ||
@@ -49,13 +94,15 @@ std::span<const std::uint32_t> BlockChooser::choose(const ViewParameters& view,
     triangles += more_triangles;
     chosen_.insert(chosen_.end(), needed_.begin(), needed_.end());
   }
-  return chosen_;
 }
 
 // From the base on; no farther where all that follows is right.
 void BlockChooser::find_wrong(const ViewParameters& view, const Limits& limits) {
   const ViewError error(view, grid_);
-  const float keep = static_cast<float>(1 / std::max(view.hysteresis, 1.0));
+  const ViewError::Reaches at_all = error.reaches(1);
+  const ViewError::Reaches keep =
+      error.reaches(static_cast<float>(1 / std::max(view.hysteresis, 1.0)));
+  const auto round = static_cast<std::uint32_t>(round_);
   wrong_.clear();
   evaluated_ = 0;
   queue_.assign(graph_.starts().begin(), graph_.starts().end());
@@ -63,19 +110,17 @@ void BlockChooser::find_wrong(const ViewParameters& view, const Limits& limits) 
     const std::uint32_t block = queue_[i];
     ++evaluated_;
     const bool is_base = graph_.is_base(block);
-    if (!is_base && error.of(graph_.all(block).bounds, graph_.all(block).center) <= keep) continue;
+    if (!is_base && !is_wrong(graph_.all(block), error, keep)) continue;
     for (const std::uint32_t finer : graph_.dependents(block)) {
-      if (seen_at_[finer] != round_) open_dependencies_[finer] = 0;
-      seen_at_[finer] = round_;
-      if (++open_dependencies_[finer] == graph_.dependencies(finer).size()) queue_.push_back(finer);
+      Seen& seen = seen_[finer];
+      if (seen.round != round) {
+        seen = {round, static_cast<std::uint32_t>(graph_.dependencies(finer).size())};
+      }
+      if (--seen.open_dependencies == 0) queue_.push_back(finer);
     }
-    const float own = is_base ? std::numeric_limits<float>::infinity()
-                              : error.of(graph_.own(block).bounds, graph_.own(block).center);
-    if (own <= (limits.is_refined[block] ? keep : 1)) continue;
-    wrong_.push_back(
-        {is_base ? own
-                 : error.of(graph_.own(block).bounds, graph_.own(block).center, kNearestRadii),
-         block});
+    if (is_base || is_wrong(graph_.own(block), error, limits.is_refined[block] ? keep : at_all)) {
+      wrong_.push_back({0, block});
+    }
   }
 }
 

@@ -17,7 +17,7 @@ class BlockChooser {
 
   struct Candidate {
     // 1: just what is allowed; infinite: the base. Seen from a twentieth of the sphere's radius
-    // away, if the eye is nearer.
+    // away, if the eye is nearer. 0 where all are chosen, and nobody asks.
     float error = 0;
     std::uint32_t block = 0;
   };
@@ -25,27 +25,38 @@ class BlockChooser {
     std::size_t max_bytes = 0;
     std::span<const std::size_t> bytes_of_block;  // per block
     std::span<const char> is_refined;             // per block: the cut goes through it
+    std::span<const ResidentBlockPtr> resident;   // per block
   };
   // Those whose coarse ends are seen to be wrong and what they need: the most visible errors first,
   // what a block needs before it, until the view's triangles or the limits' bytes are used up. The
-  // base always. Time O(blocks that are wrong and next to them).
+  // base always. Where all are resident and there is room for all, they are in ascending order
+  // instead, which takes no sorting. Time O(blocks that are wrong and next to them).
   std::span<const std::uint32_t> choose(const ViewParameters& view, const Limits& limits);
 
   // Those that the last choose() found wrong, in no order.
   std::span<const Candidate> wrong() const { return wrong_; }
   std::size_t evaluated() const { return evaluated_; }  // by the last choose()
-  bool is_chosen(std::uint32_t block) const { return chosen_at_[block] == round_; }
+  bool has_all() const { return has_all_; }             // the last choose() was without sorting
 
  private:
   void find_wrong(const ViewParameters& view, const Limits& limits);
+  bool choose_all(const ViewParameters& view, const Limits& limits);
+  void choose_most_visible(const ViewParameters& view, const Limits& limits);
   void collect_needed(std::uint32_t block);
+  bool is_chosen(std::uint32_t block) const { return chosen_at_[block] == round_; }
 
   const BlockGraph& graph_;
   Grid grid_;
   std::uint64_t round_ = 0;
   std::size_t evaluated_ = 0;
-  std::vector<std::uint64_t> chosen_at_, seen_at_;  // per block: the round
-  std::vector<std::uint32_t> open_dependencies_;    // per block, of the round it was seen at
+  bool has_all_ = false;
+  std::vector<std::uint64_t> chosen_at_;  // per block: the round
+  // Per block. Of the round it was seen at: what it needs and is not known to be wrong.
+  struct Seen {
+    std::uint32_t round = 0, open_dependencies = 0;
+  };
+  std::vector<Seen> seen_;
+  std::vector<std::uint64_t> needed_bits_;  // per block, while all are chosen
   std::vector<Candidate> wrong_;
   std::vector<std::uint32_t> queue_, needed_, chosen_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 namespace crease {
@@ -26,11 +27,11 @@ Status BlockGraph::check(const DirectoryPage& page) const {
   const auto bad = [](BlockId id, const char* what) {
     return fail(Error::BadFormat, "block " + std::to_string(index_of(id)) + ": " + what);
   };
-  if (index_of(page.first) != nodes_.size()) {
+  if (index_of(page.first) != entries_.size()) {
     return bad(page.first, "its page is not the next one");
   }
   const auto band_of = [&](BlockId id) {
-    return page.has(id) ? page.block(id).facts.band : nodes_[index_of(id)].entry.facts.band;
+    return page.has(id) ? page.block(id).facts.band : entries_[index_of(id)].facts.band;
   };
   std::uint32_t block = size();
   for (const BlockEntry& entry : page.blocks) {
@@ -53,20 +54,37 @@ Status BlockGraph::add_page(const DirectoryPage& page) {
   if (Status status = check(page); !status.ok()) return status.failure();
   for (const BlockEntry& entry : page.blocks) {
     const std::uint32_t block = size();
-    Node node;
-    node.entry = entry;
-    node.own = node.all = bounds_of(entry.facts, grid_);
+    const BlockFacts& facts = entry.facts;
+    const BlockBounds own = bounds_of(facts, grid_);
     for (const BlockId id : page.dependencies_of(entry.id)) {
-      const auto needed = static_cast<std::uint32_t>(index_of(id));
-      node.dependencies.push_back(needed);
-      nodes_[needed].dependents.push_back(block);
+      dependencies_.blocks.push_back(static_cast<std::uint32_t>(index_of(id)));
     }
-    if (node.dependencies.empty()) starts_.push_back(block);
-    nodes_.push_back(std::move(node));
+    dependencies_.begin.push_back(static_cast<std::uint32_t>(dependencies_.blocks.size()));
+    entries_.push_back(entry);
+    bounds_.push_back({own, own});
+    more_triangles_.push_back(facts.triangles_fine -
+                              std::min(facts.triangles_coarse, facts.triangles_fine));
+    if (dependencies(block).empty()) starts_.push_back(block);
+    if (facts.band == patches_.size()) base_ = block;
   }
   ++pages_;
+  find_dependents();
   grow_bounds();
   return Done{};
+}
+
+// Of each block in ascending order.
+void BlockGraph::find_dependents() {
+  dependents_.begin.assign(std::size_t(size()) + 1, 0);
+  dependents_.blocks.resize(dependencies_.blocks.size());
+  for (const std::uint32_t needed : dependencies_.blocks) ++dependents_.begin[needed + 1];
+  std::partial_sum(dependents_.begin.begin(), dependents_.begin.end(), dependents_.begin.begin());
+  std::vector<std::uint32_t> end(dependents_.begin.begin(), dependents_.begin.end() - 1);
+  for (std::uint32_t block = 0; block < size(); ++block) {
+    for (const std::uint32_t needed : dependencies(block)) {
+      dependents_.blocks[end[needed]++] = block;
+    }
+  }
 }
 
 namespace {
@@ -93,9 +111,9 @@ void hold(BlockBounds& outer, const BlockBounds& inner) {
 }  // namespace
 
 void BlockGraph::grow_bounds() {
-  for (std::size_t i = nodes_.size(); i-- > 0;) {
-    for (const std::uint32_t needed : nodes_[i].dependencies) {
-      hold(nodes_[needed].all, nodes_[i].all);
+  for (std::uint32_t block = size(); block-- > 0;) {
+    for (const std::uint32_t needed : dependencies(block)) {
+      hold(bounds_[needed].all, bounds_[block].all);
     }
   }
 }

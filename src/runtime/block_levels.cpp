@@ -87,14 +87,12 @@ class PieceMaker {
   }
   void run() {
     piece_of_root_.resize(order_.size());
-    if (!order_.empty()) add_piece(0, order_.size(), kHalvings);
-    facts_.left_in_piece.resize(kFullLevel * facts_.pieces.size());
+    if (!order_.empty()) add_piece(0, order_.size(), kMostHalvings);
+    facts_.left_in_piece = LevelsLeft(facts_.pieces.size());
     for (int k = 0; k < kFullLevel; ++k) find_left(k);
   }
 
  private:
-  static constexpr int kHalvings = 5;
-
   // With its halves, across the longest side.
   void add_piece(std::size_t begin, std::size_t end, int halvings) {
     const auto piece = static_cast<std::uint16_t>(facts_.pieces.size());
@@ -112,7 +110,7 @@ class PieceMaker {
   }
 
   // The spheres of roots hold those below.
-  LevelPiece sphere_of(std::size_t begin, std::size_t end) const {
+  LevelSphere sphere_of(std::size_t begin, std::size_t end) const {
     Vec3f low = place_[order_[begin]], high = low;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f& p = place_[order_[i]];
@@ -129,17 +127,18 @@ class PieceMaker {
   }
 
   void find_left(int level) {
-    const std::size_t count = facts_.pieces.size();
-    const auto left = std::span(facts_.left_in_piece).subspan(std::size_t(level) * count, count);
+    LevelsLeft& left = facts_.left_in_piece;
     for (std::size_t s = 0; s < bounds_.size(); ++s) {
       if (levels_.is_done(s, level)) continue;
-      RoundedError& of_piece = left[piece_of_root_[root_split_[s]]];
-      of_piece = worse(of_piece, error_of(bounds_[s]));
+      left.add(piece_of_root_[root_split_[s]], level, error_of(bounds_[s]));
     }
-    for (std::size_t i = count; i-- > 0;) {
+    const std::size_t at = static_cast<std::size_t>(level) * left.count;
+    for (std::size_t i = left.count; i-- > 0;) {
       const std::size_t first = i + 1, end = facts_.pieces[i].next;
       if (first == end) continue;
-      left[i] = worse(left[first], left[facts_.pieces[first].next]);
+      const std::size_t second = facts_.pieces[first].next;
+      left.off[at + i] = worse(left.off[at + first], left.off[at + second]);
+      left.degrees[at + i] = worse(left.degrees[at + first], left.degrees[at + second]);
     }
   }
 

@@ -27,13 +27,28 @@ namespace crease {
 
 inline constexpr int kFullLevel = 14;
 inline constexpr double kLevelRatio = 0.8;
+inline constexpr int kMostHalvings = 5;  // of a block into pieces
 
-// A piece of the block, around some vertices of its coarse end: the sphere that holds all that is
-// below them.
-struct LevelPiece {
+// Around some vertices of the coarse end of a block, and all that is below them.
+struct LevelSphere {
   Vec3f center;  // from the grid's origin, model units
   RoundedUp radius;
-  std::uint16_t next = 0;  // the first one that is no part of it
+  std::uint16_t next = 0;  // of a piece: the first one that is no part of it
+};
+
+// How wrong things are at each level but the full one: of all of them at level 0, then at level 1,
+// and so on, since a choice asks many things of one level or two.
+struct LevelsLeft {
+  std::size_t count = 0;                // things
+  std::vector<RoundedUp> off, degrees;  // off: the larger one of surface and line
+
+  explicit LevelsLeft(std::size_t things = 0)
+      : count(things), off(kFullLevel * things), degrees(kFullLevel * things) {}
+  void add(std::size_t thing, int level, const RoundedError& error) {
+    const std::size_t at = static_cast<std::size_t>(level) * count + thing;
+    off[at] = worse(off[at], worse(error.surface, error.line));
+    degrees[at] = worse(degrees[at], error.degrees);
+  }
 };
 
 struct LevelFacts {
@@ -41,15 +56,8 @@ struct LevelFacts {
   std::vector<RoundedError> of_root;        // empty: the block has no hierarchy
   // A tree: all of the block, then its first half with the parts of that, and so on. A level is
   // right where it is in all that have no parts.
-  std::vector<LevelPiece> pieces;
-  std::vector<RoundedError> left_in_piece;  // of all pieces at level 0, then at level 1, and so on
-
-  SplitBounds bounds_of_piece(int level, std::size_t piece) const {
-    SplitBounds bounds;
-    bounds.radius = pieces[piece].radius;
-    set_error(bounds, left_in_piece[static_cast<std::size_t>(level) * pieces.size() + piece]);
-    return bounds;
-  }
+  std::vector<LevelSphere> pieces;
+  LevelsLeft left_in_piece;
 };
 
 using LevelFactsPtr = std::shared_ptr<const LevelFacts>;

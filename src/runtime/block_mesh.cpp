@@ -16,21 +16,6 @@ namespace {
 // So long a list stays that is not shown, while there is room.
 constexpr std::uint32_t kUpdatesOfList = 128;
 
-DrawList draw_list_of(const LevelList& list, const ModelSchema& schema) {
-  const auto part = [](const BlockPart& p) -> DrawPart {
-    return {p.indices, p.normals, p.materials, p.colors, p.texcoords};
-  };
-  DrawList drawn;
-  drawn.origin = schema.facts.grid.origin;
-  drawn.positions = list.positions;
-  drawn.vertex_normals = list.vertex_normals;
-  drawn.sn = part(list.sn);
-  drawn.fn = part(list.fn);
-  drawn.nsn = part(list.nsn);
-  drawn.materials = schema.materials;
-  return drawn;
-}
-
 }  // namespace
 
 void BlockMesh::Impl::make_room() {
@@ -47,11 +32,12 @@ void BlockMesh::Impl::make_room() {
 }
 
 BlockChooser::Limits BlockMesh::Impl::limits(const BlockViewParameters& parameters) const {
-  return {parameters.max_bytes, bytes_of_block, is_refined};
+  return {parameters.max_bytes, bytes_of_block, is_refined, resident};
 }
 
 BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
   BlockUpdate report;
+  dropped.clear();
   const bool is_same = parameters.view == last.view && parameters.max_bytes == last.max_bytes &&
                        parameters.by_vertex == last.by_vertex &&
                        parameters.in_levels == last.in_levels;
@@ -65,11 +51,15 @@ BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
   const std::span<const std::uint32_t> chosen = chooser.choose(parameters.view, limits(parameters));
   report.evaluated = chooser.evaluated();
   missing.clear();
-  for (const std::uint32_t block : chosen) {
-    wanted_at[block] = updates;
-    if (!resident[block]) missing.push_back(graph.entry(block));
+  for (const std::uint32_t block : chosen) wanted_at[block] = updates;
+  if (chooser.has_all()) {
+    move_cut({chosen.begin(), chosen.end()}, report);
+  } else {
+    for (const std::uint32_t block : chosen) {
+      if (!resident[block]) missing.push_back(graph.entry(block));
+    }
+    move_cut(those_that_can_be(chosen), report);
   }
-  move_cut(chosen, report);
   view_error = 0;
   for (const BlockChooser::Candidate& wrong : chooser.wrong()) {
     if (!is_refined[wrong.block]) view_error = std::max(view_error, wrong.error);
@@ -128,32 +118,6 @@ void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, bool 
   list_missing_hierarchies();
 }
 
-void BlockMesh::Impl::list_cuts() {
-  shown_cuts.clear();
-  cut_triangles = 0;
-  for (const std::uint32_t block : cut) {
-    const BlockCut* const by_vertex = cuts.cut(block);
-    if (const LevelList* const list = levels.list(block)) {
-      shown_cuts.push_back(
-          {resident[block].get(), draw_list_of(*list, *schema), list->revision, list->groups});
-    } else if (by_vertex != nullptr && by_vertex->live() != nullptr) {
-      shown_cuts.push_back({resident[block].get(), by_vertex->draw_list(), by_vertex->revision()});
-    } else {
-      continue;
-    }
-    cut_triangles += shown_cuts.back().triangle_count();
-    if (shown_cuts.back().triangle_count() == 0) shown_cuts.pop_back();
-  }
-}
-
-void BlockMesh::Impl::list_missing_hierarchies() {
-  missing_hierarchies.clear();
-  if (!was_by_vertex) return;
-  for (const std::uint32_t block : cut) {
-    if (!cuts.hierarchy(block)) missing_hierarchies.push_back(graph.entry(block).id);
-  }
-}
-
 // Of a resident block, what levels and being by vertex take.
 void BlockMesh::Impl::count_bytes(std::uint32_t block) {
   if (!resident[block]) return;
@@ -163,7 +127,9 @@ void BlockMesh::Impl::count_bytes(std::uint32_t block) {
   more_bytes[block] = now;
 }
 
-void BlockMesh::Impl::move_cut(std::span<const std::uint32_t> chosen, BlockUpdate& report) {
+// Resident, and so is what they need; ascending.
+std::vector<std::uint32_t> BlockMesh::Impl::those_that_can_be(
+    std::span<const std::uint32_t> chosen) const {
   std::vector<std::uint32_t> next(chosen.begin(), chosen.end());
   std::sort(next.begin(), next.end());
   std::vector<char> will_be(is_refined.size(), 0);
@@ -174,10 +140,23 @@ void BlockMesh::Impl::move_cut(std::span<const std::uint32_t> chosen, BlockUpdat
         std::all_of(needed.begin(), needed.end(), [&](std::uint32_t n) { return will_be[n] != 0; });
     return will_be[block] == 0;
   });
-  for (const std::uint32_t block : next) report.refined += !is_refined[block];
-  for (const std::uint32_t block : cut) report.coarsened += !will_be[block];
-  if (report.refined + report.coarsened == 0) return;
-  is_refined = std::move(will_be);
+  return next;
+}
+
+// `next`: ascending, with all that they need.
+void BlockMesh::Impl::move_cut(std::vector<std::uint32_t> next, BlockUpdate& report) {
+  if (next == cut) return;
+  for (const std::uint32_t block : cut) is_refined[block] = 0;
+  for (const std::uint32_t block : next) is_refined[block] = 1;
+  std::size_t stay = 0;
+  for (std::size_t i = 0, k = 0; i < cut.size() && k < next.size();) {
+    stay += cut[i] == next[k];
+    const std::uint32_t before = cut[i];
+    i += before <= next[k];
+    k += next[k] <= before;
+  }
+  report.refined = next.size() - stay;
+  report.coarsened = cut.size() - stay;
   cut = std::move(next);
 }
 
@@ -200,7 +179,7 @@ void BlockMesh::Impl::drop_beyond(std::size_t max_bytes, BlockUpdate& report) {
     levels.drop(block);
     runs[block] = {};
     --resident_count;
-    resident[block] = nullptr;
+    dropped.push_back(std::exchange(resident[block], nullptr));
     report.dropped.push_back(graph.entry(block).id);
   }
 }
@@ -224,50 +203,6 @@ LevelError BlockMesh::Impl::error_of_cut() const {
     for (const std::uint32_t finer : graph.dependents(block)) add(finer);
   }
   return error;
-}
-
-void BlockMesh::Impl::list_shown() {
-  shown.clear();
-  shown_triangles = 0;
-  for (const std::uint32_t block : cut) {
-    if (cuts.cut(block) == nullptr && levels.shown(block) == kFullLevel) list_shown_of(block);
-  }
-  for (const ShownRange& range : shown) shown_triangles += range.triangle_count();
-}
-
-void BlockMesh::Impl::list_shown_of(std::uint32_t block) {
-  bool goes_on = false;
-  for (const PatchRun& run : runs[block]) {
-    const bool shows = run.finer == kNone || levels.shown(run.finer) == 0;
-    if (shows && goes_on) {
-      ShownRange& range = shown.back();
-      range.sn.count += run.range.sn.count;
-      range.fn.count += run.range.fn.count;
-      range.nsn.count += run.range.nsn.count;
-    } else if (shows) {
-      shown.push_back(run.range);
-    }
-    goes_on = shows;
-  }
-}
-
-std::vector<PatchRun> BlockMesh::Impl::runs_of(const ResidentBlock& block) const {
-  std::vector<PatchRun> result;
-  const BlockGroup* before = nullptr;
-  for (const BlockGroup& group : block.groups()) {
-    if (before == nullptr || before->patch != group.patch) {
-      result.push_back({graph.next_finer(block.facts().band, group.patch),
-                        {&block, group.sn, group.fn, group.nsn}});
-    } else {
-      ShownRange& range = result.back().range;
-      range.sn.count += group.sn.count;
-      range.fn.count += group.fn.count;
-      range.nsn.count += group.nsn.count;
-    }
-    before = &group;
-  }
-  result.shrink_to_fit();
-  return result;
 }
 
 Result<BlockMesh> BlockMesh::open(const BlockFile& file) {
@@ -307,6 +242,10 @@ std::span<const std::string> BlockMesh::part_names() const {
 
 BlockUpdate BlockMesh::update(const BlockViewParameters& parameters) {
   return impl_->update(parameters);
+}
+
+std::vector<ResidentBlockPtr> BlockMesh::take_dropped() {
+  return std::exchange(impl_->dropped, {});
 }
 
 std::span<const BlockEntry> BlockMesh::missing() const {

@@ -25,6 +25,12 @@ struct PatchRun {
   ShownRange range;
 };
 
+struct ListedCut {
+  const ResidentBlock* block = nullptr;
+  std::uint64_t revision = 0;
+  std::size_t triangles = 0;
+};
+
 struct BlockMesh::Impl {
   Impl(codec::ModelSchema s, std::uint32_t blocks, std::uint32_t pages)
       : schema(std::make_shared<const codec::ModelSchema>(std::move(s))),
@@ -47,7 +53,8 @@ struct BlockMesh::Impl {
 
   void make_room();  // for what the graph has
   BlockUpdate update(const BlockViewParameters& parameters);
-  void move_cut(std::span<const std::uint32_t> chosen, BlockUpdate& report);
+  std::vector<std::uint32_t> those_that_can_be(std::span<const std::uint32_t> chosen) const;
+  void move_cut(std::vector<std::uint32_t> next, BlockUpdate& report);
   void drop_beyond(std::size_t max_bytes, BlockUpdate& report);
   bool choose_levels(const BlockViewParameters& parameters);
   void move_vertices(const BlockViewParameters& parameters, bool have_changed, BlockUpdate& report);
@@ -69,6 +76,7 @@ struct BlockMesh::Impl {
   BlockChooser chooser;
   // Per block.
   std::vector<ResidentBlockPtr> resident;
+  std::vector<ResidentBlockPtr> dropped;    // by the last update
   std::vector<std::size_t> bytes_of_block;  // what it takes, or at most would
   std::vector<std::size_t> more_bytes;      // what levels and being by vertex take
   std::vector<std::vector<PatchRun>> runs;  // of resident ones
@@ -81,6 +89,7 @@ struct BlockMesh::Impl {
   std::vector<BlockId> missing_hierarchies, missing_levels;
   std::vector<ShownRange> shown;
   std::vector<ShownCut> shown_cuts;
+  std::vector<ListedCut> listed;  // of each what tells whether it is another one
   float view_error = 0;
   std::size_t shown_triangles = 0, cut_triangles = 0, resident_count = 0, resident_bytes = 0;
   std::uint64_t updates = 0;

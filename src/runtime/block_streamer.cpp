@@ -110,6 +110,7 @@ StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters, 
   BlockMesh& mesh = meshes[view];
   report.cut = mesh.update(parameters);
   statistics.blocks_dropped += report.cut.dropped.size();
+  if (!report.cut.dropped.empty()) workers.free(mesh.take_dropped());
   ask_for_page();
   ask_for_names();
   ask_for_blocks(parameters, view);

@@ -1,5 +1,7 @@
 #include "runtime/decode_workers.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace crease {
@@ -88,10 +90,28 @@ bool DecodeWorkers::wait(std::chrono::milliseconds timeout) {
 void DecodeWorkers::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    has_work_.wait(lock, [this] { return is_ending_ || has_waiting(); });
+    has_work_.wait(lock, [this] { return is_ending_ || !unused_.empty() || has_waiting(); });
     if (is_ending_) return;
-    do_next(lock);
+    free_unused(lock);
+    if (has_waiting()) do_next(lock);
   }
+}
+
+void DecodeWorkers::free(std::vector<ResidentBlockPtr> blocks) {
+  if (threads_.empty()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    std::move(blocks.begin(), blocks.end(), std::back_inserter(unused_));
+  }
+  has_work_.notify_one();
+}
+
+void DecodeWorkers::free_unused(std::unique_lock<std::mutex>& lock) {
+  std::vector<ResidentBlockPtr> unused = std::exchange(unused_, {});
+  if (unused.empty()) return;
+  lock.unlock();
+  unused.clear();
+  lock.lock();
 }
 
 void DecodeWorkers::do_next(std::unique_lock<std::mutex>& lock) {

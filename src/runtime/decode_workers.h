@@ -37,6 +37,10 @@ class DecodeWorkers {
   void add(BlockLevelsJob job);
   std::vector<BlockLevelsPtr> take_levels();  // likewise
 
+  // On one of the threads, before anything else: the allocator has a lock, which those that decode
+  // hold at times. Without threads at once.
+  void free(std::vector<ResidentBlockPtr> blocks);
+
   std::size_t outstanding() const;         // blocks added and not taken
   std::size_t outstanding_making() const;  // hierarchies and levels, likewise
   double seconds() const;                  // spent decoding, over all threads
@@ -57,6 +61,7 @@ class DecodeWorkers {
   };
 
   void work();
+  void free_unused(std::unique_lock<std::mutex>& lock);
   bool has_waiting() const {
     return !waiting_.empty() || !hierarchies_.waiting.empty() || !levels_.waiting.empty();
   }
@@ -72,6 +77,7 @@ class DecodeWorkers {
 
   mutable std::mutex mutex_;
   std::condition_variable has_work_, has_results_;
+  std::vector<ResidentBlockPtr> unused_;
   std::deque<Waiting> waiting_;
   std::vector<Decoded> done_;
   Making<BlockHierarchyJob, BlockHierarchyPtr> hierarchies_;

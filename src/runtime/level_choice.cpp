@@ -7,10 +7,55 @@ namespace crease {
 
 static_assert(kFullLevel <= 16, "a bit of State::lists each");
 
+namespace {
+
+constexpr std::size_t kFetchedBefore = 3;  // so many blocks
+
+// A thing as it is seen, good for all of its levels.
+class Seen {
+ public:
+  Seen(const LevelSphere& sphere, const LeftAtLevels& left, std::size_t thing,
+       const ViewError& error)
+      : sphere_(sphere),
+        left_(left),
+        thing_(thing),
+        error_(error),
+        radius_(ViewError::decoded(sphere.radius)),
+        distance2_(error.distance2(sphere.center)) {}
+
+  bool is_wrong(int level, const ViewError::Reaches& reaches) const {
+    return is_near(level, reaches) && error_.is_in_view(sphere_.center, radius_);
+  }
+  // The first level from `level` to `end` that is right, or else the end.
+  int right_from(int level, int end, const ViewError::Reaches& reaches) const {
+    if (level >= end || !is_wrong(level, reaches)) return level;
+    do {
+      ++level;
+    } while (level < end && is_near(level, reaches));
+    return level;
+  }
+
+ private:
+  bool is_near(int level, const ViewError::Reaches& reaches) const {
+    const std::size_t at = static_cast<std::size_t>(level) * left_.count + thing_;
+    const float reach = error_.reach(left_.off[at], left_.degrees[at], radius_, reaches);
+    return ViewError::is_near(reach, radius_, distance2_);
+  }
+
+  const LevelSphere& sphere_;
+  const LeftAtLevels& left_;
+  std::size_t thing_;
+  const ViewError& error_;
+  float radius_, distance2_;
+};
+
+}  // namespace
+
 void LevelChoice::grow(std::size_t blocks) {
   if (blocks <= states_.size()) return;
   entries_.resize(blocks);
   states_.resize(blocks);
+  looked_.resize(blocks);
 }
 
 void LevelChoice::take_waiting() {
@@ -35,24 +80,39 @@ void LevelChoice::take(const BlockLevels& levels) {
   state.is_known = true;
   state.can_choose = !data.facts->of_root.empty() && !graph_.is_base(block);
   state.is_stale = false;
-  for (std::size_t k = 0; k < kFullLevel; ++k) {
-    entry.bounds[k] = graph_.own(block).bounds;
-    set_error(entry.bounds[k], RoundedError::from(data.facts->left[k]));
-  }
+  look_at(block, *data.facts);
   if (data.list) {
     const auto level = static_cast<std::size_t>(data.list->level);
     entry.lists[level] = data.list;
     entry.shown_at[level] = choices_;
     state.lists = static_cast<std::uint16_t>(state.lists | 1u << level);
   }
+  set_list(state, list_at(entry, state.shown));
   resized_.push_back(block);
   lists_have_changed_ = true;
+}
+
+void LevelChoice::look_at(std::uint32_t block, const LevelFacts& facts) {
+  const BlockBounds& own = graph_.own(block);
+  LevelsLeft left(1);
+  for (int k = 0; k < kFullLevel; ++k) {
+    left.add(0, k, RoundedError::from(facts.left[static_cast<std::size_t>(k)]));
+  }
+  Looked& looked = looked_[block];
+  looked = {};
+  looked.whole = {own.center, own.bounds.radius};
+  std::copy(left.off.begin(), left.off.end(), looked.off.begin());
+  std::copy(left.degrees.begin(), left.degrees.end(), looked.degrees.begin());
+  looked.pieces = facts.pieces;
+  looked.left = {facts.left_in_piece.off.data(), facts.left_in_piece.degrees.data(),
+                 facts.left_in_piece.count};
 }
 
 void LevelChoice::drop(std::uint32_t block) {
   if (block >= states_.size()) return;
   entries_[block] = {};
   states_[block] = {};
+  looked_[block] = {};
   resized_.push_back(block);
 }
 
@@ -73,39 +133,68 @@ bool LevelChoice::drop_lists(std::uint32_t age) {
   return any;
 }
 
-int LevelChoice::wanted_level(std::uint32_t block, const ViewError& error, float keep) {
+// The level of the last choice stays while it is right and the next coarser one is not. Mostly that
+// is told by the piece that was wrong the last time.
+int LevelChoice::wanted_level(std::uint32_t block, const View& view) {
   const State& state = states_[block];
   if (!state.can_choose) return kFullLevel;
-  int level = state.wanted;
-  while (level > 0 && !is_wrong(block, level - 1, error, keep)) --level;
-  if (level < state.wanted) return level;
-  while (level < kFullLevel && is_wrong(block, level, error, 1)) ++level;
+  const Looked& looked = looked_[block];
+  const LeftAtLevels left{looked.off.data(), looked.degrees.data(), 1};
+  const Seen whole(looked.whole, left, 0, view.error);
+  const int before = state.wanted;
+  if (before > 0) {
+    const std::size_t last = looked.wrong_piece;
+    const bool is_needed =
+        looked.wrong_piece != kNone && whole.is_wrong(before - 1, view.keep) &&
+        Seen(looked.pieces[last], looked.left, last, view.error).is_wrong(before - 1, view.keep);
+    const int coarsest = is_needed ? before
+                                   : coarsest_right(looked_[block], view.error, view.keep, 0,
+                                                    whole.right_from(0, before, view.keep));
+    if (coarsest < before) return coarsest;
+  }
+  return coarsest_right(looked_[block], view.error, view.at_all, before,
+                        whole.right_from(before, kFullLevel, view.at_all));
+}
+
+// The coarsest one from `level` to `end` at which no piece is wrong, or else the end. Finer levels
+// are right where coarser ones are.
+int LevelChoice::coarsest_right(Looked& looked, const ViewError& error,
+                                const ViewError::Reaches& reaches, int level, int end) {
+  // What holds the piece that is looked at: where it ends, and the level that is right for it.
+  struct Outer {
+    std::size_t next;
+    int level;
+  };
+  std::array<Outer, kMostHalvings + 1> outer{Outer{looked.pieces.size(), end}};
+  std::size_t depth = 0;
+  for (std::size_t i = 0; i < looked.pieces.size() && level < end;) {
+    while (i >= outer[depth].next) --depth;
+    const LevelSphere& piece = looked.pieces[i];
+    const int right =
+        Seen(piece, looked.left, i, error).right_from(level, outer[depth].level, reaches);
+    const bool has_parts = piece.next > i + 1;
+    if (right > level && has_parts) {
+      outer[++depth] = {piece.next, right};
+      ++i;
+      continue;
+    }
+    if (right > level) looked.wrong_piece = static_cast<std::uint32_t>(i);
+    level = right;
+    i = piece.next;
+  }
   return level;
 }
 
-// Mostly the piece that was wrong the last time is still.
-bool LevelChoice::is_wrong(std::uint32_t block, int level, const ViewError& error, float limit) {
-  const Entry& entry = entries_[block];
-  const auto k = static_cast<std::size_t>(level);
-  if (error.of(entry.bounds[k], graph_.own(block).center) <= limit) return false;
-  const LevelFacts& facts = *entry.facts;
-  const auto is_piece_wrong = [&](std::size_t i) {
-    return error.of(facts.bounds_of_piece(level, i), facts.pieces[i].center) > limit;
-  };
-  std::uint8_t& last = states_[block].wrong_piece;
-  const auto has_parts = [&](std::size_t i) { return facts.pieces[i].next > i + 1; };
-  if (last < facts.pieces.size() && !has_parts(last) && is_piece_wrong(last)) return true;
-  for (std::size_t i = 0; i < facts.pieces.size();) {
-    if (!is_piece_wrong(i)) {
-      i = facts.pieces[i].next;
-    } else if (has_parts(i)) {
-      ++i;
-    } else {
-      last = static_cast<std::uint8_t>(i);
-      return true;
-    }
-  }
-  return false;
+// What the choice of a block begins with. It lies apart for each block, and mostly far away.
+void LevelChoice::fetch(std::uint32_t block) const {
+  const State& state = states_[block];
+  if (!state.can_choose || state.wanted == kFullLevel) return;
+  const Looked& looked = looked_[block];
+  const std::size_t at = state.wanted * looked.left.count;
+  __builtin_prefetch(looked.pieces.data());
+  if (looked.wrong_piece != kNone) __builtin_prefetch(&looked.pieces[looked.wrong_piece]);
+  __builtin_prefetch(looked.left.off + at);
+  if (state.wanted > 0) __builtin_prefetch(looked.left.off + at - looked.left.count);
 }
 
 // It, or the next finer one that is there.
@@ -126,11 +215,13 @@ bool LevelChoice::begin_choice(std::span<const std::uint32_t> cut) {
 
 bool LevelChoice::choose(std::span<const std::uint32_t> cut, const ViewError& error, float keep) {
   bool has_changed = begin_choice(cut);
+  const View view{error, error.reaches(keep), error.reaches(1)};
   for (std::size_t i = cut.size(); i-- > 0;) {
+    if (i >= kFetchedBefore) fetch(cut[i - kFetchedBefore]);
     const std::uint32_t block = cut[i];
     State& state = states_[block];
     const bool is_needed = state.needed_at == choices_;
-    const int level = is_needed ? kFullLevel : wanted_level(block, error, keep);
+    const int level = is_needed ? kFullLevel : wanted_level(block, view);
     state.wanted = static_cast<std::uint8_t>(level);
     has_changed |= show(block, level_at_hand(state, level));
     if (state.shown == 0) continue;
@@ -152,12 +243,28 @@ bool LevelChoice::choose_whole(std::span<const std::uint32_t> cut) {
 
 bool LevelChoice::show(std::uint32_t block, int level) {
   State& state = states_[block];
-  const bool has_changed = state.shown != level;
-  state.shown = static_cast<std::uint8_t>(level);
-  state.seen_at = choices_;
   if (level > 0) is_shown_.push_back(block);
-  if (level % kFullLevel != 0) entries_[block].shown_at[std::size_t(level)] = choices_;
+  const bool has_changed = state.shown != level;
+  if (has_changed) change(block, level);
+  state.seen_at = choices_;
   return has_changed;
+}
+
+void LevelChoice::change(std::uint32_t block, int level) {
+  State& state = states_[block];
+  Entry& entry = entries_[block];
+  if (state.shown < kFullLevel) entry.shown_at[state.shown] = state.seen_at;
+  state.shown = static_cast<std::uint8_t>(level);
+  set_list(state, list_at(entry, level));
+}
+
+void LevelChoice::set_list(State& state, const LevelList* list) {
+  state.list = list;
+  state.revision = list != nullptr ? list->revision : 0;
+}
+
+const LevelList* LevelChoice::list_at(const Entry& entry, int level) {
+  return level < kFullLevel ? entry.lists[std::size_t(level)].get() : nullptr;
 }
 
 // Those that the cut no longer goes through.
@@ -166,7 +273,8 @@ bool LevelChoice::hide_others() {
   for (const std::uint32_t block : was_shown_) {
     State& state = states_[block];
     if (state.seen_at == choices_ || state.shown == 0) continue;
-    state.shown = state.wanted = 0;
+    change(block, 0);
+    state.wanted = 0;
     any = true;
   }
   return any;
@@ -201,8 +309,9 @@ std::size_t LevelChoice::bytes_of(std::uint32_t block) const {
   std::size_t bytes = 0;
   if (entry.facts) {
     bytes += sizeof(LevelFacts) + sizeof(RoundedError) * entry.facts->of_root.capacity() +
-             sizeof(LevelPiece) * entry.facts->pieces.capacity() +
-             sizeof(RoundedError) * entry.facts->left_in_piece.capacity();
+             sizeof(LevelSphere) * entry.facts->pieces.capacity() +
+             sizeof(RoundedUp) * (entry.facts->left_in_piece.off.capacity() +
+                                  entry.facts->left_in_piece.degrees.capacity());
   }
   for (const LevelListPtr& list : entry.lists) bytes += list ? list->bytes() : 0;
   return bytes;

@@ -1,9 +1,9 @@
 // At which level each block of a cut by block is shown, and what is known of their levels.
 //
 //   LevelChoice levels(graph);
-//   levels.insert(*block_levels);                               // whenever some have come
-//   if (levels.choose({cut, is_refined}, view_error, keep)) ...    // blocks are shown at other
-//   ones levels.shown(block)                                         // 0: by coarser blocks
+//   levels.insert(block_levels);                      // whenever some have come
+//   if (levels.choose(cut, view_error, keep)) ...     // blocks are shown at other ones
+//   levels.shown(block)                               // 0: by coarser blocks
 //
 // Fine blocks decide first: one that shows anything wants all fine ends that it starts from. Each
 // takes the coarsest level whose error is not seen to be too large; those that are not known yet
@@ -23,6 +23,12 @@
 #include <vector>
 
 namespace crease {
+
+// Of a LevelsLeft.
+struct LeftAtLevels {
+  const RoundedUp *off = nullptr, *degrees = nullptr;
+  std::size_t count = 0;
+};
 
 class LevelChoice {
  public:
@@ -45,16 +51,19 @@ class LevelChoice {
   int shown(std::uint32_t block) const { return block < states_.size() ? states_[block].shown : 0; }
   // Null: it is shown whole, or not.
   const LevelList* list(std::uint32_t block) const {
-    const int level = shown(block);
-    return level % kFullLevel == 0 ? nullptr : entries_[block].lists[level].get();
+    return block < states_.size() ? states_[block].list : nullptr;
   }
+  // Of that list.
+  std::uint64_t revision(std::uint32_t block) const { return states_[block].revision; }
   // How wrong the block is as it is shown; `coarse`: where levels are not known, of its coarse end.
   LevelError left(std::uint32_t block, const LevelError& coarse) const;
 
   LevelFactsPtr facts(std::uint32_t block) const {
     return block < entries_.size() ? entries_[block].facts : nullptr;
   }
-  int wanted(std::uint32_t block) const { return states_[block].wanted; }
+  int wanted(std::uint32_t block) const {
+    return block < states_.size() ? states_[block].wanted : 0;
+  }
   // As BlockMesh::missing_levels(), of those of the last choose().
   void list_missing(std::span<const std::uint32_t> cut, std::vector<BlockId>& missing) const;
   std::size_t bytes_of(std::uint32_t block) const;
@@ -64,33 +73,53 @@ class LevelChoice {
  private:
   struct Entry {
     LevelFactsPtr facts;
-    std::array<SplitBounds, kFullLevel> bounds{};  // what each level leaves
-    std::array<LevelListPtr, kFullLevel> lists;    // per level; that of 0 is none
-    std::array<std::uint32_t, kFullLevel> shown_at{};
+    std::array<LevelListPtr, kFullLevel> lists;        // per level; that of 0 is none
+    std::array<std::uint32_t, kFullLevel> shown_at{};  // the last choice; not of what is shown
   };
   // What each choice looks at of every block of the cut.
   struct State {
+    const LevelList* list = nullptr;           // that is shown
+    std::uint64_t revision = 0;                // its own
     std::uint32_t needed_at = 0, seen_at = 0;  // the last choice that had it so
     std::uint8_t wanted = 0, shown = 0;
-    std::uint8_t wrong_piece = 0;  // the one that was wrong when it was looked at last
-    std::uint16_t lists = 0;       // a bit per level: its list is there
+    std::uint16_t lists = 0;  // a bit per level: its list is there
     bool is_known = false;
     bool can_choose = false;  // it is, and the block is not always whole
     bool is_stale = false;    // finer blocks know more
   };
 
+  // Of those that can choose, what mostly tells the level; the rest is in the facts.
+  struct Looked {
+    LevelSphere whole;                                   // as the file tells it
+    std::array<RoundedUp, kFullLevel> off{}, degrees{};  // of the whole block
+    std::uint32_t wrong_piece = kNone;    // without parts, the one that needed the finest level
+    std::span<const LevelSphere> pieces;  // as in LevelFacts
+    LeftAtLevels left{};
+  };
+  struct View {
+    const ViewError& error;
+    ViewError::Reaches keep, at_all;  // under the one a level is given up, above the other refined
+  };
+
   void take(const BlockLevels& levels);
-  int wanted_level(std::uint32_t block, const ViewError& error, float keep);
-  bool is_wrong(std::uint32_t block, int level, const ViewError& error, float limit);
+  int wanted_level(std::uint32_t block, const View& view);
+  static int coarsest_right(Looked& looked, const ViewError& error,
+                            const ViewError::Reaches& reaches, int level, int end);
+  void fetch(std::uint32_t block) const;
+  void look_at(std::uint32_t block, const LevelFacts& facts);
+  static void set_list(State& state, const LevelList* list);
+  static const LevelList* list_at(const Entry& entry, int level);
   static int level_at_hand(const State& state, int level);
   void grow(std::size_t blocks);
   bool show(std::uint32_t block, int level);
+  void change(std::uint32_t block, int level);
   bool begin_choice(std::span<const std::uint32_t> cut);
   bool hide_others();
 
   const BlockGraph& graph_;
   std::vector<Entry> entries_;  // per block
   std::vector<State> states_;   // likewise
+  std::vector<Looked> looked_;
   std::vector<std::uint32_t> was_shown_, is_shown_;
   std::vector<std::uint32_t> resized_;
   std::vector<BlockLevelsPtr> waiting_;

@@ -53,6 +53,13 @@ void ViewError::look_aside(const SplitBounds& bounds, float limit, Watch& watch)
   watch.cosine = std::max(0.0f, std::cos(cone.half_angle_rad));
 }
 
+// As in reach_for() of a sphere without a cone.
+ViewError::Reaches ViewError::reaches(float limit) const {
+  const float weight = (uses_cones_ ? std::max(silhouette_weight_, 0.0f) : 1) / limit;
+  const float turned = per_degree_ * weight;
+  return {pixels_at_one_ * weight, turned * full_size_at_one_, turned > 0 ? 1 / turned : kNever};
+}
+
 // Directions change by at most the root of the sum of squares that the frame's three do, over the
 // root of 2.
 ViewError::Motion ViewError::motion_from(const ViewError& before) const {

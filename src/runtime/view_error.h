@@ -82,6 +82,33 @@ class ViewError {
 
   bool is_wrong(const Watch& watch) const;
 
+  // The same in parts, where several errors are asked of one sphere, which has no cone, as those of
+  // blocks have none.
+  struct Reaches {  // for one limit
+    float per_off = 0, per_turned = 0, least_turned = 0;
+  };
+  Reaches reaches(float limit) const;
+  // How far around the sphere it is wrong. `off`: the larger one of surface and line.
+  float reach(RoundedUp off, RoundedUp degrees, float radius, const Reaches& reaches) const {
+    float reach = decoded(off) * reaches.per_off;
+    if (per_degree_ > 0 && decoded(degrees) > reaches.least_turned) {
+      reach = std::max(reach, decoded(degrees) * reaches.per_turned * radius);
+    }
+    return reach;
+  }
+  float distance2(const Vec3f& p) const {
+    const float x = p.x - gaze_.eye[0], y = p.y - gaze_.eye[1], z = p.z - gaze_.eye[2];
+    return x * x + y * y + z * z;
+  }
+  static bool is_near(float reach, float radius, float distance2) {
+    return reach > 0 && (reach + radius) * (reach + radius) > distance2;
+  }
+  bool is_in_view(const Vec3f& p, float radius) const {
+    return inside(p.x, p.y, p.z) + radius >= 0;
+  }
+  // As RoundedUp::value(), here for speed.
+  static float decoded(RoundedUp f) { return std::bit_cast<float>(std::uint32_t(f.bits) << 15); }
+
   // The same for a number or for four, in parts: wrong is what is nearer than its reach and whose
   // sphere is in view, that is, not in front of any of five planes through the eye by more than the
   // radius.
@@ -130,9 +157,6 @@ class ViewError {
   float reach_for(const SplitBounds& bounds, float weight, float limit) const;
   // What facing adds to a watch.
   void look_aside(const SplitBounds& bounds, float limit, Watch& watch) const;
-
-  // As RoundedUp::value(), here for speed.
-  static float decoded(RoundedUp f) { return std::bit_cast<float>(std::uint32_t(f.bits) << 15); }
 
   // The view as numbers to compute with. The frustum has five planes through the eye: four sides
   // and what is behind it. Those that are opposite differ in a sign; `right` and `up` are scaled so

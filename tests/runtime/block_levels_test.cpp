@@ -10,7 +10,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <random>
+#include <span>
+#include <vector>
 
 namespace crease {
 namespace {
@@ -140,6 +143,101 @@ TEST_CASE("groups of a level's list are all of it, and those beside a view are l
   }
   CHECK(lists > 0);
   CHECK(left_out > 0);
+}
+
+// The level that a block wants by the definition, one level and one piece after the other.
+class LevelByDefinition {
+ public:
+  LevelByDefinition(const BlockMesh& mesh, const ViewParameters& view)
+      : impl_(mesh.impl()),
+        error_(view, mesh.facts().grid),
+        keep_(static_cast<float>(1 / std::max(view.hysteresis, 1.0))) {}
+
+  // Coarser than before where nothing there is wrong by what is kept, finer where something is.
+  int level(std::uint32_t block, int before) const {
+    const std::span<const std::uint32_t> finer = impl_.graph.dependents(block);
+    if (std::any_of(finer.begin(), finer.end(),
+                    [this](std::uint32_t f) { return impl_.levels.shown(f) > 0; })) {
+      return kFullLevel;
+    }
+    const LevelFactsPtr facts = impl_.levels.facts(block);
+    if (!facts || facts->of_root.empty() || impl_.graph.is_base(block)) return kFullLevel;
+    int level = before;
+    while (level > 0 && !is_wrong(block, *facts, level - 1, keep_)) --level;
+    if (level < before) return level;
+    while (level < kFullLevel && is_wrong(block, *facts, level, 1)) ++level;
+    return level;
+  }
+
+ private:
+  bool is_sphere_wrong(const RoundedError& left, RoundedUp radius, const Vec3f& center,
+                       float limit) const {
+    SplitBounds bounds;
+    set_error(bounds, left);
+    bounds.radius = radius;
+    return error_.is_wrong(error_.watch(bounds, center, limit));
+  }
+  bool is_wrong(std::uint32_t block, const LevelFacts& facts, int level, float limit) const {
+    const BlockBounds& own = impl_.graph.own(block);
+    const RoundedError left = RoundedError::from(facts.left[std::size_t(level)]);
+    return is_sphere_wrong(left, own.bounds.radius, own.center, limit) &&
+           is_piece_wrong(facts, 0, level, limit);
+  }
+  // It is, and so is one of its parts, if it has any.
+  bool is_piece_wrong(const LevelFacts& facts, std::size_t i, int level, float limit) const {
+    const LevelSphere& piece = facts.pieces[i];
+    const std::size_t at = std::size_t(level) * facts.pieces.size() + i;
+    const RoundedError left{facts.left_in_piece.off[at], {}, facts.left_in_piece.degrees[at], {}};
+    if (!is_sphere_wrong(left, piece.radius, piece.center, limit)) return false;
+    bool any = piece.next == i + 1;
+    for (std::size_t part = i + 1; part < piece.next && !any; part = facts.pieces[part].next) {
+      any = is_piece_wrong(facts, part, level, limit);
+    }
+    return any;
+  }
+
+  const BlockMesh::Impl& impl_;
+  ViewError error_;
+  float keep_;
+};
+
+// By the levels of before. How many blocks are not shown whole.
+std::size_t check_levels_by_definition(const BlockMesh& mesh, const ViewParameters& view,
+                                       std::span<const int> before) {
+  const LevelByDefinition definition(mesh, view);
+  std::size_t different = 0, between = 0;
+  for (const std::uint32_t block : mesh.impl().cut) {
+    const int wanted = mesh.impl().levels.wanted(block);
+    different += wanted != definition.level(block, before[block]);
+    between += wanted < kFullLevel;
+  }
+  CHECK(different == 0);
+  return between;
+}
+
+TEST_CASE("each block wants the level that the definition says, from frame to frame") {
+  const EncodedCase c = simplified_case(smooth_sphere(60, 90), 400, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = mesh_of(file);
+  std::mt19937_64 random(11);
+  std::size_t between = 0;
+  for (int trial = 0; trial < (kSanitized ? 4 : 16); ++trial) {
+    BlockViewParameters parameters = random_level_view(c.mesh, random);
+    parameters.view.hysteresis = random() % 2 ? 1.25 : 2;
+    parameters.view.silhouette_weight = random() % 3 ? 1 : 3;
+    load_all(file, mesh, parameters);
+    for (int frame = 0; frame < 20; ++frame) {
+      std::vector<int> before;
+      for (std::uint32_t b = 0; b < file.block_count(); ++b) {
+        before.push_back(mesh.impl().levels.wanted(b));
+      }
+      parameters.view.camera.pixels *= random() % 2 ? 1.1 : 1 / 1.3;
+      parameters.view.camera.position.x += 0.01 * double(random() % 5);
+      mesh.update(parameters);
+      between += check_levels_by_definition(mesh, parameters.view, before);
+    }
+  }
+  CHECK(between > 0);
 }
 
 TEST_CASE("a streamer makes levels beside the frames") {
