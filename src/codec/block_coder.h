@@ -229,7 +229,7 @@ class BlockCoder {
   PatchMesh mesh_;
   std::uint32_t coarse_triangles_ = 0, coarse_vertices_ = 0;
   bool corrupt_ = false;
-  TriangleLists around_;                  // per vertex
+  TriangleLists around_;  // per vertex
   // Per vertex, of its list: what is one of the fan leaves fans in order behind.
   std::vector<RingKind> ring_kind_;
   std::vector<std::uint8_t> generation_;  // splits above, per vertex
