@@ -16,8 +16,8 @@ namespace crease::simplification {
 // patches, each with quadrics anew: fewer bands make smaller files, which hold what all bands begin
 // with, but the patches' borders stay where they are.
 inline constexpr double kPassShare = 0.5;
-inline constexpr int kPasses = 2,
-                     kPassesOfFirst = 1;  // so that half of the triangles see two borders
+inline constexpr int kPasses = 2;
+inline constexpr int kPassesOfFirst = 1;  // so that half of the triangles see two borders
 
 class PassLimits {
  public:
@@ -25,7 +25,6 @@ class PassLimits {
 
   // area * squared length, grid units
   double limit() const { return limit_; }
-  int pass() const { return pass_; }
   bool begins_band() const { return pass_ == 0; }
 
   // After a pass. True: it was its band's last, as it is where `cut_short`.
