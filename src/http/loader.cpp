@@ -175,7 +175,7 @@ class Loader::Transfer final : public Exchange {
     is_done_ = true;
     if (failure.error == Error::Replaced) loader_.broken_ = failure;
     if (role_ == Role::Part) return loader_.board_.fail(*batch_, failure);
-    loader_.board_.fail_waiting(failure);
+    if (!loader_.board_.fail_waiting(failure)) loader_.unheard_ = failure;
   }
 
   Loader& loader_;
@@ -228,7 +228,14 @@ void Loader::start_what_can_start() {
     if (transfer->is_paused() && board_.has_waiting()) transfer->resume();
   }
   if (!board_.has_waiting()) return;
-  if (broken_) return board_.fail_waiting(*broken_);
+  if (broken_) {
+    board_.fail_waiting(*broken_);
+    return;
+  }
+  if (unheard_) {
+    if (board_.fail_waiting(*unheard_)) unheard_.reset();
+    return;
+  }
   if (has(Role::Opening) || has(Role::Whole)) return;
   if (!known_ || is_whole_) return begin(known_ ? Role::Whole : Role::Opening, {});
   const auto limit = static_cast<std::size_t>(std::max(1, options_.async.max_in_flight));

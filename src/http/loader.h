@@ -45,6 +45,8 @@ class Loader final : public stream::BoardSource {
   std::optional<Identity> known_;
   bool is_whole_ = false;          // the host ignores ranges
   std::optional<Failure> broken_;  // for good: the file was replaced
+  // Of an opening that failed before anybody asked: who asks first hears of it.
+  std::optional<Failure> unheard_;
   std::atomic<bool> is_ending_{false};
   std::thread thread_;
 };

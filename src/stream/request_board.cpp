@@ -302,12 +302,12 @@ void RequestBoard::answer(const BatchPart& part, Result<std::vector<std::byte>> 
   put_answer(part.ticket, part.asked_at, std::move(bytes));
 }
 
-void RequestBoard::fail_waiting(const Failure& failure) {
+bool RequestBoard::fail_waiting(const Failure& failure) {
   const std::lock_guard guard(lock_);
-  for (const auto& [key, waiting] : std::exchange(waiting_, {})) {
-    put_answer(key.second, waiting.asked_at, failure);
-  }
+  const Shelf failed = std::exchange(waiting_, {});
+  for (const auto& [key, waiting] : failed) put_answer(key.second, waiting.asked_at, failure);
   offset_of_waiting_.clear();
+  return !failed.empty();
 }
 
 void RequestBoard::count_request() {

@@ -92,8 +92,8 @@ class RequestBoard {
   void fail(Batch& batch, const Failure& failure);
   // One part of a batch, in any order with other calls of this function alone.
   void answer(const BatchPart& part, Result<std::vector<std::byte>> bytes);
-  // Everything that waits.
-  void fail_waiting(const Failure& failure);
+  // Everything that waits; whether anything did.
+  bool fail_waiting(const Failure& failure);
 
   void count_request();
   void count_retry();

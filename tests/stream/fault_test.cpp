@@ -4,6 +4,7 @@
 #include "stream/stream_files.h"
 
 #include <future>
+#include <thread>
 
 namespace crease {
 namespace {
@@ -382,6 +383,18 @@ TEST_CASE("a failed opening is tried again by the next request") {
   is_there = true;
   const Ticket late = source->request(FileRange{0, 10});
   CHECK(*all_answers(*source).at(late) == part_of(file, {0, 10}));
+}
+
+TEST_CASE("an opening that failed before anybody asked answers the first request") {
+  FaultHost host([](const HostRequest&) { return reply("404 Not Found", "", "no"); });
+  const AsyncSourcePtr source = open_async_http(host.url(), hasty());
+  while (source->statistics().bytes_transferred == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const Ticket ticket = source->request(FileRange{0, 10});
+  CHECK(all_answers(*source).at(ticket).failure().error == Error::NotFound);
+  CHECK(host.requests().size() == 1);
 }
 
 TEST_CASE("redirects are followed, to http and https alone") {
