@@ -210,11 +210,11 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   }
 
   find_ring(kept, removed);
-  if (ring_corners_.empty()) {
+  if (ring_.empty()) {
     // A part disappears: its planes fit what is left of it, but what it stood for is gone.
     double longest2 = 0;
-    for (Index t : vanishing_) {
-      const Index* v = &vertex_of_corner_[3 * t];
+    for (const Vanishing& vanishing : vanishing_) {
+      const Index* v = &vertex_of_corner_[3 * vanishing.triangle];
       for (Index c = 0; c < 3; ++c) {
         longest2 = std::max(longest2, squared(positions_[v[c]] - positions_[v[(c + 1) % 3]]));
       }
@@ -227,12 +227,10 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   errors.now = larger(larger(errors.now, errors_[removed].now), error);
 
   // Triangles: vanish, or change hands.
-  if (!represented_.empty()) hand_over_represented();
-  for (std::size_t i = ring_kept_; i < ring_corners_.size(); ++i) {
-    vertex_of_corner_[ring_corners_[i]] = kept;
-  }
+  if (!shading_.empty()) hand_over_represented();
+  for (std::size_t i = ring_kept_; i < ring_.size(); ++i) vertex_of_corner_[ring_[i].corner] = kept;
   const Index first = static_cast<Index>(triangle_pool_.size());
-  for (Index corner : ring_corners_) triangle_pool_.push_back(corner / 3);
+  for (const RingTriangle& ring : ring_) triangle_pool_.push_back(ring.triangle);
   q.triangles = {first, static_cast<Index>(triangle_pool_.size()) - first};
   positions_[kept] = target;
   for (Index t : triangles_of(kept)) facing_[t] = facing_of(t);
@@ -242,20 +240,16 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   q.flat_around = q.flat_around && p.flat_around;
   p.alive = false;
   p.into = kept;
-  for (Index t : vanishing_) {
+  for (const auto& [t, third] : vanishing_) {
     triangle_alive_[t] = 0;
     --live_triangles_;
-    for (Index c = 0; c < 3; ++c) {
-      const Index w = vertex_of_corner_[3 * t + c];
-      if (w == kept || w == removed) continue;
-      Slice& around = vertices_[w].triangles;
-      Index* begin = &triangle_pool_[around.first];
-      Index* end = std::remove(begin, begin + around.count, t);
-      around.count = static_cast<Index>(end - begin);
-    }
+    Slice& around = vertices_[third].triangles;
+    Index* begin = &triangle_pool_[around.first];
+    Index* end = std::remove(begin, begin + around.count, t);
+    around.count = static_cast<Index>(end - begin);
     release(t);
   }
-  if (!represented_.empty()) derive_where_better(kept, errors.now);
+  if (!shading_.empty()) derive_where_better(kept, errors.now);
 
   contraction.error = errors.now;
   contraction.change_count = static_cast<Index>(result_.changes.size()) - contraction.first_change;
@@ -267,20 +261,27 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
 }
 
 void PatchSimplifier::find_ring(Index kept, Index removed) {
-  ring_corners_.clear();
-  vanishing_.clear();
-  for (Index t : triangles_of(kept)) {
-    if (corner_of(t, removed) >= 0) {
-      vanishing_.push_back(t);
-    } else {
-      ring_corners_.push_back(3 * t + static_cast<Index>(corner_of(t, kept)));
-    }
+  const std::span<const Index> around_kept = triangles_of(kept);
+  const std::span<const Index> around_removed = triangles_of(removed);
+  ring_.resize(around_kept.size() + around_removed.size());
+  vanishing_.resize(around_kept.size());
+  // What does not belong to a list is written over by what comes next: no branches.
+  RingTriangle* ring = ring_.data();
+  Vanishing* vanishing = vanishing_.data();
+  for (Index t : around_kept) {
+    *ring = ring_triangle(t, kept);
+    *vanishing = {t, ring->next == removed ? ring->previous : ring->next};
+    const bool vanishes = ring->next == removed || ring->previous == removed;
+    vanishing += vanishes;
+    ring += !vanishes;
   }
-  ring_kept_ = ring_corners_.size();
-  for (Index t : triangles_of(removed)) {
-    if (corner_of(t, kept) >= 0) continue;
-    ring_corners_.push_back(3 * t + static_cast<Index>(corner_of(t, removed)));
+  ring_kept_ = static_cast<std::size_t>(ring - ring_.data());
+  for (Index t : around_removed) {
+    *ring = ring_triangle(t, removed);
+    ring += ring->next != kept && ring->previous != kept;
   }
+  ring_.resize(static_cast<std::size_t>(ring - ring_.data()));
+  vanishing_.resize(static_cast<std::size_t>(vanishing - vanishing_.data()));
 }
 
 // One quadric out of the members', in the place of one of them; none if all show one attribute that
@@ -372,9 +373,9 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   // geometric normal has a wedge, but its attribute no longer stands at the vertex.
   constexpr char kUsed = 1, kShown = 2;
   used_.assign(of_kept.count + of_removed.count, 0);
-  for (Index corner : ring_corners_) {
-    const bool shown = !(work.is_normal && derived_[corner / 3]);
-    used_[slot_of(wedge_of_corner[corner])] |= shown ? kUsed | kShown : kUsed;
+  for (const RingTriangle& ring : ring_) {
+    const bool shown = !(work.is_normal && derived_[ring.triangle]);
+    used_[slot_of(wedge_of_corner[ring.corner])] |= shown ? kUsed | kShown : kUsed;
   }
 
   std::vector<Index>& result_of_slot = parent_;  // join_wedges is done with it
@@ -442,8 +443,8 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
     wedges.resize(wedges.size() + count);
   }
   std::copy(results_.begin(), results_.end(), wedges.begin() + first);
-  for (Index corner : ring_corners_) {
-    Index& wedge = wedge_of_corner[corner];
+  for (const RingTriangle& ring : ring_) {
+    Index& wedge = wedge_of_corner[ring.corner];
     wedge = first + result_of_slot[slot_of(wedge)];
   }
   wedges_of(layer, kept) = {first, count};
@@ -457,9 +458,7 @@ void PatchSimplifier::write_back() {
       continue;
     }
     work_->derived[global] = derived_[t];
-    if (!represented_.empty()) {
-      work_->represented[global] = represented_[t];
-    }
+    if (!shading_.empty()) work_->represented[global] = shading_[t].input;
     for (Index c = 0; c < 3; ++c) {
       work_->vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[3 * t + c]].global;
       for (std::size_t l = 0; l < layer_count(); ++l) {

@@ -50,11 +50,11 @@ double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double 
   const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
   const bool a_stays = target == positions_[a], b_stays = target == positions_[b];
   const std::size_t begin = a_stays ? ring_kept_ : 0;
-  const std::size_t end = b_stays ? ring_kept_ : ring_corners_.size();
+  const std::size_t end = b_stays ? ring_kept_ : ring_.size();
   for (std::size_t i = begin; i < end && cost <= bound; ++i) {
-    const Index t = ring_corners_[i] / 3;
+    const Index t = ring_[i].triangle;
     const Facing& before = facing_[t];
-    const Vec3d after = normal_if_moved(t, i < ring_kept_ ? a : b, target);
+    const Vec3d after = normal_if_moved(ring_[i], target);
     const double agreement = dot(before.normal, after);
     const double after2 = dot(after, after);
     const double cosine2 = agreement * agreement;  // times after2
@@ -62,12 +62,15 @@ double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double 
     if (agreement < 0 || (before.area > 0 && cosine2 < kFoldCosine * kFoldCosine * after2)) {
       own = step2 * (before.area + 0.5 * std::sqrt(after2));
     }
-    const bool stays_right = own == 0 && cosine2 >= kCoplanarCosine2 * after2 &&
-                             flat_error_.size() > t && flat_error_[t] <= kRight * before.area;
-    if (!stays_right && !represented_.empty() && (flat_[t] || derived_[t]) && after2 > 0) {
-      const double twice_after = std::sqrt(after2);
-      const double now = flat_error(t, after * (1 / twice_after), 0.5 * twice_after);
-      own += normal_scale2 * std::max(0.0, now - flat_error_[t]);
+    if (!shading_.empty() && (flat_[t] || derived_[t]) && after2 > 0) {
+      const FlatShading& shading = shading_[t];
+      const bool stays_right = own == 0 && cosine2 >= kCoplanarCosine2 * after2 &&
+                               shading.counts <= kRight * before.area;
+      if (!stays_right) {
+        const double twice_after = std::sqrt(after2);
+        const double now = shading.counts_with(after * (1 / twice_after), 0.5 * twice_after);
+        own += normal_scale2 * std::max(0.0, now - shading.counts);
+      }
     }
     if (!(own > 0)) continue;
     blame(t, own);
@@ -81,21 +84,16 @@ double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double 
 double PatchSimplifier::coincidence_cost(Index a, Index b) {
   const Index beside_a = ++mark_now_, told = ++mark_now_;
   for (std::size_t i = 0; i < ring_kept_; ++i) {
-    const Index t = ring_corners_[i] / 3;
-    for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = beside_a;
+    mark_[ring_[i].next] = mark_[ring_[i].previous] = beside_a;
   }
-  for (Index t : vanishing_) {
-    for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = told;
-  }
+  for (const Vanishing& vanishing : vanishing_) mark_[vanishing.third] = told;
   std::size_t shared = 0;
   Index culprit = kNone;
-  for (std::size_t i = ring_kept_; i < ring_corners_.size(); ++i) {
-    const Index t = ring_corners_[i] / 3;
-    for (Index c = 0; c < 3; ++c) {
-      const Index v = vertex_of_corner_[3 * t + c];
-      if (v == a || v == b || mark_[v] != beside_a) continue;
+  for (std::size_t i = ring_kept_; i < ring_.size(); ++i) {
+    for (Index v : {ring_[i].next, ring_[i].previous}) {
+      if (mark_[v] != beside_a) continue;
       mark_[v] = told;
-      culprit = t;
+      culprit = ring_[i].triangle;
       ++shared;
     }
   }
@@ -122,11 +120,11 @@ double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
     }
     changed_area_.emplace_back(category, area);
   };
-  for (Index t : vanishing_) change(t, -facing_[t].area);
-  for (std::size_t i = 0; i < ring_corners_.size(); ++i) {
-    const Index t = ring_corners_[i] / 3, moved = i < ring_kept_ ? a : b;
-    if (target == positions_[moved]) continue;
-    change(t, 0.5 * length(normal_if_moved(t, moved, target)) - facing_[t].area);
+  for (const auto& [t, third] : vanishing_) change(t, -facing_[t].area);
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    if (target == positions_[i < ring_kept_ ? a : b]) continue;
+    const Index t = ring_[i].triangle;
+    change(t, 0.5 * length(normal_if_moved(ring_[i], target)) - facing_[t].area);
   }
   double gained = 0, lost = 0;
   for (const auto& [category, area] : changed_area_) (area > 0 ? gained : lost) += std::abs(area);
@@ -136,18 +134,18 @@ double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
 // What does not depend on where the vertex goes.
 double PatchSimplifier::vanishing_cost(Index a, Index b) {
   double cost = coincidence_cost(a, b);
-  if (ring_corners_.empty()) {
+  if (ring_.empty()) {
     // A part disappears. Its own planes may not mind; whoever looks at it does.
     if (steering_.keep_one_triangle && vanishing_.size() >= live_triangles_) {
       return std::numeric_limits<double>::infinity();
     }
     double area = 0;
-    for (Index t : vanishing_) area += facing_[t].area;
+    for (const auto& [t, third] : vanishing_) area += facing_[t].area;
     cost += kPartWeight * area * squared(positions_[b] - positions_[a]);
   }
-  if (!represented_.empty()) {
+  if (!shading_.empty()) {
     const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
-    for (Index t : vanishing_) cost += normal_scale2 * vanishing_error(t);
+    for (const Vanishing& v : vanishing_) cost += normal_scale2 * vanishing_error(v);
   }
   return cost;
 }

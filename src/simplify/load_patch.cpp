@@ -32,7 +32,7 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
   load(triangles, patch_id);
   load_wedges();
   load_quadrics();
-  load_represented();
+  load_shading();
   load_turns();
   load_edges();
   if (steering_.virtual_distance > 0 && work.part_count > 1) find_virtual_pairs();

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "hierarchy/quadric.h"
+#include "simplify/flat_shading.h"
 #include "simplify/work_mesh.h"
 
 #include <cstdint>
@@ -109,6 +110,17 @@ class PatchSimplifier {
     Index fixed = kNone;                       // the member whose value is kept, or kNone: solve
   };
 
+  // Around a pair: a triangle that survives, and one that has both ends.
+  struct RingTriangle {
+    Index triangle;
+    Index corner;          // of the end of the pair that it has
+    Index next, previous;  // its other vertices, from there
+  };
+  struct Vanishing {
+    Index triangle;
+    Index third;  // its vertex that is no end
+  };
+
   struct Edge {
     Index other;
     Index triangle[2];
@@ -150,12 +162,11 @@ class PatchSimplifier {
   void blame(Index t, double cost);
 
   // flat_shading.cpp
-  void load_represented();
+  void load_shading();
   void load_turns();
   Vec3d shown_normal(Index t) const;
-  double flat_error(Index t, const Vec3d& normal, double area) const;
-  Index heir_of(Index vanishing) const;
-  double vanishing_error(Index t) const;
+  Index heir_of(const Vanishing& vanishing) const;
+  double vanishing_error(const Vanishing& vanishing) const;
   void hand_over_represented();
   void derive_where_better(Index kept, LevelError& error);
 
@@ -185,16 +196,18 @@ class PatchSimplifier {
     return {twice * (1 / twice_area), 0.5 * twice_area};
   }
   // Twice the area long.
-  Vec3d normal_if_moved(Index t, Index moved, const Vec3d& target) const {
-    const Index* v = &vertex_of_corner_[3 * t];
-    const auto at = [&](Index c) { return v[c] == moved ? target : positions_[v[c]]; };
-    const Vec3d p0 = at(0);
-    return cross(at(1) - p0, at(2) - p0);
+  Vec3d normal_if_moved(const RingTriangle& ring, const Vec3d& target) const {
+    return cross(positions_[ring.next] - target, positions_[ring.previous] - target);
   }
   // -1: none.
   int corner_of(Index t, Index v) const {
     const Index* corners = &vertex_of_corner_[3 * t];
     return corners[0] == v ? 0 : corners[1] == v ? 1 : corners[2] == v ? 2 : -1;
+  }
+  RingTriangle ring_triangle(Index t, Index end) const {
+    const Index* v = &vertex_of_corner_[3 * t];
+    const Index c = Index(v[1] == end) + 2 * Index(v[2] == end);
+    return {t, 3 * t + c, v[c == 2 ? 0 : c + 1], v[c == 0 ? 2 : c - 1]};
   }
   std::span<const Index> triangles_of(Index v) const {
     return std::span(triangle_pool_)
@@ -226,9 +239,7 @@ class PatchSimplifier {
   std::vector<Facing> facing_;
   std::vector<char> flat_;  // stored normal the same at all three corners, and not derived
   std::vector<char> derived_;
-  std::vector<Represented> represented_;
-  std::vector<double> flat_error_;  // of flat and derived triangles, as they are
-  std::size_t normal_layer_ = 0;
+  std::vector<FlatShading> shading_;  // of flat and derived triangles; empty: there are none
   std::size_t live_triangles_ = 0;
 
   std::vector<std::vector<Wedge>> wedges_;                         // per layer, slices by vertex
@@ -276,9 +287,9 @@ class PatchSimplifier {
   std::vector<Joined> joined_;
   std::vector<Index> members_;
   std::vector<Index> parent_;
-  std::vector<Index> vanishing_;     // triangles
-  std::vector<Index> ring_corners_;  // of the surviving triangles: kept's corners, removed's
-  std::size_t ring_kept_ = 0;        // so many are kept's
+  std::vector<Vanishing> vanishing_;
+  std::vector<RingTriangle> ring_;  // kept's, then removed's
+  std::size_t ring_kept_ = 0;       // so many are kept's
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
   std::vector<Index> mark_;
