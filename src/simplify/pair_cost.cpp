@@ -243,28 +243,32 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
     sum.add(turn_[b]);
   }
   const double cost_a = sum.at(pa), cost_b = sum.at(pb);
-  Placed best = cost_a < cost_b ? Placed{cost_a, pa} : Placed{cost_b, pb};
+  const double best_end = std::min(cost_a, cost_b);
+  Placed best{best_end + tie, cost_a < cost_b ? pa : pb};
   const auto is_corner = [&](Index v) {
     return vertices_[v].flat_around && line_of_vertex_[v] != kNone;
   };
   const double share = is_corner(a) && is_corner(b) ? kLeavesPlanes : 1;
   const double noise = tie + grid_noise;
+  const double most = steering_.leaves_ends * share * best_end - noise;
+  if (!(most > 0)) return best;  // as on planes: no cost is less
   const Vec3d middle = (pa + pb) * 0.5;
   Vec3d x = sum.minimum(middle, steering_.pull);
   // The pull, and rounding to a coarse grid, make this more than the least there is.
-  const bool is_cheap = sum.at(x) <= 1.5 * bound;
+  if (!(sum.at(x) <= 1.5 * bound)) return best;  // nothing is cheap enough
   const Vec3d away = x - middle;
   const double away2 = dot(away, away);
   if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
   x = rounded(x);
   const double cost_x = sum.at(x);
-  const double most = steering_.leaves_ends * share * best.cost - noise;
-  if (is_cheap && cost_x < most) {  // or nothing is cheap enough
-    const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
-    if (between.cost < most) best = {between.cost, between.position};
-    if (cost_x < steering_.leaves_pair * share * best.cost - noise) best = {cost_x, x};
+  if (!(cost_x < most)) return best;
+  const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
+  double least = best_end;
+  if (between.cost < most) {
+    least = between.cost;
+    best = {least + tie, between.position};
   }
-  best.cost += tie;
+  if (cost_x < steering_.leaves_pair * share * least - noise) best = {cost_x + tie, x};
   return best;
 }
 
