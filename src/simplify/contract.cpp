@@ -38,28 +38,22 @@ std::vector<double> PatchSimplifier::initial_costs() {
   return costs;
 }
 
-void PatchSimplifier::push(const Entry& entry) {
-  heap_.push_back(entry);
-  std::push_heap(heap_.begin(), heap_.end());
-}
-
 bool PatchSimplifier::pop(Entry& entry) {
   const bool ordered = next_in_order_ != order_.size();
   if (heap_.empty() && !ordered) return false;
-  if (heap_.empty() || (ordered && order_[next_in_order_].cost <= heap_.front().cost)) {
+  if (heap_.empty() || (ordered && order_[next_in_order_].cost <= heap_.top().cost())) {
     const Ordered& next = order_[next_in_order_++];
     entry = {next.cost, next.pair, kNone, 0};
     return true;
   }
-  entry = heap_.front();
-  std::pop_heap(heap_.begin(), heap_.end());
-  heap_.pop_back();
+  entry = heap_.top();
+  heap_.pop();
   return true;
 }
 
 float PatchSimplifier::next_cost() const {
   const float in_order = next_in_order_ == order_.size() ? HUGE_VALF : order_[next_in_order_].cost;
-  return heap_.empty() ? in_order : std::min(in_order, heap_.front().cost);
+  return heap_.empty() ? in_order : std::min(in_order, heap_.top().cost());
 }
 
 PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
@@ -74,16 +68,16 @@ PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
 void PatchSimplifier::hold(const Entry& entry, double cost, double cost_with_ring) {
   if (blamed_ == kNone || entry.tries >= kTries) {
     if (cost_with_ring <= steering_.cost_limit) {
-      push({static_cast<float>(cost_with_ring), entry.pair, kNone, entry.tries});
+      heap_.push({static_cast<float>(cost_with_ring), entry.pair(), kNone, entry.tries});
     }
     return;
   }
   const Index id = static_cast<Index>(held_.size());
   held_.push_back(
-      {entry.pair, held_of_triangle_[blamed_], static_cast<float>(cost), entry.tries + 1, true});
+      {entry.pair(), held_of_triangle_[blamed_], static_cast<float>(cost), entry.tries + 1, true});
   held_of_triangle_[blamed_] = id;
   if (!(cost_with_ring <= steering_.cost_limit)) return;
-  push({static_cast<float>(cost_with_ring), entry.pair, id, entry.tries + 1});
+  heap_.push({static_cast<float>(cost_with_ring), entry.pair(), id, entry.tries + 1});
 }
 
 void PatchSimplifier::release(Index triangle) {
@@ -92,18 +86,23 @@ void PatchSimplifier::release(Index triangle) {
   for (; i != kNone; i = held_[i].next) {
     if (!held_[i].waiting) continue;
     held_[i].waiting = false;
-    push({held_[i].cost, held_[i].pair, kNone, held_[i].tries});
+    heap_.push({held_[i].cost, held_[i].pair, kNone, held_[i].tries});
   }
 }
 
 void PatchSimplifier::order_pairs() {
   order_.clear();
   next_in_order_ = 0;
-  const double limit = steering_.cost_limit;
-  for (Index i = 0; i < pairs_.size(); ++i) {
-    const double cost = place(pairs_[i].first, pairs_[i].second, limit).cost;
-    if (!(cost <= limit)) continue;
-    order_.push_back({static_cast<float>(cost), i});
+  candidates_.clear();
+  for (const auto& [a, b] : pairs_) {
+    const Placed placed = place(a, b, steering_.cost_limit);
+    if (!(placed.cost <= steering_.cost_limit)) continue;
+    order_.push_back({static_cast<float>(placed.cost), static_cast<Index>(candidates_.size())});
+    Candidate& pair = candidates_.emplace_back();
+    pair.a = a;
+    pair.b = b;
+    pair.placed_at = 0;
+    keep_placed(placed, pair);
   }
   sort_by_cost(order_, order_scratch_);
 }
@@ -117,18 +116,22 @@ bool PatchSimplifier::claim(Index pair, Index a, Index b) {
     owner_count_ = 0;
     for (Index owner : old) {
       if (owner == kNone) continue;
-      const auto [x, y] = pairs_[owner];
-      if (vertices_[x].alive && vertices_[y].alive) claim(owner, x, y);
+      const Candidate& old_pair = candidates_[owner];
+      if (vertices_[old_pair.a].alive && vertices_[old_pair.b].alive) {
+        claim(owner, old_pair.a, old_pair.b);
+      }
     }
   }
   const std::size_t mask = owners_.size() - 1;
   std::size_t slot = (a * 0x9e3779b1u ^ b * 0x85ebca77u) & mask;
   for (; owners_[slot] != kNone; slot = (slot + 1) & mask) {
-    if (pairs_[owners_[slot]] == std::pair(a, b)) return owners_[slot] == pair;
+    const Candidate& owner = candidates_[owners_[slot]];
+    if (owner.a == a && owner.b == b) return owners_[slot] == pair;
   }
   owners_[slot] = pair;
   ++owner_count_;
-  pairs_[pair] = {a, b};
+  candidates_[pair].a = a;
+  candidates_[pair].b = b;
   return true;
 }
 
@@ -136,34 +139,35 @@ PatchResult PatchSimplifier::run() {
   result_.new_values.resize(layer_count());
   held_of_triangle_.assign(global_triangle_.size(), kNone);
   order_pairs();
-  owners_.assign(std::bit_ceil(2 * pairs_.size() + 64), kNone);
+  owners_.assign(std::bit_ceil(2 * candidates_.size() + 64), kNone);
   owner_count_ = 0;
   for (Entry entry; pop(entry);) {
     if (entry.held != kNone) {
       if (!held_[entry.held].waiting) continue;
       held_[entry.held].waiting = false;
     }
-    Index a = survivor(pairs_[entry.pair].first), b = survivor(pairs_[entry.pair].second);
+    Candidate& pair = candidates_[entry.pair()];
+    Index a = survivor(pair.a), b = survivor(pair.b);
     if (a == b) continue;
     if (a > b) std::swap(a, b);
-    if (!claim(entry.pair, a, b)) continue;
-    entry.held = kNone;
+    if (!claim(entry.pair(), a, b)) continue;
     const float next = next_cost();
 
-    Quadric cost_if_kept[2];
-    Placed placed = place(a, b, steering_.cost_limit, cost_if_kept);
-    const double cost = placed.cost;
+    if (std::max(vertices_[a].changed_at, vertices_[b].changed_at) > pair.placed_at) {
+      pair.placed_at = static_cast<Index>(result_.contractions.size());
+      keep_placed(place(a, b, steering_.cost_limit), pair);
+    }
+    const double cost = pair.cost;
     if (!(cost <= steering_.cost_limit)) continue;
-    if (static_cast<float>(cost) > entry.cost && static_cast<float>(cost) > next) {
-      entry.cost = static_cast<float>(cost);
-      push(entry);
+    if (static_cast<float>(cost) > entry.cost() && static_cast<float>(cost) > next) {
+      heap_.push({static_cast<float>(cost), entry.pair(), kNone, entry.tries});
       continue;
     }
     const double bound =
         std::min(steering_.cost_limit, kDear * double(std::max(next, static_cast<float>(cost))));
-    placed = make_legal(a, b, placed, bound, cost_if_kept);
-    if (!(placed.cost <= steering_.cost_limit) ||
-        (static_cast<float>(placed.cost) > entry.cost && static_cast<float>(placed.cost) > next)) {
+    const Placed placed = make_legal(pair, bound);
+    if (!(placed.cost <= steering_.cost_limit) || (static_cast<float>(placed.cost) > entry.cost() &&
+                                                   static_cast<float>(placed.cost) > next)) {
       hold(entry, cost, placed.cost);
       continue;
     }
@@ -257,31 +261,30 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
       static_cast<Index>(result_.derived.size()) - contraction.first_derived;
   last_key_ = std::max(last_key_, cost);
   result_.contractions.push_back({last_key_, contraction});
+  q.changed_at = static_cast<Index>(result_.contractions.size());
   for (Index t : triangles_of(kept)) release(t);
 }
 
 void PatchSimplifier::find_ring(Index kept, Index removed) {
   const std::span<const Index> around_kept = triangles_of(kept);
   const std::span<const Index> around_removed = triangles_of(removed);
-  ring_.resize(around_kept.size() + around_removed.size());
-  vanishing_.resize(around_kept.size());
   // What does not belong to a list is written over by what comes next: no branches.
-  RingTriangle* ring = ring_.data();
-  Vanishing* vanishing = vanishing_.data();
+  RingTriangle* ring = ring_.start(around_kept.size() + around_removed.size());
+  Vanishing* vanishing = vanishing_.start(around_kept.size());
   for (Index t : around_kept) {
     *ring = ring_triangle(t, kept);
-    *vanishing = {t, ring->next == removed ? ring->previous : ring->next};
-    const bool vanishes = ring->next == removed || ring->previous == removed;
-    vanishing += vanishes;
-    ring += !vanishes;
+    const bool before = ring->previous == removed, after = ring->next == removed;
+    *vanishing = {t, after ? ring->previous : ring->next};
+    vanishing += before | after;
+    ring += !(before | after);
   }
-  ring_kept_ = static_cast<std::size_t>(ring - ring_.data());
+  vanishing_.finish(vanishing);
+  ring_kept_ = static_cast<std::size_t>(ring - ring_.begin());
   for (Index t : around_removed) {
     *ring = ring_triangle(t, removed);
-    ring += ring->next != kept && ring->previous != kept;
+    ring += (ring->previous != kept) & (ring->next != kept);
   }
-  ring_.resize(static_cast<std::size_t>(ring - ring_.data()));
-  vanishing_.resize(static_cast<std::size_t>(vanishing - vanishing_.data()));
+  ring_.finish(ring);
 }
 
 // One quadric out of the members', in the place of one of them; none if all show one attribute that

@@ -4,6 +4,8 @@
 // gets stuck.
 #include "simplify/patch_simplifier.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -43,38 +45,75 @@ void PatchSimplifier::blame(Index t, double cost) {
   blamed_cost_ = cost;
 }
 
+// The ring's triangles, four at a time; the last ones fill up their block.
+CREASE_WIDE void PatchSimplifier::gather_blocks() {
+  const std::size_t count = ring_.size();
+  RingBlock* block = blocks_.start(count / RingBlock::kTriangles + 1);
+  for (std::size_t i = 0; i < count; i += RingBlock::kTriangles, ++block) {
+    const RingTriangle* ring[RingBlock::kTriangles];
+    for (std::size_t k = 0; k < RingBlock::kTriangles; ++k) {
+      ring[k] = &ring_[std::min(i + k, count - 1)];
+    }
+    const auto fill = [&](Row& row, auto value_of) {
+      row = Row{value_of(*ring[0]), value_of(*ring[1]), value_of(*ring[2]), value_of(*ring[3])};
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      fill(block->next[axis], [&](const RingTriangle& r) { return positions_[r.next][axis]; });
+      fill(block->previous[axis],
+           [&](const RingTriangle& r) { return positions_[r.previous][axis]; });
+      fill(block->normal[axis],
+           [&](const RingTriangle& r) { return facing_[r.triangle].normal[axis]; });
+    }
+    fill(block->area, [&](const RingTriangle& r) { return facing_[r.triangle].area; });
+    block->shows = block->right = Lanes{};
+    if (shading_.empty()) continue;
+    Row shows, counts;
+    fill(shows,
+         [&](const RingTriangle& r) { return double(flat_[r.triangle] | derived_[r.triangle]); });
+    fill(counts, [&](const RingTriangle& r) { return shading_[r.triangle].counts; });
+    block->shows = shows > 0;
+    block->right = counts <= kRight * block->area;
+  }
+  blocks_.finish(block);
+}
+
 // Stops when it is above `bound`: dear enough.
-double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double bound) {
-  double cost = 0;
+CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double bound) {
   const double step2 = squared(positions_[b] - positions_[a]);
   const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
   const bool a_stays = target == positions_[a], b_stays = target == positions_[b];
   const std::size_t begin = a_stays ? ring_kept_ : 0;
   const std::size_t end = b_stays ? ring_kept_ : ring_.size();
-  for (std::size_t i = begin; i < end && cost <= bound; ++i) {
-    const Index t = ring_[i].triangle;
-    const Facing& before = facing_[t];
-    const Vec3d after = normal_if_moved(ring_[i], target);
-    const double agreement = dot(before.normal, after);
-    const double after2 = dot(after, after);
-    const double cosine2 = agreement * agreement;  // times after2
-    double own = 0;
-    if (agreement < 0 || (before.area > 0 && cosine2 < kFoldCosine * kFoldCosine * after2)) {
-      own = step2 * (before.area + 0.5 * std::sqrt(after2));
-    }
-    if (!shading_.empty() && (flat_[t] || derived_[t]) && after2 > 0) {
-      const FlatShading& shading = shading_[t];
-      const bool stays_right = own == 0 && cosine2 >= kCoplanarCosine2 * after2 &&
-                               shading.counts <= kRight * before.area;
-      if (!stays_right) {
-        const double twice_after = std::sqrt(after2);
+  double cost = 0;
+  for (std::size_t first = begin & ~(RingBlock::kTriangles - 1); first < end && cost <= bound;
+       first += RingBlock::kTriangles) {
+    const RingBlock& block = blocks_[first / RingBlock::kTriangles];
+    const RingBlock::Moved moved = block.moved_to(target);
+    const Row cosine2 = moved.agreement * moved.agreement;  // times length2
+    Lanes folds = (moved.agreement < 0) |
+                  ((block.area > 0) & (cosine2 < kFoldCosine * kFoldCosine * moved.length2));
+    if (step2 == 0) folds = Lanes{};
+    const Lanes turns = block.shows & (moved.length2 > 0) &
+                        (folds | ~block.right | (cosine2 < kCoplanarCosine2 * moved.length2));
+    unsigned left = bits_of(folds | turns);
+    if (first < begin) left &= ~0u << (begin - first);
+    if (end - first < RingBlock::kTriangles) left &= (1u << (end - first)) - 1;
+    for (; left != 0 && cost <= bound; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      const Index t = ring_[first + k].triangle;
+      const double twice_after = std::sqrt(moved.length2[k]);
+      double own = 0;
+      if (folds[k]) own = step2 * (block.area[k] + 0.5 * twice_after);
+      if (turns[k]) {
+        const FlatShading& shading = shading_[t];
+        const Vec3d after{moved.normal[0][k], moved.normal[1][k], moved.normal[2][k]};
         const double now = shading.counts_with(after * (1 / twice_after), 0.5 * twice_after);
         own += normal_scale2 * std::max(0.0, now - shading.counts);
       }
+      if (!(own > 0)) continue;
+      blame(t, own);
+      cost += own;
     }
-    if (!(own > 0)) continue;
-    blame(t, own);
-    cost += own;
   }
   return cost;
 }
@@ -157,28 +196,28 @@ double PatchSimplifier::ring_cost(Index a, Index b, const Vec3d& target, double 
 
 // The place with the triangles around it included: where the optimum would fold one, an end of the
 // pair or its middle may not. A cost above `bound` is a lower one.
-PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed best, double bound,
-                                                    const Quadric* cost_if_kept) {
+PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double bound) {
+  const Index a = pair.a, b = pair.b;
   blamed_ = kNone;
   blamed_cost_ = 0;
   find_ring(a, b);
-  const double free_cost =
-      turn_.empty()
-          ? best.cost
-          : std::min(best.cost, cost_if_kept[best.position == positions_[b]].at(best.position));
-  best.cost = free_cost;
-  const double fold = ring_cost(a, b, best.position, bound - free_cost);
-  best.cost += fold;
+  gather_blocks();
+  const double free_cost = pair.free_cost;
+  const Vec3d position{double(pair.position.x), double(pair.position.y), double(pair.position.z)};
+  const double fold = ring_cost(a, b, position, bound - free_cost);
+  Placed best{free_cost + fold, free_cost, position};
   const double noise = kGridNoise * kGridNoise * (surface_[a].weight + surface_[b].weight);
   if (fold > kMinor * free_cost + noise) {
+    if (pair.cost_of_other[0] == Candidate::kUnknown) find_costs_of_others(pair);
     const Vec3d &pa = positions_[a], &pb = positions_[b];
     const Vec3d others[] = {pa, pb, rounded((pa + pb) * 0.5)};
     const int count = steering_.placement == Placement::Endpoint ? 2 : 3;
     for (int i = 0; i < count; ++i) {
-      const double cost = std::max(free_cost, cost_if_kept[i == 1].at(others[i]));
+      const double cost = std::max(free_cost, pair.cost_of_other[i]);
       if (!(cost < best.cost)) continue;
+      if (cost == free_cost && others[i] == position) continue;  // that is where it was
       const double total = cost + ring_cost(a, b, others[i], std::min(best.cost, bound) - cost);
-      if (total < best.cost) best = {total, others[i]};
+      if (total < best.cost) best = {total, cost, others[i]};
     }
   }
   if (best.cost <= bound) best.cost += vanishing_cost(a, b);

@@ -206,11 +206,8 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
   }
 }
 
-CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, double bound,
-                                                           Quadric* cost_if_kept) {
-  const Vec3d &pa = positions_[a], &pb = positions_[b];
-  const Vec3d along = pb - pa;
-  const double length2 = dot(along, along);
+// Of the surfaces and lines at both.
+inline Quadric PatchSimplifier::sum_of(Index a, Index b) const {
   Quadric sum = surface_[a];
   sum.add(surface_[b]);
   for (Index v : {a, b}) {
@@ -218,58 +215,97 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
       sum.add_scaled(line_[line_of_vertex_[v]], steering_.line_weight);
     }
   }
+  return sum;
+}
+
+CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, double bound) {
+  const Vec3d &pa = positions_[a], &pb = positions_[b];
+  const Vec3d along = pb - pa;
+  const double length2 = dot(along, along);
+  Quadric sum = sum_of(a, b);
   const double tie = kLengthShare * length2 * sum.weight;
   const double grid_noise = kGridNoise * kGridNoise * sum.weight;
+  const auto add_turns = [&](Quadric& q) {
+    if (turn_.empty()) return;
+    q.add(turn_[a]);
+    q.add(turn_[b]);
+  };
+  const auto placed_at = [&](const Vec3d& x, double cost, const Quadric& free) {
+    Placed placed{cost + tie, cost + tie, x};
+    if (!turn_.empty() && placed.cost <= bound) {
+      placed.free_cost = std::min(placed.cost, free.at(x));
+    }
+    return placed;
+  };
 
   if (steering_.placement == Placement::Endpoint) {
-    Quadric if_kept[2] = {sum, sum};
-    add_endpoint_attribute_costs(a, b, if_kept[0]);
-    add_endpoint_attribute_costs(b, a, if_kept[1]);
-    if (cost_if_kept) std::copy_n(if_kept, 2, cost_if_kept);
-    if (!turn_.empty()) {
-      for (Quadric& q : if_kept) {
-        q.add(turn_[a]);
-        q.add(turn_[b]);
-      }
-    }
-    const double cost_a = if_kept[0].at(pa), cost_b = if_kept[1].at(pb);
-    return cost_a < cost_b ? Placed{cost_a + tie, pa} : Placed{cost_b + tie, pb};
+    Quadric if_a = sum, if_b = sum;
+    add_endpoint_attribute_costs(a, b, if_a);
+    add_endpoint_attribute_costs(b, a, if_b);
+    const Quadric free_a = if_a, free_b = if_b;
+    add_turns(if_a);
+    add_turns(if_b);
+    const double cost_a = if_a.at(pa), cost_b = if_b.at(pb);
+    return cost_a < cost_b ? placed_at(pa, cost_a, pa == pb ? free_b : free_a)
+                           : placed_at(pb, cost_b, free_b);
   }
 
   add_attribute_costs(a, b, sum);
-  if (cost_if_kept) cost_if_kept[0] = cost_if_kept[1] = sum;
-  if (!turn_.empty()) {
-    sum.add(turn_[a]);
-    sum.add(turn_[b]);
-  }
+  const Quadric free = sum;
+  add_turns(sum);
   const double cost_a = sum.at(pa), cost_b = sum.at(pb);
   const double best_end = std::min(cost_a, cost_b);
-  Placed best{best_end + tie, cost_a < cost_b ? pa : pb};
+  const Vec3d& end = cost_a < cost_b ? pa : pb;
   const auto is_corner = [&](Index v) {
     return vertices_[v].flat_around && line_of_vertex_[v] != kNone;
   };
   const double share = is_corner(a) && is_corner(b) ? kLeavesPlanes : 1;
   const double noise = tie + grid_noise;
   const double most = steering_.leaves_ends * share * best_end - noise;
-  if (!(most > 0)) return best;  // as on planes: no cost is less
+  if (!(most > 0)) return placed_at(end, best_end, free);  // as on planes: no cost is less
   const Vec3d middle = (pa + pb) * 0.5;
   Vec3d x = sum.minimum(middle, steering_.pull);
   // The pull, and rounding to a coarse grid, make this more than the least there is.
-  if (!(sum.at(x) <= 1.5 * bound)) return best;  // nothing is cheap enough
+  if (!(sum.at(x) <= 1.5 * bound))
+    return placed_at(end, best_end, free);  // nothing is cheap enough
   const Vec3d away = x - middle;
   const double away2 = dot(away, away);
   if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
   x = rounded(x);
   const double cost_x = sum.at(x);
-  if (!(cost_x < most)) return best;
+  if (!(cost_x < most)) return placed_at(end, best_end, free);
   const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
-  double least = best_end;
-  if (between.cost < most) {
-    least = between.cost;
-    best = {least + tie, between.position};
+  const bool leaves_end = between.cost < most;
+  const double least = leaves_end ? between.cost : best_end;
+  if (cost_x < steering_.leaves_pair * share * least - noise) return placed_at(x, cost_x, free);
+  return placed_at(leaves_end ? between.position : end, least, free);
+}
+
+// At a, at b, and in the middle.
+CREASE_WIDE void PatchSimplifier::find_costs_of_others(Candidate& pair) {
+  const Index a = pair.a, b = pair.b;
+  const Vec3d &pa = positions_[a], &pb = positions_[b];
+  Quadric sum = sum_of(a, b);
+  if (steering_.placement == Placement::Endpoint) {
+    Quadric if_b = sum;
+    add_endpoint_attribute_costs(a, b, sum);
+    add_endpoint_attribute_costs(b, a, if_b);
+    pair.cost_of_other[1] = if_b.at(pb);
+  } else {
+    add_attribute_costs(a, b, sum);
+    pair.cost_of_other[1] = sum.at(pb);
   }
-  if (cost_x < steering_.leaves_pair * share * least - noise) best = {cost_x + tie, x};
-  return best;
+  pair.cost_of_other[0] = sum.at(pa);
+  pair.cost_of_other[2] = sum.at(rounded((pa + pb) * 0.5));
+}
+
+void PatchSimplifier::keep_placed(const Placed& placed, Candidate& pair) {
+  pair.position = {static_cast<std::int32_t>(placed.position.x),
+                   static_cast<std::int32_t>(placed.position.y),
+                   static_cast<std::int32_t>(placed.position.z)};
+  pair.cost = placed.cost;
+  pair.free_cost = placed.free_cost;
+  pair.cost_of_other[0] = Candidate::kUnknown;
 }
 
 }  // namespace crease::simplification

@@ -10,7 +10,10 @@
 #pragma once
 
 #include "hierarchy/quadric.h"
+#include "simplify/cost_heap.h"
 #include "simplify/flat_shading.h"
+#include "simplify/ring_block.h"
+#include "simplify/scratch_list.h"
 #include "simplify/work_mesh.h"
 
 #include <cstdint>
@@ -69,8 +72,9 @@ class PatchSimplifier {
   };
   struct Vertex {
     Index global = 0;
-    Index into = kNone;  // of a removed vertex: the one it was contracted into
-    Slice triangles;     // in triangle_pool_
+    Index into = kNone;    // of a removed vertex: the one it was contracted into
+    Slice triangles;       // in triangle_pool_
+    Index changed_at = 0;  // so many contractions had been made when it last changed
     bool locked = false;
     bool alive = true;
     bool flat_around = true;  // all its triangles are flat or derived
@@ -81,25 +85,24 @@ class PatchSimplifier {
   };
   struct Placed {
     double cost = 0;
+    double free_cost = 0;  // without what flat triangles cost: make_legal() knows that better
     Vec3d position;
   };
-  // Costs only grow as quadrics do, so an entry whose ends have changed since is a lower bound: it
-  // is looked at again when it comes to the top, and not before.
-  struct Entry {
-    float cost;
-    Index pair;                             // in pairs_
-    Index held;                             // in held_, or kNone
-    Index tries;                            // so often it was held
-    bool operator<(const Entry& o) const {  // std heaps put the largest first
-      return cost != o.cost ? cost > o.cost : pair > o.pair;
-    }
+  // A pair, and what is known of it as long as its ends do not change.
+  struct Candidate {
+    Index a, b;
+    Index placed_at;          // so many contractions had been made
+    Vec3i position;           // less center_
+    double cost, free_cost;   // see Placed
+    double cost_of_other[3];  // free, at the other places that make_legal() tries; or kUnknown
+    static constexpr double kUnknown = -1;
   };
   // Of a triangle, as it is.
   struct Facing {
     Vec3d normal;  // of unit length, or zero without area
     double area = 0;
   };
-  // Of a pair at the start: its cost, then its place in pairs_.
+  // Of a pair at the start: its cost, then its place in candidates_.
   struct Ordered {
     float cost;
     Index pair;
@@ -139,10 +142,11 @@ class PatchSimplifier {
   void find_virtual_pairs();
 
   // pair_cost.cpp
-  // `cost_if_kept`: when given, the cost as a function of the place, for keeping a's or b's values,
-  // without what flat triangles cost: make_legal() knows that better.
   // `bound`: a cost above it need not be exact.
-  Placed place(Index a, Index b, double bound, Quadric* cost_if_kept = nullptr);
+  Placed place(Index a, Index b, double bound);
+  Quadric sum_of(Index a, Index b) const;
+  void find_costs_of_others(Candidate& pair);
+  static void keep_placed(const Placed& placed, Candidate& pair);
   bool meet(Index a, Index b) const;
   void join_wedges(std::size_t layer, Index a, Index b, std::vector<Joined>& joined);
   void add_attribute_costs(Index a, Index b, Quadric& sum);
@@ -153,10 +157,11 @@ class PatchSimplifier {
                       Quadric& sum) const;
 
   // legality.cpp
-  Placed make_legal(Index a, Index b, Placed best, double bound, const Quadric* cost_if_kept);
+  Placed make_legal(Candidate& pair, double bound);
   double ring_cost(Index a, Index b, const Vec3d& target, double bound);
   double category_cost(Index a, Index b, const Vec3d& target);
   double vanishing_cost(Index a, Index b);
+  void gather_blocks();
   double fold_cost(Index a, Index b, const Vec3d& target, double bound);
   double coincidence_cost(Index a, Index b);
   void blame(Index t, double cost);
@@ -179,7 +184,6 @@ class PatchSimplifier {
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
                      const Vec3d& target, Wedge& result);
   void order_pairs();
-  void push(const Entry& entry);
   bool pop(Entry& entry);
   float next_cost() const;
   Index survivor(Index v);
@@ -206,8 +210,9 @@ class PatchSimplifier {
   }
   RingTriangle ring_triangle(Index t, Index end) const {
     const Index* v = &vertex_of_corner_[3 * t];
+    constexpr std::uint8_t kNext[] = {1, 2, 0}, kPrevious[] = {2, 0, 1};
     const Index c = Index(v[1] == end) + 2 * Index(v[2] == end);
-    return {t, 3 * t + c, v[c == 2 ? 0 : c + 1], v[c == 0 ? 2 : c - 1]};
+    return {t, 3 * t + c, v[kNext[c]], v[kPrevious[c]]};
   }
   std::span<const Index> triangles_of(Index v) const {
     return std::span(triangle_pool_)
@@ -250,15 +255,16 @@ class PatchSimplifier {
   std::vector<Index> category_around_;  // by vertex; kNone: several
   std::vector<std::pair<Index, double>> changed_area_;
 
-  // Edges, then virtual pairs. Contractions make pairs the same: the first that is looked at
+  std::vector<std::pair<Index, Index>> pairs_;  // edges, then virtual pairs
+  // Those that cost little enough. Contractions make pairs the same: the first that is looked at
   // afterwards owns its two ends, the others are dropped.
-  std::vector<std::pair<Index, Index>> pairs_;
+  std::vector<Candidate> candidates_;
   std::vector<Index>
       owners_;  // hash table of pairs that were looked at, by their ends; kNone: free
   std::size_t owner_count_ = 0;
   std::vector<Ordered> order_, order_scratch_;  // the pairs of the start, cheapest first
   std::size_t next_in_order_ = 0;
-  std::vector<Entry> heap_;  // those that were looked at again
+  CostHeap heap_;  // those that were looked at again
   double last_key_ = 0;
 
   PatchResult result_;
@@ -287,9 +293,10 @@ class PatchSimplifier {
   std::vector<Joined> joined_;
   std::vector<Index> members_;
   std::vector<Index> parent_;
-  std::vector<Vanishing> vanishing_;
-  std::vector<RingTriangle> ring_;  // kept's, then removed's
+  ScratchList<Vanishing> vanishing_;
+  ScratchList<RingTriangle> ring_;  // kept's, then removed's
   std::size_t ring_kept_ = 0;       // so many are kept's
+  ScratchList<RingBlock> blocks_;   // of ring_, by make_legal()
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
   std::vector<Index> mark_;
