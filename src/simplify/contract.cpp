@@ -190,9 +190,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   Contraction contraction;
   contraction.removed = VertexId{p.global};
   contraction.kept = VertexId{q.global};
-  contraction.position = center_grid_ + Vec3i{static_cast<std::int32_t>(std::lround(target.x)),
-                                              static_cast<std::int32_t>(std::lround(target.y)),
-                                              static_cast<std::int32_t>(std::lround(target.z))};
+  contraction.position = on_grid(target);
   contraction.first_change = static_cast<Index>(result_.changes.size());
   contraction.first_derived = static_cast<Index>(result_.derived.size());
 
@@ -213,7 +211,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
     error.line = raised(error.line, std::sqrt(line_[line].at(target) / line_[line].weight));
   }
 
-  find_ring(kept, removed);
+  if (kept != a) find_ring(kept, removed);  // else make_legal() has
   if (ring_.empty()) {
     // A part disappears: its planes fit what is left of it, but what it stood for is gone.
     double longest2 = 0;
@@ -472,11 +470,7 @@ void PatchSimplifier::write_back() {
   for (Index v = 0; v < vertices_.size(); ++v) {
     const Vertex& vertex = vertices_[v];
     if (vertex.locked || !vertex.alive) continue;
-    const Vec3d& p = positions_[v];
-    work_->positions[vertex.global] =
-        center_grid_ + Vec3i{static_cast<std::int32_t>(std::lround(p.x)),
-                             static_cast<std::int32_t>(std::lround(p.y)),
-                             static_cast<std::int32_t>(std::lround(p.z))};
+    work_->positions[vertex.global] = on_grid(positions_[v]);
     work_->error_of_vertex[vertex.global] = errors_[v].now;
   }
 }

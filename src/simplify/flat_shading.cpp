@@ -81,22 +81,27 @@ Vec3d PatchSimplifier::shown_normal(Index t) const {
 }
 
 // Among the surviving triangles that touch the vanishing one's third vertex; see find_ring().
-PatchSimplifier::Index PatchSimplifier::heir_of(const Vanishing& vanishing) const {
+PatchSimplifier::Index PatchSimplifier::heir_of(const Vanishing& vanishing) {
+  Index* touching = touching_.start(ring_.size() + 1);
+  for (const RingTriangle& ring : ring_) {  // two of many: no branch could foretell which
+    *touching = ring.triangle;
+    touching += (ring.next == vanishing.third) | (ring.previous == vanishing.third);
+  }
+  touching_.finish(touching);
   const Vec3d share = to_double(shading_[vanishing.triangle].input.sum);
   Index best = kNone;
   double best_agreement = 0;
-  for (const RingTriangle& ring : ring_) {
-    if (ring.next != vanishing.third && ring.previous != vanishing.third) continue;
-    const double agreement = dot(shown_normal(ring.triangle), share);
+  for (Index t : touching_) {
+    const double agreement = dot(shown_normal(t), share);
     if (best != kNone && agreement <= best_agreement) continue;
-    best = ring.triangle;
+    best = t;
     best_agreement = agreement;
   }
   return best;
 }
 
 // What it costs that a flat triangle vanishes.
-double PatchSimplifier::vanishing_error(const Vanishing& vanishing) const {
+double PatchSimplifier::vanishing_error(const Vanishing& vanishing) {
   const Index t = vanishing.triangle;
   if (!flat_[t] && !derived_[t]) return 0;
   const Index heir = heir_of(vanishing);
@@ -109,9 +114,10 @@ void PatchSimplifier::hand_over_represented() {
     const Index heir = heir_of(vanishing);
     if (heir == kNone) continue;
     const Represented& from = shading_[vanishing.triangle].input;
-    Represented& to = shading_[heir].input;
-    to.sum += from.sum;
-    to.area += from.area;
+    FlatShading& to = shading_[heir];
+    to.input.sum += from.sum;
+    to.input.area += from.area;
+    if (flat_[heir]) to.know_stored_error();
   }
 }
 
@@ -120,7 +126,6 @@ void PatchSimplifier::derive_where_better(Index kept, LevelError& error) {
   for (Index t : triangles_of(kept)) {
     if (!flat_[t] && !derived_[t]) continue;
     FlatShading& shading = shading_[t];
-    shading.know_stored_error();
     if (!(facing_[t].area > 0)) continue;
     const double geometric_error = error_of(shading.input, facing_[t].normal);
     if (flat_[t] && is_better_derived(shading.input, geometric_error, shading.stored_error)) {

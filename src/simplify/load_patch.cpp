@@ -265,27 +265,31 @@ void PatchSimplifier::load_edges() {
   for (Index v = 0; v < vertices_.size(); ++v) {
     ++mark_now_;
     edges_.clear();
-    for (Index t : triangles_of(v)) {
-      for (Index c = 0; c < 3; ++c) {
-        const Index w = vertex_of_corner_[3 * t + c];
-        if (w <= v) continue;
-        if (mark_[w] != mark_now_) {
-          mark_[w] = mark_now_;
-          slot_[w] = static_cast<Index>(edges_.size());
-          edges_.push_back({w, {t, t}, 0});
-        }
-        Edge& edge = edges_[slot_[w]];
-        edge.triangle[edge.triangle_count++ > 0] = t;
+    const auto meet = [&](Index w, Index corner, Index other_corner) {
+      if (w < v) return;
+      if (mark_[w] != mark_now_) {
+        mark_[w] = mark_now_;
+        slot_[w] = static_cast<Index>(edges_.size());
+        edges_.push_back({w, {corner, corner}, {other_corner, other_corner}, 0});
       }
+      Edge& edge = edges_[slot_[w]];
+      const bool again = edge.triangle_count++ > 0;
+      edge.corner[again] = corner;
+      edge.other_corner[again] = other_corner;
+    };
+    for (Index t : triangles_of(v)) {
+      const Index* w = &vertex_of_corner_[3 * t];
+      const Index c = Index(w[1] == v) + 2 * Index(w[2] == v);
+      const Index next = c == 2 ? 0 : c + 1, previous = c == 0 ? 2 : c - 1;
+      const Index first = std::min(next, previous), second = std::max(next, previous);
+      meet(w[first], 3 * t + c, 3 * t + first);
+      meet(w[second], 3 * t + c, 3 * t + second);
     }
     for (const Edge& edge : edges_) {
       const Index w = edge.other;
       if (vertices_[v].locked && vertices_[w].locked) continue;
       if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
-      if (!is_line(v, edge)) continue;
-      for (Index t : triangles_of(v)) {
-        if (corner_of(t, w) >= 0) add_line(v, w, t);
-      }
+      if (is_line(v, edge)) add_lines(v, edge);
     }
   }
 }
@@ -293,28 +297,39 @@ void PatchSimplifier::load_edges() {
 // Whether an edge is a border, a crease, or where more than two sheets meet.
 bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
   if (edge.triangle_count != 2) return true;
-  const Index w = edge.other, t = edge.triangle[0], u = edge.triangle[1];
+  const Index w = edge.other, t = edge.corner[0] / 3, u = edge.corner[1] / 3;
   if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) {
     return true;
   }
   // Sides that run through the edge in the same direction are inside out to each other.
-  const auto runs_to_w = [&](Index triangle) {
-    return vertex_of_corner_[3 * triangle + static_cast<Index>(corner_of(triangle, v) + 1) % 3] ==
-           w;
+  const auto runs_to_w = [&](int side) {
+    const Index from = edge.corner[side], to = edge.other_corner[side];
+    return to == from + 1 || to + 2 == from;
   };
   const double bend = dot(facing_[t].normal, facing_[u].normal);
-  if (runs_to_w(t) == runs_to_w(u) ? bend > kFoldCosine : bend < -kFoldCosine) return true;
+  if (runs_to_w(0) == runs_to_w(1) ? bend > kFoldCosine : bend < -kFoldCosine) return true;
   if (!several_wedges_[v] && !several_wedges_[w]) return false;
   for (std::size_t l = 0; l < layer_count(); ++l) {
-    const auto wedge_at = [&](Index triangle, Index vertex) {
-      return wedge_of_corner_[l][3 * triangle + static_cast<Index>(corner_of(triangle, vertex))];
-    };
-    if (wedge_at(t, v) == wedge_at(u, v) && wedge_at(t, w) == wedge_at(u, w)) continue;
+    const std::vector<Index>& wedge_at = wedge_of_corner_[l];
+    if (wedge_at[edge.corner[0]] == wedge_at[edge.corner[1]] &&
+        wedge_at[edge.other_corner[0]] == wedge_at[edge.other_corner[1]]) {
+      continue;
+    }
     const bool facets =
         work_->layers[l].is_normal && (flat_[t] || derived_[t]) && (flat_[u] || derived_[u]);
     if (!facets || bend < kFlatLineCosine) return true;
   }
   return false;
+}
+
+void PatchSimplifier::add_lines(Index v, const Edge& edge) {
+  if (edge.triangle_count <= 2) {
+    for (Index i = 0; i < edge.triangle_count; ++i) add_line(v, edge.other, edge.corner[i] / 3);
+    return;
+  }
+  for (Index t : triangles_of(v)) {
+    if (corner_of(t, edge.other) >= 0) add_line(v, edge.other, t);
+  }
 }
 
 // The plane through edge a-b at a right angle to the triangle (Garland 1999, boundary constraints).

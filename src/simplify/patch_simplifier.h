@@ -126,7 +126,8 @@ class PatchSimplifier {
 
   struct Edge {
     Index other;
-    Index triangle[2];
+    Index corner[2];        // of the vertex that it was found at, in two of its triangles
+    Index other_corner[2];  // in the same triangles
     Index triangle_count;
   };
 
@@ -136,6 +137,7 @@ class PatchSimplifier {
   void load_quadrics();
   void load_edges();
   bool is_line(Index v, const Edge& edge) const;
+  void add_lines(Index v, const Edge& edge);
   void add_line(Index a, Index b, Index triangle);
 
   // virtual_pairs.cpp
@@ -170,8 +172,8 @@ class PatchSimplifier {
   void load_shading();
   void load_turns();
   Vec3d shown_normal(Index t) const;
-  Index heir_of(const Vanishing& vanishing) const;
-  double vanishing_error(const Vanishing& vanishing) const;
+  Index heir_of(const Vanishing& vanishing);
+  double vanishing_error(const Vanishing& vanishing);
   void hand_over_represented();
   void derive_where_better(Index kept, LevelError& error);
 
@@ -191,6 +193,11 @@ class PatchSimplifier {
   void hold(const Entry& entry, double cost, double cost_with_ring);
   void release(Index triangle);
 
+  // Of a place on the grid, less center_.
+  Vec3i on_grid(const Vec3d& p) const {
+    return center_grid_ + Vec3i{static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
+                                static_cast<std::int32_t>(p.z)};
+  }
   Facing facing_of(Index t) const {
     const Index* v = &vertex_of_corner_[3 * t];
     const Vec3d& p0 = positions_[v[0]];
@@ -297,6 +304,7 @@ class PatchSimplifier {
   ScratchList<RingTriangle> ring_;  // kept's, then removed's
   std::size_t ring_kept_ = 0;       // so many are kept's
   ScratchList<RingBlock> blocks_;   // of ring_, by make_legal()
+  ScratchList<Index> touching_;
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
   std::vector<Index> mark_;
