@@ -361,7 +361,7 @@ PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
 void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index removed,
                                      const Vec3d& target, LevelError& error) {
   const WorkLayer& work = work_->layers[layer];
-  join_wedges(layer, kept, removed, joined_);
+  join_wedges(layer, kept, removed);
   std::vector<Wedge>& wedges = wedges_[layer];
   std::vector<Index>& wedge_of_corner = wedge_of_corner_[layer];
   const Slice of_kept = wedges_of(layer, kept), of_removed = wedges_of(layer, removed);
@@ -379,8 +379,7 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
     used_[slot_of(wedge_of_corner[ring.corner])] |= shown ? kUsed | kShown : kUsed;
   }
 
-  std::vector<Index>& result_of_slot = parent_;  // join_wedges is done with it
-  result_of_slot.assign(used_.size(), kNone);
+  Index* result_of_slot = parent_.start(used_.size());  // join_wedges is done with it
   results_.clear();
   double square_error = -1;
   for (const Joined& joined : joined_) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace crease::simplification {
 
@@ -61,88 +62,123 @@ bool PatchSimplifier::meet(Index a, Index b) const {
   return false;
 }
 
-// Which wedges at a and b become one: those that a vanishing triangle has at its two corners, and
-// those that are the same attribute (DESIGN 6.3; equal index, same attribute). Members are indices
-// into wedges_[layer].
-void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
-                                  std::vector<Joined>& joined) {
-  joined.clear();
-  members_.clear();
-  const Slice wa = wedges_of(layer, a), wb = wedges_of(layer, b);
-  const std::vector<Wedge>& wedges = wedges_[layer];
-  if (wa.count == 1 && wb.count == 1) {
-    const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
-    if (x.id == y.id || (!(x.pinned && y.pinned) && meet(a, b))) {
-      members_ = {wa.first, wb.first};
-      joined.push_back({0, 2, x.pinned ? wa.first : y.pinned ? wb.first : kNone});
-    } else {
-      members_ = {wa.first, wb.first};
-      joined.push_back({0, 1, x.pinned ? wa.first : kNone});
-      joined.push_back({1, 1, y.pinned ? wb.first : kNone});
+// Calls unite(i, j) for wedges at two vertices with the same attribute, numbered as one list; none
+// has an attribute twice.
+template <typename Unite>
+void PatchSimplifier::unite_equal(std::size_t layer, Slice wa, Slice wb, Unite unite) {
+  constexpr std::size_t kFew = 400;  // comparisons
+  const Wedge* wedges = wedges_[layer].data();
+  const auto id_of = [&](Index i) {
+    return wedges[i < wa.count ? wa.first + i : wb.first + (i - wa.count)].id;
+  };
+  if (std::size_t(wa.count) * wb.count <= kFew) {
+    for (Index i = 0; i < wa.count; ++i) {
+      const Index id = id_of(i);
+      for (Index j = wa.count; j < wa.count + wb.count; ++j) {
+        if (id == id_of(j)) unite(i, j);
+      }
     }
     return;
   }
+  by_id_.resize(wa.count + wb.count);
+  std::iota(by_id_.begin(), by_id_.end(), 0u);
+  std::sort(by_id_.begin(), by_id_.end(), [&](Index i, Index j) { return id_of(i) < id_of(j); });
+  for (std::size_t k = 1; k < by_id_.size(); ++k) {
+    if (id_of(by_id_[k - 1]) == id_of(by_id_[k])) unite(by_id_[k - 1], by_id_[k]);
+  }
+}
+
+// Which wedges at a and b become one: those that a vanishing triangle has at its two corners, and
+// those that are the same attribute (DESIGN 6.3; equal index, same attribute). Members are indices
+// into wedges_[layer].
+void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
+  const Slice wa = wedges_of(layer, a), wb = wedges_of(layer, b);
+  const Wedge* wedges = wedges_[layer].data();
   const Index n = wa.count + wb.count;
-  const auto wedge_at = [&](Index i) {
-    return i < wa.count ? wa.first + i : wb.first + (i - wa.count);
-  };
-  parent_.resize(n);
-  std::iota(parent_.begin(), parent_.end(), 0u);
+  Index* members = members_.start(n);
+  Joined* joined = joined_.start(n);
+  members_.finish(members + n);
+  if (wa.count == 1 && wb.count == 1) {
+    const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
+    members[0] = wa.first;
+    members[1] = wb.first;
+    if (x.id == y.id || (!(x.pinned && y.pinned) && meet(a, b))) {
+      *joined++ = {0, 2, x.pinned ? wa.first : y.pinned ? wb.first : kNone};
+    } else {
+      *joined++ = {0, 1, x.pinned ? wa.first : kNone};
+      *joined++ = {1, 1, y.pinned ? wb.first : kNone};
+    }
+    joined_.finish(joined);
+    return;
+  }
+
+  // Union-find, where every set's root is the first of it.
+  Index* parent = parent_.start(n);
+  std::iota(parent, parent + n, 0u);
   const auto root = [&](Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
   const auto unite = [&](Index i, Index j) {
     i = root(i);
     j = root(j);
-    parent_[std::max(i, j)] = std::min(i, j);
+    parent[std::max(i, j)] = std::min(i, j);
   };
-  for (Index i = 0; i < wa.count; ++i) {
-    for (Index j = 0; j < wb.count; ++j) {
-      if (wedges[wa.first + i].id == wedges[wb.first + j].id) unite(i, wa.count + j);
-    }
-  }
+  unite_equal(layer, wa, wb, unite);
+  const Index* wedge_of_corner = wedge_of_corner_[layer].data();
   for (Index t : triangles_of(a)) {
     const int cb = corner_of(t, b);
     if (cb < 0) continue;
-    const Index at_a = wedge_of_corner_[layer][3 * t + static_cast<Index>(corner_of(t, a))];
-    const Index at_b = wedge_of_corner_[layer][3 * t + static_cast<Index>(cb)];
+    const Index at_a = wedge_of_corner[3 * t + static_cast<Index>(corner_of(t, a))];
+    const Index at_b = wedge_of_corner[3 * t + static_cast<Index>(cb)];
     unite(at_a - wa.first, wa.count + (at_b - wb.first));
   }
 
+  // Set by set, in the order of the roots.
+  Index* place =
+      place_of_set_.start(n);  // of a root: how many it has, then where the next one goes
+  std::fill_n(place, n, 0u);
   for (Index i = 0; i < n; ++i) {
-    if (root(i) != i) continue;
-    const Index first = static_cast<Index>(members_.size());
+    parent[i] = parent[parent[i]];
+    ++place[parent[i]];
+  }
+  Index next = 0;
+  for (Index i = 0; i < n; ++i) {
+    if (parent[i] == i) next += std::exchange(place[i], next);
+  }
+  for (Index i = 0; i < n; ++i) {
+    members[place[parent[i]]++] = i < wa.count ? wa.first + i : wb.first + (i - wa.count);
+  }
+
+  for (Index first = 0, i = 0; first < n; ++i) {
+    if (parent[i] != i) continue;
+    const Index end = place[i];
     Index fixed = kNone;
     bool several_fixed = false;
-    for (Index j = i; j < n; ++j) {
-      if (root(j) != i) continue;
-      const Index w = wedge_at(j);
-      members_.push_back(w);
+    for (Index k = first; k < end; ++k) {
+      const Index w = members[k];
       if (!wedges[w].pinned) continue;
-      if (fixed == kNone) {
-        fixed = w;
-      } else if (wedges[fixed].id != wedges[w].id) {
-        several_fixed = true;
-      }
+      if (fixed == kNone) fixed = w;
+      several_fixed = several_fixed || wedges[fixed].id != wedges[w].id;
     }
-    const Index end = static_cast<Index>(members_.size());
     if (!several_fixed) {
-      joined.push_back({first, end - first, fixed});
+      *joined++ = {first, end - first, fixed};
+      first = end;
       continue;
     }
     // Two face normals would become one: neither may change (DB03 rule b), so each stays as it is.
     // Equal attributes are still one wedge.
-    std::sort(members_.begin() + first, members_.end(), [&](Index x, Index y) {
+    std::sort(members + first, members + end, [&](Index x, Index y) {
       return wedges[x].id != wedges[y].id ? wedges[x].id < wedges[y].id : x < y;
     });
-    for (Index k = first; k < end;) {
-      Index next = k + 1;
-      while (next < end && wedges[members_[next]].id == wedges[members_[k]].id) ++next;
-      joined.push_back({k, next - k, members_[k]});
-      k = next;
+    while (first < end) {
+      Index after = first + 1;
+      while (after < end && wedges[members[after]].id == wedges[members[first]].id) ++after;
+      *joined++ = {first, after - first, members[first]};
+      first = after;
     }
   }
+  joined_.finish(joined);
 }
 
 CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
@@ -169,7 +205,7 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
         continue;
       }
     }
-    join_wedges(l, a, b, joined_);
+    join_wedges(l, a, b);
     for (const Joined& joined : joined_) {
       const Index* members = &members_[joined.first_member];
       if (joined.fixed != kNone) {
@@ -195,7 +231,7 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     if (!layer.steers) continue;
-    join_wedges(l, kept, removed, joined_);
+    join_wedges(l, kept, removed);
     for (const Joined& joined : joined_) {
       const Index* members = &members_[joined.first_member];
       const Index inherited = joined.fixed != kNone ? joined.fixed : members[0];

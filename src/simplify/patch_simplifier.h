@@ -150,7 +150,10 @@ class PatchSimplifier {
   void find_costs_of_others(Candidate& pair);
   static void keep_placed(const Placed& placed, Candidate& pair);
   bool meet(Index a, Index b) const;
-  void join_wedges(std::size_t layer, Index a, Index b, std::vector<Joined>& joined);
+  // Into joined_.
+  void join_wedges(std::size_t layer, Index a, Index b);
+  template <typename Unite>
+  void unite_equal(std::size_t layer, Slice wa, Slice wb, Unite unite);
   void add_attribute_costs(Index a, Index b, Quadric& sum);
   void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum);
   double layer_scale(std::size_t layer) const;
@@ -297,9 +300,9 @@ class PatchSimplifier {
   std::vector<Index> slot_;
 
   // Scratch of one contraction.
-  std::vector<Joined> joined_;
-  std::vector<Index> members_;
-  std::vector<Index> parent_;
+  ScratchList<Joined> joined_;
+  ScratchList<Index> members_, parent_, place_of_set_;
+  std::vector<Index> by_id_;
   ScratchList<Vanishing> vanishing_;
   ScratchList<RingTriangle> ring_;  // kept's, then removed's
   std::size_t ring_kept_ = 0;       // so many are kept's
