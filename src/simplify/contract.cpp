@@ -180,7 +180,7 @@ PatchResult PatchSimplifier::run() {
   return std::move(result_);
 }
 
-void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cost) {
+CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cost) {
   // The nearer end stays, so that the stored step is short; with endpoints it is the target itself.
   const bool keep_a = squared(positions_[a] - target) < squared(positions_[b] - target);
   const Index kept = keep_a ? a : b, removed = keep_a ? b : a;
@@ -270,17 +270,19 @@ void PatchSimplifier::find_ring(Index kept, Index removed) {
   RingTriangle* ring = ring_.start(around_kept.size() + around_removed.size());
   Vanishing* vanishing = vanishing_.start(around_kept.size());
   for (Index t : around_kept) {
-    *ring = ring_triangle(t, kept);
-    const bool before = ring->previous == removed, after = ring->next == removed;
-    *vanishing = {t, after ? ring->previous : ring->next};
+    const RingTriangle own = ring_triangle(t, kept);
+    const bool before = own.previous == removed, after = own.next == removed;
+    *ring = own;
+    *vanishing = {t, after ? own.previous : own.next};
     vanishing += before | after;
     ring += !(before | after);
   }
   vanishing_.finish(vanishing);
   ring_kept_ = static_cast<std::size_t>(ring - ring_.begin());
   for (Index t : around_removed) {
-    *ring = ring_triangle(t, removed);
-    ring += (ring->previous != kept) & (ring->next != kept);
+    const RingTriangle own = ring_triangle(t, removed);
+    *ring = own;
+    ring += (own.previous != kept) & (own.next != kept);
   }
   ring_.finish(ring);
 }

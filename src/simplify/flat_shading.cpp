@@ -55,7 +55,7 @@ void PatchSimplifier::load_shading() {
 // know about what turning costs; legality.cpp knows it exactly, but only for one place at a time.
 // Thin triangles turn at a touch, and there is no more to lose than their area: where d is four
 // times what the band allows it costs that.
-void PatchSimplifier::load_turns() {
+CREASE_WIDE void PatchSimplifier::load_turns() {
   turn_.clear();
   if (shading_.empty()) return;
   turn_.assign(vertices_.size(), Quadric{});

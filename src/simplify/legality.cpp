@@ -45,36 +45,39 @@ void PatchSimplifier::blame(Index t, double cost) {
   blamed_cost_ = cost;
 }
 
-// The ring's triangles, four at a time; the last ones fill up their block.
-CREASE_WIDE void PatchSimplifier::gather_blocks() {
-  const std::size_t count = ring_.size();
-  RingBlock* block = blocks_.start(count / RingBlock::kTriangles + 1);
-  for (std::size_t i = 0; i < count; i += RingBlock::kTriangles, ++block) {
-    const RingTriangle* ring[RingBlock::kTriangles];
-    for (std::size_t k = 0; k < RingBlock::kTriangles; ++k) {
-      ring[k] = &ring_[std::min(i + k, count - 1)];
-    }
-    const auto fill = [&](Row& row, auto value_of) {
-      row = Row{value_of(*ring[0]), value_of(*ring[1]), value_of(*ring[2]), value_of(*ring[3])};
-    };
-    for (int axis = 0; axis < 3; ++axis) {
-      fill(block->next[axis], [&](const RingTriangle& r) { return positions_[r.next][axis]; });
-      fill(block->previous[axis],
-           [&](const RingTriangle& r) { return positions_[r.previous][axis]; });
-      fill(block->normal[axis],
-           [&](const RingTriangle& r) { return facing_[r.triangle].normal[axis]; });
-    }
-    fill(block->area, [&](const RingTriangle& r) { return facing_[r.triangle].area; });
-    block->shows = block->right = Lanes{};
-    if (shading_.empty()) continue;
-    Row shows, counts;
-    fill(shows,
-         [&](const RingTriangle& r) { return double(flat_[r.triangle] | derived_[r.triangle]); });
-    fill(counts, [&](const RingTriangle& r) { return shading_[r.triangle].counts; });
-    block->shows = shows > 0;
-    block->right = counts <= kRight * block->area;
+// The ring's triangles from `first` on, of which the last one fills up the block.
+inline void PatchSimplifier::gather(std::size_t first, RingBlock& block) const {
+  const RingTriangle* ring[RingBlock::kTriangles];
+  for (std::size_t k = 0; k < RingBlock::kTriangles; ++k) {
+    ring[k] = &ring_[std::min(first + k, ring_.size() - 1)];
   }
-  blocks_.finish(block);
+  const auto fill = [&](Row& row, const double* x0, const double* x1, const double* x2,
+                        const double* x3) {
+    row = Row{*x0, *x1, *x2, *x3};
+  };
+  const auto fill_axes = [&](Row* rows, const Vec3d& v0, const Vec3d& v1, const Vec3d& v2,
+                             const Vec3d& v3) {
+    fill(rows[0], &v0.x, &v1.x, &v2.x, &v3.x);
+    fill(rows[1], &v0.y, &v1.y, &v2.y, &v3.y);
+    fill(rows[2], &v0.z, &v1.z, &v2.z, &v3.z);
+  };
+  const Vec3d* at = positions_.data();
+  fill_axes(block.next, at[ring[0]->next], at[ring[1]->next], at[ring[2]->next], at[ring[3]->next]);
+  fill_axes(block.previous, at[ring[0]->previous], at[ring[1]->previous], at[ring[2]->previous],
+            at[ring[3]->previous]);
+  const Facing &f0 = facing_[ring[0]->triangle], &f1 = facing_[ring[1]->triangle],
+               &f2 = facing_[ring[2]->triangle], &f3 = facing_[ring[3]->triangle];
+  fill_axes(block.normal, f0.normal, f1.normal, f2.normal, f3.normal);
+  fill(block.area, &f0.area, &f1.area, &f2.area, &f3.area);
+  block.shows = block.right = Lanes{};
+  if (shading_.empty()) return;
+  const auto shows = [&](int k) {
+    const Index t = ring[k]->triangle;
+    return -static_cast<long long>(flat_[t] | derived_[t]);
+  };
+  const auto counts = [&](int k) { return shading_[ring[k]->triangle].counts; };
+  block.shows = Lanes{shows(0), shows(1), shows(2), shows(3)};
+  block.right = Row{counts(0), counts(1), counts(2), counts(3)} <= kRight * block.area;
 }
 
 // Stops when it is above `bound`: dear enough.
@@ -87,7 +90,11 @@ CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& tar
   double cost = 0;
   for (std::size_t first = begin & ~(RingBlock::kTriangles - 1); first < end && cost <= bound;
        first += RingBlock::kTriangles) {
-    const RingBlock& block = blocks_[first / RingBlock::kTriangles];
+    RingBlock& block = blocks_[first / RingBlock::kTriangles];
+    if (block.ring != ring_count_) {
+      block.ring = ring_count_;
+      gather(first, block);
+    }
     const RingBlock::Moved moved = block.moved_to(target);
     const Row cosine2 = moved.agreement * moved.agreement;  // times length2
     Lanes folds = (moved.agreement < 0) |
@@ -201,7 +208,8 @@ PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double boun
   blamed_ = kNone;
   blamed_cost_ = 0;
   find_ring(a, b);
-  gather_blocks();
+  ++ring_count_;
+  blocks_.resize(std::max(blocks_.size(), ring_.size() / RingBlock::kTriangles + 1));
   const double free_cost = pair.free_cost;
   const Vec3d position{double(pair.position.x), double(pair.position.y), double(pair.position.z)};
   const double fold = ring_cost(a, b, position, bound - free_cost);

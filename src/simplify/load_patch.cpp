@@ -158,10 +158,11 @@ void PatchSimplifier::load_wedges() {
         continue;
       }
       for (Index t : triangles_of(v)) {
-        const Index id = id_of_corner[3 * t + static_cast<Index>(corner_of(t, v))];
+        Index& corner = id_of_corner[3 * t + corner_at(t, v)];
         Index w = slice.first;
-        while (w < wedges.size() && wedges[w].id != id) ++w;
-        if (w == wedges.size()) append(id);
+        while (w < wedges.size() && wedges[w].id != corner) ++w;
+        if (w == wedges.size()) append(corner);
+        corner = w;
       }
       slice.count = static_cast<Index>(wedges.size()) - slice.first;
     }
@@ -169,19 +170,17 @@ void PatchSimplifier::load_wedges() {
     Index quadric_count = 0;
     for (Index t = 0; t < global_triangle_.size(); ++t) {
       Index* w = &id_of_corner[3 * t];
-      const bool constant = w[0] == w[1] && w[1] == w[2];
-      const bool pinned = constant && !(layer.is_normal && derived_[t]);
-      if (pinned && layer.is_normal) flat_[t] = 1;
       for (Index c = 0; c < 3; ++c) {
         const Slice& slice = slices[vertex_of_corner_[3 * t + c]];
-        const Index id = w[c];
-        w[c] = slice.first;
-        if (slice.count > 1) {
-          while (wedges[w[c]].id != id) ++w[c];
-        }
-        Wedge& wedge = wedges[w[c]];
-        if (pinned) wedge.pinned = true;
-        if (!constant && layer.steers && wedge.quadric == kNone) wedge.quadric = quadric_count++;
+        w[c] = slice.count == 1 ? slice.first : w[c];
+      }
+      Wedge* const own[] = {&wedges[w[0]], &wedges[w[1]], &wedges[w[2]]};
+      const bool constant = own[0]->id == own[1]->id && own[1]->id == own[2]->id;
+      const bool pinned = constant && !(layer.is_normal && derived_[t]);
+      if (pinned && layer.is_normal) flat_[t] = 1;
+      for (Wedge* wedge : own) {
+        if (pinned) wedge->pinned = true;
+        if (!constant && layer.steers && wedge->quadric == kNone) wedge->quadric = quadric_count++;
       }
     }
     attribute_quadrics_[l].assign(quadric_count, AttributeQuadric{});
@@ -253,49 +252,8 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
   }
 }
 
-void PatchSimplifier::load_edges() {
-  line_of_vertex_.assign(vertices_.size(), kNone);
-  line_.clear();
-  pairs_.clear();
-  several_wedges_.assign(vertices_.size(), 0);
-  for (std::size_t l = 0; l < layer_count(); ++l) {
-    for (Index v = 0; v < vertices_.size(); ++v) several_wedges_[v] |= wedges_of(l, v).count > 1;
-  }
-  slot_.resize(vertices_.size());
-  for (Index v = 0; v < vertices_.size(); ++v) {
-    ++mark_now_;
-    edges_.clear();
-    const auto meet = [&](Index w, Index corner, Index other_corner) {
-      if (w < v) return;
-      if (mark_[w] != mark_now_) {
-        mark_[w] = mark_now_;
-        slot_[w] = static_cast<Index>(edges_.size());
-        edges_.push_back({w, {corner, corner}, {other_corner, other_corner}, 0});
-      }
-      Edge& edge = edges_[slot_[w]];
-      const bool again = edge.triangle_count++ > 0;
-      edge.corner[again] = corner;
-      edge.other_corner[again] = other_corner;
-    };
-    for (Index t : triangles_of(v)) {
-      const Index* w = &vertex_of_corner_[3 * t];
-      const Index c = Index(w[1] == v) + 2 * Index(w[2] == v);
-      const Index next = c == 2 ? 0 : c + 1, previous = c == 0 ? 2 : c - 1;
-      const Index first = std::min(next, previous), second = std::max(next, previous);
-      meet(w[first], 3 * t + c, 3 * t + first);
-      meet(w[second], 3 * t + c, 3 * t + second);
-    }
-    for (const Edge& edge : edges_) {
-      const Index w = edge.other;
-      if (vertices_[v].locked && vertices_[w].locked) continue;
-      if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
-      if (is_line(v, edge)) add_lines(v, edge);
-    }
-  }
-}
-
 // Whether an edge is a border, a crease, or where more than two sheets meet.
-bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
+inline bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
   if (edge.triangle_count != 2) return true;
   const Index w = edge.other, t = edge.corner[0] / 3, u = edge.corner[1] / 3;
   if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) {
@@ -322,18 +280,8 @@ bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
   return false;
 }
 
-void PatchSimplifier::add_lines(Index v, const Edge& edge) {
-  if (edge.triangle_count <= 2) {
-    for (Index i = 0; i < edge.triangle_count; ++i) add_line(v, edge.other, edge.corner[i] / 3);
-    return;
-  }
-  for (Index t : triangles_of(v)) {
-    if (corner_of(t, edge.other) >= 0) add_line(v, edge.other, t);
-  }
-}
-
 // The plane through edge a-b at a right angle to the triangle (Garland 1999, boundary constraints).
-void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
+inline void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
   const Vec3d edge = positions_[b] - positions_[a];
   const Vec3d across = cross(edge, facing_[triangle].normal);  // as long as the edge: its weight
   const double weight = dot(across, across);
@@ -347,6 +295,57 @@ void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
       line_.emplace_back();
     }
     line_[line_of_vertex_[v]].add(plane);
+  }
+}
+
+inline void PatchSimplifier::add_lines(Index v, const Edge& edge) {
+  if (edge.triangle_count <= 2) {
+    for (Index i = 0; i < edge.triangle_count; ++i) add_line(v, edge.other, edge.corner[i] / 3);
+    return;
+  }
+  for (Index t : triangles_of(v)) {
+    if (corner_of(t, edge.other) >= 0) add_line(v, edge.other, t);
+  }
+}
+
+CREASE_WIDE void PatchSimplifier::load_edges() {
+  line_of_vertex_.assign(vertices_.size(), kNone);
+  line_.clear();
+  pairs_.clear();
+  several_wedges_.assign(vertices_.size(), 0);
+  for (std::size_t l = 0; l < layer_count(); ++l) {
+    for (Index v = 0; v < vertices_.size(); ++v) several_wedges_[v] |= wedges_of(l, v).count > 1;
+  }
+  slot_.resize(vertices_.size());
+  for (Index v = 0; v < vertices_.size(); ++v) {
+    ++mark_now_;
+    edges_.clear();
+    const auto meet = [&](Index w, Index corner, Index other_corner) {
+      if (w < v) return;
+      if (mark_[w] != mark_now_) {
+        mark_[w] = mark_now_;
+        slot_[w] = static_cast<Index>(edges_.size());
+        edges_.push_back({w, {corner, corner}, {other_corner, other_corner}, 0});
+      }
+      Edge& edge = edges_[slot_[w]];
+      const bool again = edge.triangle_count++ > 0;
+      edge.corner[again] = corner;
+      edge.other_corner[again] = other_corner;
+    };
+    for (Index t : triangles_of(v)) {
+      const Index* w = &vertex_of_corner_[3 * t];
+      const Index c = corner_at(t, v);
+      const Index next = c == 2 ? 0 : c + 1, previous = c == 0 ? 2 : c - 1;
+      const Index first = std::min(next, previous), second = std::max(next, previous);
+      meet(w[first], 3 * t + c, 3 * t + first);
+      meet(w[second], 3 * t + c, 3 * t + second);
+    }
+    for (const Edge& edge : edges_) {
+      const Index w = edge.other;
+      if (vertices_[v].locked && vertices_[w].locked) continue;
+      if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
+      if (is_line(v, edge)) add_lines(v, edge);
+    }
   }
 }
 

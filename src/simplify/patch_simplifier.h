@@ -166,7 +166,7 @@ class PatchSimplifier {
   double ring_cost(Index a, Index b, const Vec3d& target, double bound);
   double category_cost(Index a, Index b, const Vec3d& target);
   double vanishing_cost(Index a, Index b);
-  void gather_blocks();
+  void gather(std::size_t first, RingBlock& block) const;
   double fold_cost(Index a, Index b, const Vec3d& target, double bound);
   double coincidence_cost(Index a, Index b);
   void blame(Index t, double cost);
@@ -213,6 +213,11 @@ class PatchSimplifier {
   Vec3d normal_if_moved(const RingTriangle& ring, const Vec3d& target) const {
     return cross(positions_[ring.next] - target, positions_[ring.previous] - target);
   }
+  // 0 to 2, without branches; the triangle has v.
+  Index corner_at(Index t, Index v) const {
+    const Index* corners = &vertex_of_corner_[3 * t];
+    return Index(corners[1] == v) + 2 * Index(corners[2] == v);
+  }
   // -1: none.
   int corner_of(Index t, Index v) const {
     const Index* corners = &vertex_of_corner_[3 * t];
@@ -221,7 +226,7 @@ class PatchSimplifier {
   RingTriangle ring_triangle(Index t, Index end) const {
     const Index* v = &vertex_of_corner_[3 * t];
     constexpr std::uint8_t kNext[] = {1, 2, 0}, kPrevious[] = {2, 0, 1};
-    const Index c = Index(v[1] == end) + 2 * Index(v[2] == end);
+    const Index c = corner_at(t, end);
     return {t, 3 * t + c, v[kNext[c]], v[kPrevious[c]]};
   }
   std::span<const Index> triangles_of(Index v) const {
@@ -306,7 +311,8 @@ class PatchSimplifier {
   ScratchList<Vanishing> vanishing_;
   ScratchList<RingTriangle> ring_;  // kept's, then removed's
   std::size_t ring_kept_ = 0;       // so many are kept's
-  ScratchList<RingBlock> blocks_;   // of ring_, by make_legal()
+  std::vector<RingBlock> blocks_;   // of ring_, as far as fold_cost() has looked at it
+  std::uint32_t ring_count_ = 0;    // of those that make_legal() has looked at
   ScratchList<Index> touching_;
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer

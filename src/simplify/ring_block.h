@@ -4,6 +4,9 @@
 
 #include "hierarchy/quadric.h"
 
+#include <cstddef>
+#include <cstdint>
+
 namespace crease::simplification {
 
 using Lanes = decltype(Row{} < Row{});  // of each triangle: all bits, or none
@@ -14,8 +17,9 @@ struct RingBlock {
   // As they are: the two vertices that stay, unit normal (or zero), area.
   Row next[3], previous[3], normal[3];
   Row area;
-  Lanes shows;  // is flat or derived
-  Lanes right;  // and shows what it stands for
+  Lanes shows;             // is flat or derived
+  Lanes right;             // and shows what it stands for
+  std::uint32_t ring = 0;  // whose triangles these are: the pairs' rings are counted
 
   struct Moved {
     Row normal[3];  // twice the area long
