@@ -225,7 +225,7 @@ class PatchSimplifier {
   }
   RingTriangle ring_triangle(Index t, Index end) const {
     const Index* v = &vertex_of_corner_[3 * t];
-    constexpr std::uint8_t kNext[] = {1, 2, 0}, kPrevious[] = {2, 0, 1};
+    static constexpr std::uint8_t kNext[] = {1, 2, 0}, kPrevious[] = {2, 0, 1};
     const Index c = corner_at(t, end);
     return {t, 3 * t + c, v[kNext[c]], v[kPrevious[c]]};
   }
