@@ -91,9 +91,9 @@ void PatchSimplifier::release(Index triangle) {
 }
 
 void PatchSimplifier::order_pairs() {
-  order_.clear();
+  clear_for(order_, pairs_.size() / 2);
   next_in_order_ = 0;
-  candidates_.clear();
+  clear_for(candidates_, pairs_.size() / 2);
   for (const auto& [a, b] : pairs_) {
     const Placed placed = place(a, b, steering_.cost_limit);
     if (!(placed.cost <= steering_.cost_limit)) continue;
@@ -442,6 +442,9 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   if (count > of_kept.count) first = of_removed.first;
   if (count > of_kept.count && count > of_removed.count) {
     first = static_cast<Index>(wedges.size());
+    if (wedges.capacity() < wedges.size() + count) {
+      wedges.reserve(wedges.size() + wedges.size() / 8 + count);
+    }
     wedges.resize(wedges.size() + count);
   }
   std::copy(results_.begin(), results_.end(), wedges.begin() + first);

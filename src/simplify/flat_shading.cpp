@@ -34,6 +34,7 @@ void PatchSimplifier::load_shading() {
   }
   std::size_t normal_layer = 0;
   while (!work_->layers[normal_layer].is_normal) ++normal_layer;
+  clear_for(shading_, global_triangle_.size());
   shading_.resize(global_triangle_.size());
   for (Index t = 0; t < global_triangle_.size(); ++t) {
     FlatShading& shading = shading_[t];
@@ -58,6 +59,7 @@ void PatchSimplifier::load_shading() {
 CREASE_WIDE void PatchSimplifier::load_turns() {
   turn_.clear();
   if (shading_.empty()) return;
+  clear_for(turn_, vertices_.size());
   turn_.assign(vertices_.size(), Quadric{});
   const double normal_scale2 = squared(steering_.normal_scale);
   const double turn_distance2 = squared(steering_.turn_distance);

@@ -40,10 +40,12 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
 
 void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id) {
   if (local_of_vertex_.empty()) local_of_vertex_.assign(work_->positions.size(), kNone);
-  vertices_.clear();
-  errors_.clear();
-  positions_.clear();
   const std::size_t n = triangles.size();
+  clear_for(vertices_, n / 2);
+  clear_for(errors_, n / 2);
+  clear_for(positions_, n / 2);
+  clear_for(global_triangle_, n);
+  clear_for(vertex_of_corner_, 3 * n);
   global_triangle_.assign(triangles.begin(), triangles.end());
   vertex_of_corner_.resize(3 * n);
   triangle_alive_.assign(n, 1);
@@ -90,8 +92,7 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
     next += vertex.triangles.count;
     vertex.triangles.count = 0;
   }
-  triangle_pool_.clear();
-  triangle_pool_.reserve(2 * std::size_t(next));
+  clear_for(triangle_pool_, 2 * std::size_t(next));
   triangle_pool_.resize(next);
   for (std::size_t corner = 0; corner < 3 * n; ++corner) {
     Slice& around = vertices_[vertex_of_corner_[corner]].triangles;
@@ -123,12 +124,14 @@ void PatchSimplifier::load_wedges() {
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     std::vector<Index>& id_of_corner = wedge_of_corner_[l];  // until the wedges are known
+    clear_for(id_of_corner, vertex_of_corner_.size());
     id_of_corner.resize(vertex_of_corner_.size());
     for (Index t = 0; t < global_triangle_.size(); ++t) {
       std::copy_n(&layer.of_corner[3 * global_triangle_[t]], 3, &id_of_corner[3 * t]);
     }
 
     std::vector<Slice>& slices = wedge_slices_[l];
+    clear_for(slices, vertices_.size());
     slices.assign(vertices_.size(), Slice{kNone, 1});
     first_id.resize(vertices_.size());
     for (std::size_t corner = 0; corner < vertex_of_corner_.size(); ++corner) {
@@ -142,8 +145,7 @@ void PatchSimplifier::load_wedges() {
     }
 
     std::vector<Wedge>& wedges = wedges_[l];
-    wedges.clear();
-    wedges.reserve(vertices_.size() + vertices_.size() / 4);
+    clear_for(wedges, vertices_.size());
     const auto append = [&](Index id) {
       Wedge& wedge = wedges.emplace_back();
       wedge.id = id;
@@ -183,11 +185,14 @@ void PatchSimplifier::load_wedges() {
         if (!constant && layer.steers && wedge->quadric == kNone) wedge->quadric = quadric_count++;
       }
     }
+    clear_for(attribute_quadrics_[l], quadric_count);
     attribute_quadrics_[l].assign(quadric_count, AttributeQuadric{});
   }
 }
 
 CREASE_WIDE void PatchSimplifier::load_quadrics() {
+  clear_for(surface_, vertices_.size());
+  clear_for(facing_, global_triangle_.size());
   surface_.assign(vertices_.size(), Quadric{});
   facing_.assign(global_triangle_.size(), Facing{});
   for (Index t = 0; t < global_triangle_.size(); ++t) {
@@ -311,7 +316,7 @@ inline void PatchSimplifier::add_lines(Index v, const Edge& edge) {
 CREASE_WIDE void PatchSimplifier::load_edges() {
   line_of_vertex_.assign(vertices_.size(), kNone);
   line_.clear();
-  pairs_.clear();
+  clear_for(pairs_, global_triangle_.size());
   several_wedges_.assign(vertices_.size(), 0);
   for (std::size_t l = 0; l < layer_count(); ++l) {
     for (Index v = 0; v < vertices_.size(); ++v) several_wedges_[v] |= wedges_of(l, v).count > 1;

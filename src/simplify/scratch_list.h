@@ -28,4 +28,14 @@ class ScratchList {
   std::size_t count_ = 0;
 };
 
+// Empties `values`, with room for `most`: somewhat more, since the next patch is as large but for a
+// few, and arrays that move for those few leave holes in memory.
+template <class T>
+void clear_for(std::vector<T>& values, std::size_t most) {
+  values.clear();
+  if (values.capacity() >= most) return;
+  values.shrink_to_fit();  // first let go of the old room
+  values.reserve(most + most / 8);
+}
+
 }  // namespace crease::simplification
