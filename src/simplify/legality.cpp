@@ -70,6 +70,7 @@ inline void PatchSimplifier::gather(std::size_t first, RingBlock& block) const {
   fill_axes(block.normal, f0.normal, f1.normal, f2.normal, f3.normal);
   fill(block.area, &f0.area, &f1.area, &f2.area, &f3.area);
   block.shows = block.right = Lanes{};
+  block.has_shading = false;
   if (shading_.empty()) return;
   const auto shows = [&](int k) {
     const Index t = ring[k]->triangle;
@@ -78,6 +79,31 @@ inline void PatchSimplifier::gather(std::size_t first, RingBlock& block) const {
   const auto counts = [&](int k) { return shading_[ring[k]->triangle].counts; };
   block.shows = Lanes{shows(0), shows(1), shows(2), shows(3)};
   block.right = Row{counts(0), counts(1), counts(2), counts(3)} <= kRight * block.area;
+}
+
+inline void PatchSimplifier::gather_shading(std::size_t first, RingBlock& block) const {
+  const auto at = [&](std::size_t k) -> const FlatShading& {
+    return shading_[ring_[std::min(first + k, ring_.size() - 1)].triangle];
+  };
+  const FlatShading &s0 = at(0), &s1 = at(1), &s2 = at(2), &s3 = at(3);
+  const auto fill = [](Row& row, double x0, double x1, double x2, double x3) {
+    row = Row{x0, x1, x2, x3};
+  };
+  const auto fill_axes = [&](Row* rows, const Vec3f& v0, const Vec3f& v1, const Vec3f& v2,
+                             const Vec3f& v3) {
+    fill(rows[0], v0.x, v1.x, v2.x, v3.x);
+    fill(rows[1], v0.y, v1.y, v2.y, v3.y);
+    fill(rows[2], v0.z, v1.z, v2.z, v3.z);
+  };
+  ShadingBlock& to = block.shading;
+  fill_axes(to.input_sum, s0.input.sum, s1.input.sum, s2.input.sum, s3.input.sum);
+  fill(to.input_area, s0.input.area, s1.input.area, s2.input.area, s3.input.area);
+  fill_axes(to.stored, s0.stored, s1.stored, s2.stored, s3.stored);
+  fill(to.stored_error, s0.stored_error, s1.stored_error, s2.stored_error, s3.stored_error);
+  fill(to.stored_counts, s0.stored_counts, s1.stored_counts, s2.stored_counts, s3.stored_counts);
+  fill(to.counts, s0.counts, s1.counts, s2.counts, s3.counts);
+  to.derived = Lanes{-s0.derived, -s1.derived, -s2.derived, -s3.derived};
+  block.has_shading = true;
 }
 
 // Stops when it is above `bound`: dear enough.
@@ -105,21 +131,24 @@ CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& tar
     unsigned left = bits_of(folds | turns);
     if (first < begin) left &= ~0u << (begin - first);
     if (end - first < RingBlock::kTriangles) left &= (1u << (end - first)) - 1;
+    if (left == 0) continue;
+    Row twice_after, own;
+    take_root(moved.length2, twice_after);
+    own = folds ? step2 * (block.area + 0.5 * twice_after) : Row{};
+    if (bits_of(turns) != 0) {
+      if (!block.has_shading) gather_shading(first, block);
+      const Row inverse = 1 / twice_after;
+      const Row normal[] = {moved.normal[0] * inverse, moved.normal[1] * inverse,
+                            moved.normal[2] * inverse};
+      Row more;
+      block.shading.more_with(normal, 0.5 * twice_after, more);
+      own += turns ? normal_scale2 * more : Row{};
+    }
     for (; left != 0 && cost <= bound; left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      const Index t = ring_[first + k].triangle;
-      const double twice_after = std::sqrt(moved.length2[k]);
-      double own = 0;
-      if (folds[k]) own = step2 * (block.area[k] + 0.5 * twice_after);
-      if (turns[k]) {
-        const FlatShading& shading = shading_[t];
-        const Vec3d after{moved.normal[0][k], moved.normal[1][k], moved.normal[2][k]};
-        const double now = shading.counts_with(after * (1 / twice_after), 0.5 * twice_after);
-        own += normal_scale2 * std::max(0.0, now - shading.counts);
-      }
-      if (!(own > 0)) continue;
-      blame(t, own);
-      cost += own;
+      if (!(own[k] > 0)) continue;
+      blame(ring_[first + k].triangle, own[k]);
+      cost += own[k];
     }
   }
   return cost;

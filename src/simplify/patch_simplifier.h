@@ -167,6 +167,7 @@ class PatchSimplifier {
   double category_cost(Index a, Index b, const Vec3d& target);
   double vanishing_cost(Index a, Index b);
   void gather(std::size_t first, RingBlock& block) const;
+  void gather_shading(std::size_t first, RingBlock& block) const;
   double fold_cost(Index a, Index b, const Vec3d& target, double bound);
   double coincidence_cost(Index a, Index b);
   void blame(Index t, double cost);

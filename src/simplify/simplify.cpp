@@ -340,14 +340,14 @@ class Simplifier {
       double key;
       std::uint32_t patch, index;
     };
-    std::size_t contractions = 0, changes = sequence_.changes.size();
+    std::size_t contraction_count = 0, change_count = sequence_.changes.size();
     for (const PatchResult& result : results_) {
-      contractions += result.contractions.size();
-      changes += result.changes.size();
+      contraction_count += result.contractions.size();
+      change_count += result.changes.size();
     }
-    sequence_.changes.reserve(changes);
+    sequence_.changes.reserve(change_count);
     std::vector<At> order;
-    order.reserve(contractions);
+    order.reserve(contraction_count);
     for (std::uint32_t p = 0; p < results_.size(); ++p) {
       for (std::uint32_t i = 0; i < results_[p].contractions.size(); ++i) {
         order.push_back({results_[p].contractions[i].key, p, i});
