@@ -324,27 +324,32 @@ CREASE_WIDE void PatchSimplifier::load_edges() {
   slot_.resize(vertices_.size());
   for (Index v = 0; v < vertices_.size(); ++v) {
     ++mark_now_;
-    edges_.clear();
+    const std::span<const Index> around = triangles_of(v);
+    Edge* const edges = edges_.start(2 * around.size() + 1);
+    Index edge_count = 0;
+    // No branches: which vertices come later, and which were met before, nobody could foretell.
+    // What is written for an earlier one is written over by what comes next.
     const auto meet = [&](Index w, Index corner, Index other_corner) {
-      if (w < v) return;
-      if (mark_[w] != mark_now_) {
-        mark_[w] = mark_now_;
-        slot_[w] = static_cast<Index>(edges_.size());
-        edges_.push_back({w, {corner, corner}, {other_corner, other_corner}, 0});
-      }
-      Edge& edge = edges_[slot_[w]];
-      const bool again = edge.triangle_count++ > 0;
-      edge.corner[again] = corner;
-      edge.other_corner[again] = other_corner;
+      const bool later = w > v, known = mark_[w] == mark_now_;
+      const Index slot = known ? slot_[w] : edge_count;
+      mark_[w] = later ? mark_now_ : mark_[w];
+      slot_[w] = slot;
+      edge_count += later & !known;
+      Edge& edge = edges[slot];
+      const Index before = known ? edge.triangle_count : 0;
+      edge.other = w;
+      edge.corner[before > 0] = corner;
+      edge.other_corner[before > 0] = other_corner;
+      edge.triangle_count = before + 1;
     };
-    for (Index t : triangles_of(v)) {
+    for (Index t : around) {
       const Index* w = &vertex_of_corner_[3 * t];
       const Index c = corner_at(t, v);
-      const Index next = c == 2 ? 0 : c + 1, previous = c == 0 ? 2 : c - 1;
-      const Index first = std::min(next, previous), second = std::max(next, previous);
+      const Index first = c == 0, second = 2 - Index(c == 2);
       meet(w[first], 3 * t + c, 3 * t + first);
       meet(w[second], 3 * t + c, 3 * t + second);
     }
+    edges_.finish(edges + edge_count);
     for (const Edge& edge : edges_) {
       const Index w = edge.other;
       if (vertices_[v].locked && vertices_[w].locked) continue;

@@ -302,7 +302,7 @@ class PatchSimplifier {
 
   // Scratch of load_edges().
   std::vector<char> several_wedges_;
-  std::vector<Edge> edges_;
+  ScratchList<Edge> edges_;
   std::vector<Index> slot_;
 
   // Scratch of one contraction.
