@@ -309,7 +309,7 @@ inline void PatchSimplifier::add_lines(Index v, const Edge& edge) {
     return;
   }
   for (Index t : triangles_of(v)) {
-    if (corner_of(t, edge.other) >= 0) add_line(v, edge.other, t);
+    if (has_corner_at(t, edge.other)) add_line(v, edge.other, t);
   }
 }
 

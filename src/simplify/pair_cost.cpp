@@ -56,10 +56,9 @@ void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedge, cons
 
 // Whether a triangle has both.
 bool PatchSimplifier::meet(Index a, Index b) const {
-  for (Index t : triangles_of(a)) {
-    if (corner_of(t, b) >= 0) return true;
-  }
-  return false;
+  bool meets = false;  // at the end as good as at once: nobody could foretell when
+  for (Index t : triangles_of(a)) meets |= has_corner_at(t, b);
+  return meets;
 }
 
 // Calls unite(i, j) for wedges at two vertices with the same attribute, numbered as one list; none
@@ -126,11 +125,16 @@ void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
   };
   unite_equal(layer, wa, wb, unite);
   const Index* wedge_of_corner = wedge_of_corner_[layer].data();
-  for (Index t : triangles_of(a)) {
-    const int cb = corner_of(t, b);
-    if (cb < 0) continue;
-    const Index at_a = wedge_of_corner[3 * t + static_cast<Index>(corner_of(t, a))];
-    const Index at_b = wedge_of_corner[3 * t + static_cast<Index>(cb)];
+  const std::span<const Index> around = triangles_of(a);
+  Index* common = common_.start(around.size() + 1);
+  for (Index t : around) {  // two of many: no branch could foretell which
+    *common = t;
+    common += has_corner_at(t, b);
+  }
+  common_.finish(common);
+  for (Index t : common_) {
+    const Index at_a = wedge_of_corner[3 * t + corner_at(t, a)];
+    const Index at_b = wedge_of_corner[3 * t + corner_at(t, b)];
     unite(at_a - wa.first, wa.count + (at_b - wb.first));
   }
 

@@ -219,10 +219,9 @@ class PatchSimplifier {
     const Index* corners = &vertex_of_corner_[3 * t];
     return Index(corners[1] == v) + 2 * Index(corners[2] == v);
   }
-  // -1: none.
-  int corner_of(Index t, Index v) const {
+  bool has_corner_at(Index t, Index v) const {
     const Index* corners = &vertex_of_corner_[3 * t];
-    return corners[0] == v ? 0 : corners[1] == v ? 1 : corners[2] == v ? 2 : -1;
+    return (corners[0] == v) | (corners[1] == v) | (corners[2] == v);
   }
   RingTriangle ring_triangle(Index t, Index end) const {
     const Index* v = &vertex_of_corner_[3 * t];
@@ -314,7 +313,7 @@ class PatchSimplifier {
   std::size_t ring_kept_ = 0;       // so many are kept's
   std::vector<RingBlock> blocks_;   // of ring_, as far as fold_cost() has looked at it
   std::uint32_t ring_count_ = 0;    // of those that make_legal() has looked at
-  ScratchList<Index> touching_;
+  ScratchList<Index> touching_, common_;
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
   std::vector<Index> mark_;
