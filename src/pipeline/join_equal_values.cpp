@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <utility>
@@ -13,6 +15,37 @@
 namespace crease {
 
 namespace {
+
+constexpr std::uint32_t kNowhere = 0xffffffffu;
+
+// Numbers by attribute: a hash table that is filled anew for every vertex.
+class NumberOfAttribute {
+ public:
+  void start(std::size_t most) {
+    entries_.assign(std::bit_ceil(2 * most + 2), {AttributeId{}, kNowhere});
+  }
+  std::uint32_t find(AttributeId a) const { return entries_[place_of(a)].number; }
+  // False if it had one.
+  bool add(AttributeId a, std::uint32_t number) {
+    Entry& entry = entries_[place_of(a)];
+    if (entry.number != kNowhere) return false;
+    entry = {a, number};
+    return true;
+  }
+
+ private:
+  struct Entry {
+    AttributeId attribute;
+    std::uint32_t number;
+  };
+  std::size_t place_of(AttributeId a) const {
+    const std::size_t mask = entries_.size() - 1;
+    std::size_t i = (static_cast<std::uint32_t>(a) * 0x9e3779b1u >> 8) & mask;
+    while (entries_[i].number != kNowhere && entries_[i].attribute != a) i = (i + 1) & mask;
+    return i;
+  }
+  std::vector<Entry> entries_;
+};
 
 class ValueJoiner {
  public:
@@ -84,26 +117,65 @@ class ValueJoiner {
   // What stands at v_s, and what the sequence makes of it.
   void find_values(const Contraction& c, std::uint32_t layer) {
     at_vertex_.clear();
-    for (const std::uint32_t t : around_[static_cast<std::uint32_t>(c.kept)]) {
+    const std::span<const AttributeChange> all_changes = sequence_.changes_of(c);
+    change_from_.start(all_changes.size());
+    for (std::uint32_t i = 0; i < all_changes.size(); ++i) {
+      if (all_changes[i].layer == layer) change_from_.add(all_changes[i].from, i);
+    }
+    const std::span<const std::uint32_t> around = around_[static_cast<std::uint32_t>(c.kept)];
+    value_from_.start(around.size());
+    for (const std::uint32_t t : around) {
       if (!is_shown(layer, t)) continue;
       const std::size_t at = corner(t, c.kept);
       AttributeId& planned = planned_[layer][at];
-      for (const AttributeChange& change : sequence_.changes_of(c)) {
-        if (change.layer == layer && change.from == planned) {
-          planned = change.to;
-          break;
-        }
+      if (const std::uint32_t i = change_from_.find(planned); i != kNowhere) {
+        planned = all_changes[i].to;
       }
       const AttributeId now = of_corner_[layer][at];
-      const auto known = std::find_if(at_vertex_.begin(), at_vertex_.end(),
-                                      [now](const AtVertex& a) { return a.from == now; });
-      if (known == at_vertex_.end()) at_vertex_.push_back({now, planned});
+      if (value_from_.add(now, static_cast<std::uint32_t>(at_vertex_.size()))) {
+        at_vertex_.push_back({now, planned});
+      }
     }
+  }
+
+  // Whether different attributes of those that stand there, or will, have the same value.
+  bool several_are_equal(std::uint32_t layer) {
+    by_value_.clear();
+    for (const AtVertex& value : at_vertex_) {
+      by_value_.push_back(value.from);
+      by_value_.push_back(value.to);
+    }
+    const std::size_t size = sizeof(float) * mesh_.layers[layer].dimension;
+    const auto bytes = [&](AttributeId a) {
+      return attribute_value(mesh_.layers[layer], sequence_, layer, a).data();
+    };
+    std::sort(by_value_.begin(), by_value_.end(), [&](AttributeId a, AttributeId b) {
+      const int order = a == b ? 0 : std::memcmp(bytes(a), bytes(b), size);
+      return order != 0 ? order < 0 : a < b;
+    });
+    for (std::size_t i = 1; i < by_value_.size(); ++i) {
+      if (by_value_[i - 1] != by_value_[i] && equal(layer, by_value_[i - 1], by_value_[i])) {
+        return true;
+      }
+    }
+    return false;
   }
 
   // What was equal at the two ends goes on as one. What only becomes equal keeps the value that it
   // had, so that a hard edge between stays one; or where that is another's, goes on as one as well.
   void join(std::uint32_t layer) {
+    constexpr std::size_t kFew = 16;  // no more are looked at in pairs without need
+    if (at_vertex_.size() < 2) return;
+    const bool pairs = at_vertex_.size() <= kFew || several_are_equal(layer);
+    if (pairs) join_equal(layer);
+    for (AtVertex& value : at_vertex_) {
+      if (value.to != value.from && is_taken(layer, value, value.to)) {
+        if (!is_taken(layer, value, value.from)) value.to = value.from;
+      }
+    }
+    if (pairs) follow_equal(layer);
+  }
+  void join_equal(std::uint32_t layer) {
     for (AtVertex& value : at_vertex_) {
       for (AtVertex& other : at_vertex_) {
         if (other.to == value.to || !equal(layer, other.from, value.from)) continue;
@@ -111,11 +183,8 @@ class ValueJoiner {
         follower.to = follower.to == value.to ? other.to : value.to;
       }
     }
-    for (AtVertex& value : at_vertex_) {
-      if (value.to != value.from && is_taken(layer, value, value.to)) {
-        if (!is_taken(layer, value, value.from)) value.to = value.from;
-      }
-    }
+  }
+  void follow_equal(std::uint32_t layer) {
     for (AtVertex& value : at_vertex_) {
       for (const AtVertex& other : at_vertex_) {
         if (other.to == value.to || !equal(layer, other.to, value.to)) continue;
@@ -144,9 +213,7 @@ class ValueJoiner {
     for (const std::uint32_t t : around_[static_cast<std::uint32_t>(v)]) {
       if (!is_shown(layer, t)) continue;
       AttributeId& now = of_corner_[layer][corner(t, v)];
-      now = std::find_if(at_vertex_.begin(), at_vertex_.end(), [now](const AtVertex& a) {
-              return a.from == now;
-            })->to;
+      now = at_vertex_[value_from_.find(now)].to;
     }
   }
 
@@ -157,7 +224,11 @@ class ValueJoiner {
   std::vector<char> is_alive_, is_derived_;          // per triangle
   std::vector<std::vector<AttributeId>> of_corner_;  // per layer, joined
   std::vector<std::vector<AttributeId>> planned_;    // per layer, as the sequence had it
-  std::vector<AtVertex> at_vertex_;                  // scratch
+  // Scratch.
+  std::vector<AtVertex> at_vertex_;
+  NumberOfAttribute value_from_;   // in at_vertex_
+  NumberOfAttribute change_from_;  // of the contraction and the layer
+  std::vector<AttributeId> by_value_;
 };
 
 }  // namespace

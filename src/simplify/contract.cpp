@@ -38,28 +38,22 @@ std::vector<double> PatchSimplifier::initial_costs() {
   return costs;
 }
 
-void PatchSimplifier::push(const Entry& entry) {
-  heap_.push_back(entry);
-  std::push_heap(heap_.begin(), heap_.end());
-}
-
 bool PatchSimplifier::pop(Entry& entry) {
   const bool ordered = next_in_order_ != order_.size();
   if (heap_.empty() && !ordered) return false;
-  if (heap_.empty() || (ordered && order_[next_in_order_].cost <= heap_.front().cost)) {
+  if (heap_.empty() || (ordered && order_[next_in_order_].cost <= heap_.top().cost())) {
     const Ordered& next = order_[next_in_order_++];
     entry = {next.cost, next.pair, kNone, 0};
     return true;
   }
-  entry = heap_.front();
-  std::pop_heap(heap_.begin(), heap_.end());
-  heap_.pop_back();
+  entry = heap_.top();
+  heap_.pop();
   return true;
 }
 
 float PatchSimplifier::next_cost() const {
   const float in_order = next_in_order_ == order_.size() ? HUGE_VALF : order_[next_in_order_].cost;
-  return heap_.empty() ? in_order : std::min(in_order, heap_.front().cost);
+  return heap_.empty() ? in_order : std::min(in_order, heap_.top().cost());
 }
 
 PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
@@ -74,16 +68,16 @@ PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
 void PatchSimplifier::hold(const Entry& entry, double cost, double cost_with_ring) {
   if (blamed_ == kNone || entry.tries >= kTries) {
     if (cost_with_ring <= steering_.cost_limit) {
-      push({static_cast<float>(cost_with_ring), entry.pair, kNone, entry.tries});
+      heap_.push({static_cast<float>(cost_with_ring), entry.pair(), kNone, entry.tries});
     }
     return;
   }
   const Index id = static_cast<Index>(held_.size());
   held_.push_back(
-      {entry.pair, held_of_triangle_[blamed_], static_cast<float>(cost), entry.tries + 1, true});
+      {entry.pair(), held_of_triangle_[blamed_], static_cast<float>(cost), entry.tries + 1, true});
   held_of_triangle_[blamed_] = id;
   if (!(cost_with_ring <= steering_.cost_limit)) return;
-  push({static_cast<float>(cost_with_ring), entry.pair, id, entry.tries + 1});
+  heap_.push({static_cast<float>(cost_with_ring), entry.pair(), id, entry.tries + 1});
 }
 
 void PatchSimplifier::release(Index triangle) {
@@ -92,18 +86,23 @@ void PatchSimplifier::release(Index triangle) {
   for (; i != kNone; i = held_[i].next) {
     if (!held_[i].waiting) continue;
     held_[i].waiting = false;
-    push({held_[i].cost, held_[i].pair, kNone, held_[i].tries});
+    heap_.push({held_[i].cost, held_[i].pair, kNone, held_[i].tries});
   }
 }
 
 void PatchSimplifier::order_pairs() {
-  order_.clear();
+  clear_for(order_, pairs_.size() / 2);
   next_in_order_ = 0;
-  const double limit = steering_.cost_limit;
-  for (Index i = 0; i < pairs_.size(); ++i) {
-    const double cost = place(pairs_[i].first, pairs_[i].second, limit).cost;
-    if (!(cost <= limit)) continue;
-    order_.push_back({static_cast<float>(cost), i});
+  clear_for(candidates_, pairs_.size() / 2);
+  for (const auto& [a, b] : pairs_) {
+    const Placed placed = place(a, b, steering_.cost_limit);
+    if (!(placed.cost <= steering_.cost_limit)) continue;
+    order_.push_back({static_cast<float>(placed.cost), static_cast<Index>(candidates_.size())});
+    Candidate& pair = candidates_.emplace_back();
+    pair.a = a;
+    pair.b = b;
+    pair.placed_at = 0;
+    keep_placed(placed, pair);
   }
   sort_by_cost(order_, order_scratch_);
 }
@@ -117,18 +116,22 @@ bool PatchSimplifier::claim(Index pair, Index a, Index b) {
     owner_count_ = 0;
     for (Index owner : old) {
       if (owner == kNone) continue;
-      const auto [x, y] = pairs_[owner];
-      if (vertices_[x].alive && vertices_[y].alive) claim(owner, x, y);
+      const Candidate& old_pair = candidates_[owner];
+      if (vertices_[old_pair.a].alive && vertices_[old_pair.b].alive) {
+        claim(owner, old_pair.a, old_pair.b);
+      }
     }
   }
   const std::size_t mask = owners_.size() - 1;
   std::size_t slot = (a * 0x9e3779b1u ^ b * 0x85ebca77u) & mask;
   for (; owners_[slot] != kNone; slot = (slot + 1) & mask) {
-    if (pairs_[owners_[slot]] == std::pair(a, b)) return owners_[slot] == pair;
+    const Candidate& owner = candidates_[owners_[slot]];
+    if (owner.a == a && owner.b == b) return owners_[slot] == pair;
   }
   owners_[slot] = pair;
   ++owner_count_;
-  pairs_[pair] = {a, b};
+  candidates_[pair].a = a;
+  candidates_[pair].b = b;
   return true;
 }
 
@@ -136,34 +139,35 @@ PatchResult PatchSimplifier::run() {
   result_.new_values.resize(layer_count());
   held_of_triangle_.assign(global_triangle_.size(), kNone);
   order_pairs();
-  owners_.assign(std::bit_ceil(2 * pairs_.size() + 64), kNone);
+  owners_.assign(std::bit_ceil(2 * candidates_.size() + 64), kNone);
   owner_count_ = 0;
   for (Entry entry; pop(entry);) {
     if (entry.held != kNone) {
       if (!held_[entry.held].waiting) continue;
       held_[entry.held].waiting = false;
     }
-    Index a = survivor(pairs_[entry.pair].first), b = survivor(pairs_[entry.pair].second);
+    Candidate& pair = candidates_[entry.pair()];
+    Index a = survivor(pair.a), b = survivor(pair.b);
     if (a == b) continue;
     if (a > b) std::swap(a, b);
-    if (!claim(entry.pair, a, b)) continue;
-    entry.held = kNone;
+    if (!claim(entry.pair(), a, b)) continue;
     const float next = next_cost();
 
-    Quadric cost_if_kept[2];
-    Placed placed = place(a, b, steering_.cost_limit, cost_if_kept);
-    const double cost = placed.cost;
+    if (std::max(vertices_[a].changed_at, vertices_[b].changed_at) > pair.placed_at) {
+      pair.placed_at = static_cast<Index>(result_.contractions.size());
+      keep_placed(place(a, b, steering_.cost_limit), pair);
+    }
+    const double cost = pair.cost;
     if (!(cost <= steering_.cost_limit)) continue;
-    if (static_cast<float>(cost) > entry.cost && static_cast<float>(cost) > next) {
-      entry.cost = static_cast<float>(cost);
-      push(entry);
+    if (static_cast<float>(cost) > entry.cost() && static_cast<float>(cost) > next) {
+      heap_.push({static_cast<float>(cost), entry.pair(), kNone, entry.tries});
       continue;
     }
     const double bound =
         std::min(steering_.cost_limit, kDear * double(std::max(next, static_cast<float>(cost))));
-    placed = make_legal(a, b, placed, bound, cost_if_kept);
-    if (!(placed.cost <= steering_.cost_limit) ||
-        (static_cast<float>(placed.cost) > entry.cost && static_cast<float>(placed.cost) > next)) {
+    const Placed placed = make_legal(pair, bound);
+    if (!(placed.cost <= steering_.cost_limit) || (static_cast<float>(placed.cost) > entry.cost() &&
+                                                   static_cast<float>(placed.cost) > next)) {
       hold(entry, cost, placed.cost);
       continue;
     }
@@ -176,7 +180,7 @@ PatchResult PatchSimplifier::run() {
   return std::move(result_);
 }
 
-void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cost) {
+CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cost) {
   // The nearer end stays, so that the stored step is short; with endpoints it is the target itself.
   const bool keep_a = squared(positions_[a] - target) < squared(positions_[b] - target);
   const Index kept = keep_a ? a : b, removed = keep_a ? b : a;
@@ -186,9 +190,7 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   Contraction contraction;
   contraction.removed = VertexId{p.global};
   contraction.kept = VertexId{q.global};
-  contraction.position = center_grid_ + Vec3i{static_cast<std::int32_t>(std::lround(target.x)),
-                                              static_cast<std::int32_t>(std::lround(target.y)),
-                                              static_cast<std::int32_t>(std::lround(target.z))};
+  contraction.position = on_grid(target);
   contraction.first_change = static_cast<Index>(result_.changes.size());
   contraction.first_derived = static_cast<Index>(result_.derived.size());
 
@@ -209,12 +211,12 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
     error.line = raised(error.line, std::sqrt(line_[line].at(target) / line_[line].weight));
   }
 
-  find_ring(kept, removed);
-  if (ring_corners_.empty()) {
+  if (kept != a) find_ring(kept, removed);  // else make_legal() has
+  if (ring_.empty()) {
     // A part disappears: its planes fit what is left of it, but what it stood for is gone.
     double longest2 = 0;
-    for (Index t : vanishing_) {
-      const Index* v = &vertex_of_corner_[3 * t];
+    for (const Vanishing& vanishing : vanishing_) {
+      const Index* v = &vertex_of_corner_[3 * vanishing.triangle];
       for (Index c = 0; c < 3; ++c) {
         longest2 = std::max(longest2, squared(positions_[v[c]] - positions_[v[(c + 1) % 3]]));
       }
@@ -227,12 +229,10 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   errors.now = larger(larger(errors.now, errors_[removed].now), error);
 
   // Triangles: vanish, or change hands.
-  if (!represented_.empty()) hand_over_represented();
-  for (std::size_t i = ring_kept_; i < ring_corners_.size(); ++i) {
-    vertex_of_corner_[ring_corners_[i]] = kept;
-  }
+  if (!shading_.empty()) hand_over_represented();
+  for (std::size_t i = ring_kept_; i < ring_.size(); ++i) vertex_of_corner_[ring_[i].corner] = kept;
   const Index first = static_cast<Index>(triangle_pool_.size());
-  for (Index corner : ring_corners_) triangle_pool_.push_back(corner / 3);
+  for (const RingTriangle& ring : ring_) triangle_pool_.push_back(ring.triangle);
   q.triangles = {first, static_cast<Index>(triangle_pool_.size()) - first};
   positions_[kept] = target;
   for (Index t : triangles_of(kept)) facing_[t] = facing_of(t);
@@ -242,20 +242,16 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
   q.flat_around = q.flat_around && p.flat_around;
   p.alive = false;
   p.into = kept;
-  for (Index t : vanishing_) {
+  for (const auto& [t, third] : vanishing_) {
     triangle_alive_[t] = 0;
     --live_triangles_;
-    for (Index c = 0; c < 3; ++c) {
-      const Index w = vertex_of_corner_[3 * t + c];
-      if (w == kept || w == removed) continue;
-      Slice& around = vertices_[w].triangles;
-      Index* begin = &triangle_pool_[around.first];
-      Index* end = std::remove(begin, begin + around.count, t);
-      around.count = static_cast<Index>(end - begin);
-    }
+    Slice& around = vertices_[third].triangles;
+    Index* begin = &triangle_pool_[around.first];
+    Index* end = std::remove(begin, begin + around.count, t);
+    around.count = static_cast<Index>(end - begin);
     release(t);
   }
-  if (!represented_.empty()) derive_where_better(kept, errors.now);
+  if (!shading_.empty()) derive_where_better(kept, errors.now);
 
   contraction.error = errors.now;
   contraction.change_count = static_cast<Index>(result_.changes.size()) - contraction.first_change;
@@ -263,24 +259,32 @@ void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cos
       static_cast<Index>(result_.derived.size()) - contraction.first_derived;
   last_key_ = std::max(last_key_, cost);
   result_.contractions.push_back({last_key_, contraction});
+  q.changed_at = static_cast<Index>(result_.contractions.size());
   for (Index t : triangles_of(kept)) release(t);
 }
 
 void PatchSimplifier::find_ring(Index kept, Index removed) {
-  ring_corners_.clear();
-  vanishing_.clear();
-  for (Index t : triangles_of(kept)) {
-    if (corner_of(t, removed) >= 0) {
-      vanishing_.push_back(t);
-    } else {
-      ring_corners_.push_back(3 * t + static_cast<Index>(corner_of(t, kept)));
-    }
+  const std::span<const Index> around_kept = triangles_of(kept);
+  const std::span<const Index> around_removed = triangles_of(removed);
+  // What does not belong to a list is written over by what comes next: no branches.
+  RingTriangle* ring = ring_.start(around_kept.size() + around_removed.size());
+  Vanishing* vanishing = vanishing_.start(around_kept.size());
+  for (Index t : around_kept) {
+    const RingTriangle own = ring_triangle(t, kept);
+    const bool before = own.previous == removed, after = own.next == removed;
+    *ring = own;
+    *vanishing = {t, after ? own.previous : own.next};
+    vanishing += before | after;
+    ring += !(before | after);
   }
-  ring_kept_ = ring_corners_.size();
-  for (Index t : triangles_of(removed)) {
-    if (corner_of(t, kept) >= 0) continue;
-    ring_corners_.push_back(3 * t + static_cast<Index>(corner_of(t, removed)));
+  vanishing_.finish(vanishing);
+  ring_kept_ = static_cast<std::size_t>(ring - ring_.begin());
+  for (Index t : around_removed) {
+    const RingTriangle own = ring_triangle(t, removed);
+    *ring = own;
+    ring += (own.previous != kept) & (own.next != kept);
   }
+  ring_.finish(ring);
 }
 
 // One quadric out of the members', in the place of one of them; none if all show one attribute that
@@ -359,7 +363,7 @@ PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
 void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index removed,
                                      const Vec3d& target, LevelError& error) {
   const WorkLayer& work = work_->layers[layer];
-  join_wedges(layer, kept, removed, joined_);
+  join_wedges(layer, kept, removed);
   std::vector<Wedge>& wedges = wedges_[layer];
   std::vector<Index>& wedge_of_corner = wedge_of_corner_[layer];
   const Slice of_kept = wedges_of(layer, kept), of_removed = wedges_of(layer, removed);
@@ -372,13 +376,12 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   // geometric normal has a wedge, but its attribute no longer stands at the vertex.
   constexpr char kUsed = 1, kShown = 2;
   used_.assign(of_kept.count + of_removed.count, 0);
-  for (Index corner : ring_corners_) {
-    const bool shown = !(work.is_normal && derived_[corner / 3]);
-    used_[slot_of(wedge_of_corner[corner])] |= shown ? kUsed | kShown : kUsed;
+  for (const RingTriangle& ring : ring_) {
+    const bool shown = !(work.is_normal && derived_[ring.triangle]);
+    used_[slot_of(wedge_of_corner[ring.corner])] |= shown ? kUsed | kShown : kUsed;
   }
 
-  std::vector<Index>& result_of_slot = parent_;  // join_wedges is done with it
-  result_of_slot.assign(used_.size(), kNone);
+  Index* result_of_slot = parent_.start(used_.size());  // join_wedges is done with it
   results_.clear();
   double square_error = -1;
   for (const Joined& joined : joined_) {
@@ -439,11 +442,14 @@ void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index remove
   if (count > of_kept.count) first = of_removed.first;
   if (count > of_kept.count && count > of_removed.count) {
     first = static_cast<Index>(wedges.size());
+    if (wedges.capacity() < wedges.size() + count) {
+      wedges.reserve(wedges.size() + wedges.size() / 8 + count);
+    }
     wedges.resize(wedges.size() + count);
   }
   std::copy(results_.begin(), results_.end(), wedges.begin() + first);
-  for (Index corner : ring_corners_) {
-    Index& wedge = wedge_of_corner[corner];
+  for (const RingTriangle& ring : ring_) {
+    Index& wedge = wedge_of_corner[ring.corner];
     wedge = first + result_of_slot[slot_of(wedge)];
   }
   wedges_of(layer, kept) = {first, count};
@@ -457,9 +463,7 @@ void PatchSimplifier::write_back() {
       continue;
     }
     work_->derived[global] = derived_[t];
-    if (!represented_.empty()) {
-      work_->represented[global] = represented_[t];
-    }
+    if (!shading_.empty()) work_->represented[global] = shading_[t].input;
     for (Index c = 0; c < 3; ++c) {
       work_->vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[3 * t + c]].global;
       for (std::size_t l = 0; l < layer_count(); ++l) {
@@ -470,11 +474,7 @@ void PatchSimplifier::write_back() {
   for (Index v = 0; v < vertices_.size(); ++v) {
     const Vertex& vertex = vertices_[v];
     if (vertex.locked || !vertex.alive) continue;
-    const Vec3d& p = positions_[v];
-    work_->positions[vertex.global] =
-        center_grid_ + Vec3i{static_cast<std::int32_t>(std::lround(p.x)),
-                             static_cast<std::int32_t>(std::lround(p.y)),
-                             static_cast<std::int32_t>(std::lround(p.z))};
+    work_->positions[vertex.global] = on_grid(positions_[v]);
     work_->error_of_vertex[vertex.global] = errors_[v].now;
   }
 }

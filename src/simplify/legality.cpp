@@ -4,6 +4,8 @@
 // gets stuck.
 #include "simplify/patch_simplifier.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -43,35 +45,111 @@ void PatchSimplifier::blame(Index t, double cost) {
   blamed_cost_ = cost;
 }
 
+// The ring's triangles from `first` on, of which the last one fills up the block.
+inline void PatchSimplifier::gather(std::size_t first, RingBlock& block) const {
+  const RingTriangle* ring[RingBlock::kTriangles];
+  for (std::size_t k = 0; k < RingBlock::kTriangles; ++k) {
+    ring[k] = &ring_[std::min(first + k, ring_.size() - 1)];
+  }
+  const auto fill = [&](Row& row, const double* x0, const double* x1, const double* x2,
+                        const double* x3) {
+    row = Row{*x0, *x1, *x2, *x3};
+  };
+  const auto fill_axes = [&](Row* rows, const Vec3d& v0, const Vec3d& v1, const Vec3d& v2,
+                             const Vec3d& v3) {
+    fill(rows[0], &v0.x, &v1.x, &v2.x, &v3.x);
+    fill(rows[1], &v0.y, &v1.y, &v2.y, &v3.y);
+    fill(rows[2], &v0.z, &v1.z, &v2.z, &v3.z);
+  };
+  const Vec3d* at = positions_.data();
+  fill_axes(block.next, at[ring[0]->next], at[ring[1]->next], at[ring[2]->next], at[ring[3]->next]);
+  fill_axes(block.previous, at[ring[0]->previous], at[ring[1]->previous], at[ring[2]->previous],
+            at[ring[3]->previous]);
+  const Facing &f0 = facing_[ring[0]->triangle], &f1 = facing_[ring[1]->triangle],
+               &f2 = facing_[ring[2]->triangle], &f3 = facing_[ring[3]->triangle];
+  fill_axes(block.normal, f0.normal, f1.normal, f2.normal, f3.normal);
+  fill(block.area, &f0.area, &f1.area, &f2.area, &f3.area);
+  block.shows = block.right = Lanes{};
+  block.has_shading = false;
+  if (shading_.empty()) return;
+  const auto shows = [&](int k) {
+    const Index t = ring[k]->triangle;
+    return -static_cast<long long>(flat_[t] | derived_[t]);
+  };
+  const auto counts = [&](int k) { return shading_[ring[k]->triangle].counts; };
+  block.shows = Lanes{shows(0), shows(1), shows(2), shows(3)};
+  block.right = Row{counts(0), counts(1), counts(2), counts(3)} <= kRight * block.area;
+}
+
+inline void PatchSimplifier::gather_shading(std::size_t first, RingBlock& block) const {
+  const auto at = [&](std::size_t k) -> const FlatShading& {
+    return shading_[ring_[std::min(first + k, ring_.size() - 1)].triangle];
+  };
+  const FlatShading &s0 = at(0), &s1 = at(1), &s2 = at(2), &s3 = at(3);
+  const auto fill = [](Row& row, double x0, double x1, double x2, double x3) {
+    row = Row{x0, x1, x2, x3};
+  };
+  const auto fill_axes = [&](Row* rows, const Vec3f& v0, const Vec3f& v1, const Vec3f& v2,
+                             const Vec3f& v3) {
+    fill(rows[0], v0.x, v1.x, v2.x, v3.x);
+    fill(rows[1], v0.y, v1.y, v2.y, v3.y);
+    fill(rows[2], v0.z, v1.z, v2.z, v3.z);
+  };
+  ShadingBlock& to = block.shading;
+  fill_axes(to.input_sum, s0.input.sum, s1.input.sum, s2.input.sum, s3.input.sum);
+  fill(to.input_area, s0.input.area, s1.input.area, s2.input.area, s3.input.area);
+  fill_axes(to.stored, s0.stored, s1.stored, s2.stored, s3.stored);
+  fill(to.stored_error, s0.stored_error, s1.stored_error, s2.stored_error, s3.stored_error);
+  fill(to.stored_counts, s0.stored_counts, s1.stored_counts, s2.stored_counts, s3.stored_counts);
+  fill(to.counts, s0.counts, s1.counts, s2.counts, s3.counts);
+  to.derived = Lanes{-s0.derived, -s1.derived, -s2.derived, -s3.derived};
+  block.has_shading = true;
+}
+
 // Stops when it is above `bound`: dear enough.
-double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double bound) {
-  double cost = 0;
+CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double bound) {
   const double step2 = squared(positions_[b] - positions_[a]);
   const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
   const bool a_stays = target == positions_[a], b_stays = target == positions_[b];
   const std::size_t begin = a_stays ? ring_kept_ : 0;
-  const std::size_t end = b_stays ? ring_kept_ : ring_corners_.size();
-  for (std::size_t i = begin; i < end && cost <= bound; ++i) {
-    const Index t = ring_corners_[i] / 3;
-    const Facing& before = facing_[t];
-    const Vec3d after = normal_if_moved(t, i < ring_kept_ ? a : b, target);
-    const double agreement = dot(before.normal, after);
-    const double after2 = dot(after, after);
-    const double cosine2 = agreement * agreement;  // times after2
-    double own = 0;
-    if (agreement < 0 || (before.area > 0 && cosine2 < kFoldCosine * kFoldCosine * after2)) {
-      own = step2 * (before.area + 0.5 * std::sqrt(after2));
+  const std::size_t end = b_stays ? ring_kept_ : ring_.size();
+  double cost = 0;
+  for (std::size_t first = begin & ~(RingBlock::kTriangles - 1); first < end && cost <= bound;
+       first += RingBlock::kTriangles) {
+    RingBlock& block = blocks_[first / RingBlock::kTriangles];
+    if (block.ring != ring_count_) {
+      block.ring = ring_count_;
+      gather(first, block);
     }
-    const bool stays_right = own == 0 && cosine2 >= kCoplanarCosine2 * after2 &&
-                             flat_error_.size() > t && flat_error_[t] <= kRight * before.area;
-    if (!stays_right && !represented_.empty() && (flat_[t] || derived_[t]) && after2 > 0) {
-      const double twice_after = std::sqrt(after2);
-      const double now = flat_error(t, after * (1 / twice_after), 0.5 * twice_after);
-      own += normal_scale2 * std::max(0.0, now - flat_error_[t]);
+    const RingBlock::Moved moved = block.moved_to(target);
+    const Row cosine2 = moved.agreement * moved.agreement;  // times length2
+    Lanes folds = (moved.agreement < 0) |
+                  ((block.area > 0) & (cosine2 < kFoldCosine * kFoldCosine * moved.length2));
+    if (step2 == 0) folds = Lanes{};
+    const Lanes turns = block.shows & (moved.length2 > 0) &
+                        (folds | ~block.right | (cosine2 < kCoplanarCosine2 * moved.length2));
+    unsigned left = bits_of(folds | turns);
+    if (first < begin) left &= ~0u << (begin - first);
+    if (end - first < RingBlock::kTriangles) left &= (1u << (end - first)) - 1;
+    if (left == 0) continue;
+    Row twice_after, own;
+    take_root(moved.length2, twice_after);
+    own = folds ? step2 * (block.area + 0.5 * twice_after) : Row{};
+    if (bits_of(turns) != 0) {
+      if (!block.has_shading) gather_shading(first, block);
+      const Row inverse = 1 / twice_after;
+      const Row normal[] = {moved.normal[0] * inverse, moved.normal[1] * inverse,
+                            moved.normal[2] * inverse};
+      Row more;
+      block.shading.more_with(normal, 0.5 * twice_after, more);
+      own += turns ? normal_scale2 * more : Row{};
     }
-    if (!(own > 0)) continue;
-    blame(t, own);
-    cost += own;
+    for (; left != 0 && cost <= bound; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      if (!(own[k] > 0)) continue;
+      blame(ring_[first + k].triangle, own[k]);
+      cost += own[k];
+    }
   }
   return cost;
 }
@@ -81,21 +159,16 @@ double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& target, double 
 double PatchSimplifier::coincidence_cost(Index a, Index b) {
   const Index beside_a = ++mark_now_, told = ++mark_now_;
   for (std::size_t i = 0; i < ring_kept_; ++i) {
-    const Index t = ring_corners_[i] / 3;
-    for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = beside_a;
+    mark_[ring_[i].next] = mark_[ring_[i].previous] = beside_a;
   }
-  for (Index t : vanishing_) {
-    for (Index c = 0; c < 3; ++c) mark_[vertex_of_corner_[3 * t + c]] = told;
-  }
+  for (const Vanishing& vanishing : vanishing_) mark_[vanishing.third] = told;
   std::size_t shared = 0;
   Index culprit = kNone;
-  for (std::size_t i = ring_kept_; i < ring_corners_.size(); ++i) {
-    const Index t = ring_corners_[i] / 3;
-    for (Index c = 0; c < 3; ++c) {
-      const Index v = vertex_of_corner_[3 * t + c];
-      if (v == a || v == b || mark_[v] != beside_a) continue;
+  for (std::size_t i = ring_kept_; i < ring_.size(); ++i) {
+    for (Index v : {ring_[i].next, ring_[i].previous}) {
+      if (mark_[v] != beside_a) continue;
       mark_[v] = told;
-      culprit = t;
+      culprit = ring_[i].triangle;
       ++shared;
     }
   }
@@ -122,11 +195,11 @@ double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
     }
     changed_area_.emplace_back(category, area);
   };
-  for (Index t : vanishing_) change(t, -facing_[t].area);
-  for (std::size_t i = 0; i < ring_corners_.size(); ++i) {
-    const Index t = ring_corners_[i] / 3, moved = i < ring_kept_ ? a : b;
-    if (target == positions_[moved]) continue;
-    change(t, 0.5 * length(normal_if_moved(t, moved, target)) - facing_[t].area);
+  for (const auto& [t, third] : vanishing_) change(t, -facing_[t].area);
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    if (target == positions_[i < ring_kept_ ? a : b]) continue;
+    const Index t = ring_[i].triangle;
+    change(t, 0.5 * length(normal_if_moved(ring_[i], target)) - facing_[t].area);
   }
   double gained = 0, lost = 0;
   for (const auto& [category, area] : changed_area_) (area > 0 ? gained : lost) += std::abs(area);
@@ -136,18 +209,18 @@ double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
 // What does not depend on where the vertex goes.
 double PatchSimplifier::vanishing_cost(Index a, Index b) {
   double cost = coincidence_cost(a, b);
-  if (ring_corners_.empty()) {
+  if (ring_.empty()) {
     // A part disappears. Its own planes may not mind; whoever looks at it does.
     if (steering_.keep_one_triangle && vanishing_.size() >= live_triangles_) {
       return std::numeric_limits<double>::infinity();
     }
     double area = 0;
-    for (Index t : vanishing_) area += facing_[t].area;
+    for (const auto& [t, third] : vanishing_) area += facing_[t].area;
     cost += kPartWeight * area * squared(positions_[b] - positions_[a]);
   }
-  if (!represented_.empty()) {
+  if (!shading_.empty()) {
     const double normal_scale2 = steering_.normal_scale * steering_.normal_scale;
-    for (Index t : vanishing_) cost += normal_scale2 * vanishing_error(t);
+    for (const Vanishing& v : vanishing_) cost += normal_scale2 * vanishing_error(v);
   }
   return cost;
 }
@@ -159,28 +232,29 @@ double PatchSimplifier::ring_cost(Index a, Index b, const Vec3d& target, double 
 
 // The place with the triangles around it included: where the optimum would fold one, an end of the
 // pair or its middle may not. A cost above `bound` is a lower one.
-PatchSimplifier::Placed PatchSimplifier::make_legal(Index a, Index b, Placed best, double bound,
-                                                    const Quadric* cost_if_kept) {
+PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double bound) {
+  const Index a = pair.a, b = pair.b;
   blamed_ = kNone;
   blamed_cost_ = 0;
   find_ring(a, b);
-  const double free_cost =
-      turn_.empty()
-          ? best.cost
-          : std::min(best.cost, cost_if_kept[best.position == positions_[b]].at(best.position));
-  best.cost = free_cost;
-  const double fold = ring_cost(a, b, best.position, bound - free_cost);
-  best.cost += fold;
+  ++ring_count_;
+  blocks_.resize(std::max(blocks_.size(), ring_.size() / RingBlock::kTriangles + 1));
+  const double free_cost = pair.free_cost;
+  const Vec3d position{double(pair.position.x), double(pair.position.y), double(pair.position.z)};
+  const double fold = ring_cost(a, b, position, bound - free_cost);
+  Placed best{free_cost + fold, free_cost, position};
   const double noise = kGridNoise * kGridNoise * (surface_[a].weight + surface_[b].weight);
   if (fold > kMinor * free_cost + noise) {
+    if (pair.cost_of_other[0] == Candidate::kUnknown) find_costs_of_others(pair);
     const Vec3d &pa = positions_[a], &pb = positions_[b];
     const Vec3d others[] = {pa, pb, rounded((pa + pb) * 0.5)};
     const int count = steering_.placement == Placement::Endpoint ? 2 : 3;
     for (int i = 0; i < count; ++i) {
-      const double cost = std::max(free_cost, cost_if_kept[i == 1].at(others[i]));
+      const double cost = std::max(free_cost, pair.cost_of_other[i]);
       if (!(cost < best.cost)) continue;
+      if (cost == free_cost && others[i] == position) continue;  // that is where it was
       const double total = cost + ring_cost(a, b, others[i], std::min(best.cost, bound) - cost);
-      if (total < best.cost) best = {total, others[i]};
+      if (total < best.cost) best = {total, cost, others[i]};
     }
   }
   if (best.cost <= bound) best.cost += vanishing_cost(a, b);

@@ -32,7 +32,7 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
   load(triangles, patch_id);
   load_wedges();
   load_quadrics();
-  load_represented();
+  load_shading();
   load_turns();
   load_edges();
   if (steering_.virtual_distance > 0 && work.part_count > 1) find_virtual_pairs();
@@ -40,10 +40,12 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
 
 void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id) {
   if (local_of_vertex_.empty()) local_of_vertex_.assign(work_->positions.size(), kNone);
-  vertices_.clear();
-  errors_.clear();
-  positions_.clear();
   const std::size_t n = triangles.size();
+  clear_for(vertices_, n / 2);
+  clear_for(errors_, n / 2);
+  clear_for(positions_, n / 2);
+  clear_for(global_triangle_, n);
+  clear_for(vertex_of_corner_, 3 * n);
   global_triangle_.assign(triangles.begin(), triangles.end());
   vertex_of_corner_.resize(3 * n);
   triangle_alive_.assign(n, 1);
@@ -90,8 +92,7 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
     next += vertex.triangles.count;
     vertex.triangles.count = 0;
   }
-  triangle_pool_.clear();
-  triangle_pool_.reserve(2 * std::size_t(next));
+  clear_for(triangle_pool_, 2 * std::size_t(next));
   triangle_pool_.resize(next);
   for (std::size_t corner = 0; corner < 3 * n; ++corner) {
     Slice& around = vertices_[vertex_of_corner_[corner]].triangles;
@@ -123,12 +124,14 @@ void PatchSimplifier::load_wedges() {
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     std::vector<Index>& id_of_corner = wedge_of_corner_[l];  // until the wedges are known
+    clear_for(id_of_corner, vertex_of_corner_.size());
     id_of_corner.resize(vertex_of_corner_.size());
     for (Index t = 0; t < global_triangle_.size(); ++t) {
       std::copy_n(&layer.of_corner[3 * global_triangle_[t]], 3, &id_of_corner[3 * t]);
     }
 
     std::vector<Slice>& slices = wedge_slices_[l];
+    clear_for(slices, vertices_.size());
     slices.assign(vertices_.size(), Slice{kNone, 1});
     first_id.resize(vertices_.size());
     for (std::size_t corner = 0; corner < vertex_of_corner_.size(); ++corner) {
@@ -142,8 +145,7 @@ void PatchSimplifier::load_wedges() {
     }
 
     std::vector<Wedge>& wedges = wedges_[l];
-    wedges.clear();
-    wedges.reserve(vertices_.size() + vertices_.size() / 4);
+    clear_for(wedges, vertices_.size());
     const auto append = [&](Index id) {
       Wedge& wedge = wedges.emplace_back();
       wedge.id = id;
@@ -158,10 +160,11 @@ void PatchSimplifier::load_wedges() {
         continue;
       }
       for (Index t : triangles_of(v)) {
-        const Index id = id_of_corner[3 * t + static_cast<Index>(corner_of(t, v))];
+        Index& corner = id_of_corner[3 * t + corner_at(t, v)];
         Index w = slice.first;
-        while (w < wedges.size() && wedges[w].id != id) ++w;
-        if (w == wedges.size()) append(id);
+        while (w < wedges.size() && wedges[w].id != corner) ++w;
+        if (w == wedges.size()) append(corner);
+        corner = w;
       }
       slice.count = static_cast<Index>(wedges.size()) - slice.first;
     }
@@ -169,26 +172,27 @@ void PatchSimplifier::load_wedges() {
     Index quadric_count = 0;
     for (Index t = 0; t < global_triangle_.size(); ++t) {
       Index* w = &id_of_corner[3 * t];
-      const bool constant = w[0] == w[1] && w[1] == w[2];
-      const bool pinned = constant && !(layer.is_normal && derived_[t]);
-      if (pinned && layer.is_normal) flat_[t] = 1;
       for (Index c = 0; c < 3; ++c) {
         const Slice& slice = slices[vertex_of_corner_[3 * t + c]];
-        const Index id = w[c];
-        w[c] = slice.first;
-        if (slice.count > 1) {
-          while (wedges[w[c]].id != id) ++w[c];
-        }
-        Wedge& wedge = wedges[w[c]];
-        if (pinned) wedge.pinned = true;
-        if (!constant && layer.steers && wedge.quadric == kNone) wedge.quadric = quadric_count++;
+        w[c] = slice.count == 1 ? slice.first : w[c];
+      }
+      Wedge* const own[] = {&wedges[w[0]], &wedges[w[1]], &wedges[w[2]]};
+      const bool constant = own[0]->id == own[1]->id && own[1]->id == own[2]->id;
+      const bool pinned = constant && !(layer.is_normal && derived_[t]);
+      if (pinned && layer.is_normal) flat_[t] = 1;
+      for (Wedge* wedge : own) {
+        if (pinned) wedge->pinned = true;
+        if (!constant && layer.steers && wedge->quadric == kNone) wedge->quadric = quadric_count++;
       }
     }
+    clear_for(attribute_quadrics_[l], quadric_count);
     attribute_quadrics_[l].assign(quadric_count, AttributeQuadric{});
   }
 }
 
 CREASE_WIDE void PatchSimplifier::load_quadrics() {
+  clear_for(surface_, vertices_.size());
+  clear_for(facing_, global_triangle_.size());
   surface_.assign(vertices_.size(), Quadric{});
   facing_.assign(global_triangle_.size(), Facing{});
   for (Index t = 0; t < global_triangle_.size(); ++t) {
@@ -253,63 +257,27 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
   }
 }
 
-void PatchSimplifier::load_edges() {
-  line_of_vertex_.assign(vertices_.size(), kNone);
-  line_.clear();
-  pairs_.clear();
-  several_wedges_.assign(vertices_.size(), 0);
-  for (std::size_t l = 0; l < layer_count(); ++l) {
-    for (Index v = 0; v < vertices_.size(); ++v) several_wedges_[v] |= wedges_of(l, v).count > 1;
-  }
-  slot_.resize(vertices_.size());
-  for (Index v = 0; v < vertices_.size(); ++v) {
-    ++mark_now_;
-    edges_.clear();
-    for (Index t : triangles_of(v)) {
-      for (Index c = 0; c < 3; ++c) {
-        const Index w = vertex_of_corner_[3 * t + c];
-        if (w <= v) continue;
-        if (mark_[w] != mark_now_) {
-          mark_[w] = mark_now_;
-          slot_[w] = static_cast<Index>(edges_.size());
-          edges_.push_back({w, {t, t}, 0});
-        }
-        Edge& edge = edges_[slot_[w]];
-        edge.triangle[edge.triangle_count++ > 0] = t;
-      }
-    }
-    for (const Edge& edge : edges_) {
-      const Index w = edge.other;
-      if (vertices_[v].locked && vertices_[w].locked) continue;
-      if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
-      if (!is_line(v, edge)) continue;
-      for (Index t : triangles_of(v)) {
-        if (corner_of(t, w) >= 0) add_line(v, w, t);
-      }
-    }
-  }
-}
-
 // Whether an edge is a border, a crease, or where more than two sheets meet.
-bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
+inline bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
   if (edge.triangle_count != 2) return true;
-  const Index w = edge.other, t = edge.triangle[0], u = edge.triangle[1];
+  const Index w = edge.other, t = edge.corner[0] / 3, u = edge.corner[1] / 3;
   if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) {
     return true;
   }
   // Sides that run through the edge in the same direction are inside out to each other.
-  const auto runs_to_w = [&](Index triangle) {
-    return vertex_of_corner_[3 * triangle + static_cast<Index>(corner_of(triangle, v) + 1) % 3] ==
-           w;
+  const auto runs_to_w = [&](int side) {
+    const Index from = edge.corner[side], to = edge.other_corner[side];
+    return to == from + 1 || to + 2 == from;
   };
   const double bend = dot(facing_[t].normal, facing_[u].normal);
-  if (runs_to_w(t) == runs_to_w(u) ? bend > kFoldCosine : bend < -kFoldCosine) return true;
+  if (runs_to_w(0) == runs_to_w(1) ? bend > kFoldCosine : bend < -kFoldCosine) return true;
   if (!several_wedges_[v] && !several_wedges_[w]) return false;
   for (std::size_t l = 0; l < layer_count(); ++l) {
-    const auto wedge_at = [&](Index triangle, Index vertex) {
-      return wedge_of_corner_[l][3 * triangle + static_cast<Index>(corner_of(triangle, vertex))];
-    };
-    if (wedge_at(t, v) == wedge_at(u, v) && wedge_at(t, w) == wedge_at(u, w)) continue;
+    const std::vector<Index>& wedge_at = wedge_of_corner_[l];
+    if (wedge_at[edge.corner[0]] == wedge_at[edge.corner[1]] &&
+        wedge_at[edge.other_corner[0]] == wedge_at[edge.other_corner[1]]) {
+      continue;
+    }
     const bool facets =
         work_->layers[l].is_normal && (flat_[t] || derived_[t]) && (flat_[u] || derived_[u]);
     if (!facets || bend < kFlatLineCosine) return true;
@@ -318,7 +286,7 @@ bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
 }
 
 // The plane through edge a-b at a right angle to the triangle (Garland 1999, boundary constraints).
-void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
+inline void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
   const Vec3d edge = positions_[b] - positions_[a];
   const Vec3d across = cross(edge, facing_[triangle].normal);  // as long as the edge: its weight
   const double weight = dot(across, across);
@@ -332,6 +300,62 @@ void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
       line_.emplace_back();
     }
     line_[line_of_vertex_[v]].add(plane);
+  }
+}
+
+inline void PatchSimplifier::add_lines(Index v, const Edge& edge) {
+  if (edge.triangle_count <= 2) {
+    for (Index i = 0; i < edge.triangle_count; ++i) add_line(v, edge.other, edge.corner[i] / 3);
+    return;
+  }
+  for (Index t : triangles_of(v)) {
+    if (has_corner_at(t, edge.other)) add_line(v, edge.other, t);
+  }
+}
+
+CREASE_WIDE void PatchSimplifier::load_edges() {
+  line_of_vertex_.assign(vertices_.size(), kNone);
+  line_.clear();
+  clear_for(pairs_, global_triangle_.size());
+  several_wedges_.assign(vertices_.size(), 0);
+  for (std::size_t l = 0; l < layer_count(); ++l) {
+    for (Index v = 0; v < vertices_.size(); ++v) several_wedges_[v] |= wedges_of(l, v).count > 1;
+  }
+  slot_.resize(vertices_.size());
+  for (Index v = 0; v < vertices_.size(); ++v) {
+    ++mark_now_;
+    const std::span<const Index> around = triangles_of(v);
+    Edge* const edges = edges_.start(2 * around.size() + 1);
+    Index edge_count = 0;
+    // No branches: which vertices come later, and which were met before, nobody could foretell.
+    // What is written for an earlier one is written over by what comes next.
+    const auto meet = [&](Index w, Index corner, Index other_corner) {
+      const bool later = w > v, known = mark_[w] == mark_now_;
+      const Index slot = known ? slot_[w] : edge_count;
+      mark_[w] = later ? mark_now_ : mark_[w];
+      slot_[w] = slot;
+      edge_count += later & !known;
+      Edge& edge = edges[slot];
+      const Index before = known ? edge.triangle_count : 0;
+      edge.other = w;
+      edge.corner[before > 0] = corner;
+      edge.other_corner[before > 0] = other_corner;
+      edge.triangle_count = before + 1;
+    };
+    for (Index t : around) {
+      const Index* w = &vertex_of_corner_[3 * t];
+      const Index c = corner_at(t, v);
+      const Index first = c == 0, second = 2 - Index(c == 2);
+      meet(w[first], 3 * t + c, 3 * t + first);
+      meet(w[second], 3 * t + c, 3 * t + second);
+    }
+    edges_.finish(edges + edge_count);
+    for (const Edge& edge : edges_) {
+      const Index w = edge.other;
+      if (vertices_[v].locked && vertices_[w].locked) continue;
+      if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
+      if (is_line(v, edge)) add_lines(v, edge);
+    }
   }
 }
 

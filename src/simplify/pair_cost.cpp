@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace crease::simplification {
 
@@ -55,94 +56,133 @@ void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedge, cons
 
 // Whether a triangle has both.
 bool PatchSimplifier::meet(Index a, Index b) const {
-  for (Index t : triangles_of(a)) {
-    if (corner_of(t, b) >= 0) return true;
+  bool meets = false;  // at the end as good as at once: nobody could foretell when
+  for (Index t : triangles_of(a)) meets |= has_corner_at(t, b);
+  return meets;
+}
+
+// Calls unite(i, j) for wedges at two vertices with the same attribute, numbered as one list; none
+// has an attribute twice.
+template <typename Unite>
+void PatchSimplifier::unite_equal(std::size_t layer, Slice wa, Slice wb, Unite unite) {
+  constexpr std::size_t kFew = 400;  // comparisons
+  const Wedge* wedges = wedges_[layer].data();
+  const auto id_of = [&](Index i) {
+    return wedges[i < wa.count ? wa.first + i : wb.first + (i - wa.count)].id;
+  };
+  if (std::size_t(wa.count) * wb.count <= kFew) {
+    for (Index i = 0; i < wa.count; ++i) {
+      const Index id = id_of(i);
+      for (Index j = wa.count; j < wa.count + wb.count; ++j) {
+        if (id == id_of(j)) unite(i, j);
+      }
+    }
+    return;
   }
-  return false;
+  by_id_.resize(wa.count + wb.count);
+  std::iota(by_id_.begin(), by_id_.end(), 0u);
+  std::sort(by_id_.begin(), by_id_.end(), [&](Index i, Index j) { return id_of(i) < id_of(j); });
+  for (std::size_t k = 1; k < by_id_.size(); ++k) {
+    if (id_of(by_id_[k - 1]) == id_of(by_id_[k])) unite(by_id_[k - 1], by_id_[k]);
+  }
 }
 
 // Which wedges at a and b become one: those that a vanishing triangle has at its two corners, and
 // those that are the same attribute (DESIGN 6.3; equal index, same attribute). Members are indices
 // into wedges_[layer].
-void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
-                                  std::vector<Joined>& joined) {
-  joined.clear();
-  members_.clear();
+void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
   const Slice wa = wedges_of(layer, a), wb = wedges_of(layer, b);
-  const std::vector<Wedge>& wedges = wedges_[layer];
+  const Wedge* wedges = wedges_[layer].data();
+  const Index n = wa.count + wb.count;
+  Index* members = members_.start(n);
+  Joined* joined = joined_.start(n);
+  members_.finish(members + n);
   if (wa.count == 1 && wb.count == 1) {
     const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
+    members[0] = wa.first;
+    members[1] = wb.first;
     if (x.id == y.id || (!(x.pinned && y.pinned) && meet(a, b))) {
-      members_ = {wa.first, wb.first};
-      joined.push_back({0, 2, x.pinned ? wa.first : y.pinned ? wb.first : kNone});
+      *joined++ = {0, 2, x.pinned ? wa.first : y.pinned ? wb.first : kNone};
     } else {
-      members_ = {wa.first, wb.first};
-      joined.push_back({0, 1, x.pinned ? wa.first : kNone});
-      joined.push_back({1, 1, y.pinned ? wb.first : kNone});
+      *joined++ = {0, 1, x.pinned ? wa.first : kNone};
+      *joined++ = {1, 1, y.pinned ? wb.first : kNone};
     }
+    joined_.finish(joined);
     return;
   }
-  const Index n = wa.count + wb.count;
-  const auto wedge_at = [&](Index i) {
-    return i < wa.count ? wa.first + i : wb.first + (i - wa.count);
-  };
-  parent_.resize(n);
-  std::iota(parent_.begin(), parent_.end(), 0u);
+
+  // Union-find, where every set's root is the first of it.
+  Index* parent = parent_.start(n);
+  std::iota(parent, parent + n, 0u);
   const auto root = [&](Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
   const auto unite = [&](Index i, Index j) {
     i = root(i);
     j = root(j);
-    parent_[std::max(i, j)] = std::min(i, j);
+    parent[std::max(i, j)] = std::min(i, j);
   };
-  for (Index i = 0; i < wa.count; ++i) {
-    for (Index j = 0; j < wb.count; ++j) {
-      if (wedges[wa.first + i].id == wedges[wb.first + j].id) unite(i, wa.count + j);
-    }
+  unite_equal(layer, wa, wb, unite);
+  const Index* wedge_of_corner = wedge_of_corner_[layer].data();
+  const std::span<const Index> around = triangles_of(a);
+  Index* common = common_.start(around.size() + 1);
+  for (Index t : around) {  // two of many: no branch could foretell which
+    *common = t;
+    common += has_corner_at(t, b);
   }
-  for (Index t : triangles_of(a)) {
-    const int cb = corner_of(t, b);
-    if (cb < 0) continue;
-    const Index at_a = wedge_of_corner_[layer][3 * t + static_cast<Index>(corner_of(t, a))];
-    const Index at_b = wedge_of_corner_[layer][3 * t + static_cast<Index>(cb)];
+  common_.finish(common);
+  for (Index t : common_) {
+    const Index at_a = wedge_of_corner[3 * t + corner_at(t, a)];
+    const Index at_b = wedge_of_corner[3 * t + corner_at(t, b)];
     unite(at_a - wa.first, wa.count + (at_b - wb.first));
   }
 
+  // Set by set, in the order of the roots.
+  Index* place =
+      place_of_set_.start(n);  // of a root: how many it has, then where the next one goes
+  std::fill_n(place, n, 0u);
   for (Index i = 0; i < n; ++i) {
-    if (root(i) != i) continue;
-    const Index first = static_cast<Index>(members_.size());
+    parent[i] = parent[parent[i]];
+    ++place[parent[i]];
+  }
+  Index next = 0;
+  for (Index i = 0; i < n; ++i) {
+    if (parent[i] == i) next += std::exchange(place[i], next);
+  }
+  for (Index i = 0; i < n; ++i) {
+    members[place[parent[i]]++] = i < wa.count ? wa.first + i : wb.first + (i - wa.count);
+  }
+
+  for (Index first = 0, i = 0; first < n; ++i) {
+    if (parent[i] != i) continue;
+    const Index end = place[i];
     Index fixed = kNone;
     bool several_fixed = false;
-    for (Index j = i; j < n; ++j) {
-      if (root(j) != i) continue;
-      const Index w = wedge_at(j);
-      members_.push_back(w);
+    for (Index k = first; k < end; ++k) {
+      const Index w = members[k];
       if (!wedges[w].pinned) continue;
-      if (fixed == kNone) {
-        fixed = w;
-      } else if (wedges[fixed].id != wedges[w].id) {
-        several_fixed = true;
-      }
+      if (fixed == kNone) fixed = w;
+      several_fixed = several_fixed || wedges[fixed].id != wedges[w].id;
     }
-    const Index end = static_cast<Index>(members_.size());
     if (!several_fixed) {
-      joined.push_back({first, end - first, fixed});
+      *joined++ = {first, end - first, fixed};
+      first = end;
       continue;
     }
     // Two face normals would become one: neither may change (DB03 rule b), so each stays as it is.
     // Equal attributes are still one wedge.
-    std::sort(members_.begin() + first, members_.end(), [&](Index x, Index y) {
+    std::sort(members + first, members + end, [&](Index x, Index y) {
       return wedges[x].id != wedges[y].id ? wedges[x].id < wedges[y].id : x < y;
     });
-    for (Index k = first; k < end;) {
-      Index next = k + 1;
-      while (next < end && wedges[members_[next]].id == wedges[members_[k]].id) ++next;
-      joined.push_back({k, next - k, members_[k]});
-      k = next;
+    while (first < end) {
+      Index after = first + 1;
+      while (after < end && wedges[members[after]].id == wedges[members[first]].id) ++after;
+      *joined++ = {first, after - first, members[first]};
+      first = after;
     }
   }
+  joined_.finish(joined);
 }
 
 CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
@@ -169,7 +209,7 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
         continue;
       }
     }
-    join_wedges(l, a, b, joined_);
+    join_wedges(l, a, b);
     for (const Joined& joined : joined_) {
       const Index* members = &members_[joined.first_member];
       if (joined.fixed != kNone) {
@@ -195,7 +235,7 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     if (!layer.steers) continue;
-    join_wedges(l, kept, removed, joined_);
+    join_wedges(l, kept, removed);
     for (const Joined& joined : joined_) {
       const Index* members = &members_[joined.first_member];
       const Index inherited = joined.fixed != kNone ? joined.fixed : members[0];
@@ -206,11 +246,8 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
   }
 }
 
-CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, double bound,
-                                                           Quadric* cost_if_kept) {
-  const Vec3d &pa = positions_[a], &pb = positions_[b];
-  const Vec3d along = pb - pa;
-  const double length2 = dot(along, along);
+// Of the surfaces and lines at both.
+inline Quadric PatchSimplifier::sum_of(Index a, Index b) const {
   Quadric sum = surface_[a];
   sum.add(surface_[b]);
   for (Index v : {a, b}) {
@@ -218,54 +255,97 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
       sum.add_scaled(line_[line_of_vertex_[v]], steering_.line_weight);
     }
   }
+  return sum;
+}
+
+CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, double bound) {
+  const Vec3d &pa = positions_[a], &pb = positions_[b];
+  const Vec3d along = pb - pa;
+  const double length2 = dot(along, along);
+  Quadric sum = sum_of(a, b);
   const double tie = kLengthShare * length2 * sum.weight;
   const double grid_noise = kGridNoise * kGridNoise * sum.weight;
+  const auto add_turns = [&](Quadric& q) {
+    if (turn_.empty()) return;
+    q.add(turn_[a]);
+    q.add(turn_[b]);
+  };
+  const auto placed_at = [&](const Vec3d& x, double cost, const Quadric& free) {
+    Placed placed{cost + tie, cost + tie, x};
+    if (!turn_.empty() && placed.cost <= bound) {
+      placed.free_cost = std::min(placed.cost, free.at(x));
+    }
+    return placed;
+  };
 
   if (steering_.placement == Placement::Endpoint) {
-    Quadric if_kept[2] = {sum, sum};
-    add_endpoint_attribute_costs(a, b, if_kept[0]);
-    add_endpoint_attribute_costs(b, a, if_kept[1]);
-    if (cost_if_kept) std::copy_n(if_kept, 2, cost_if_kept);
-    if (!turn_.empty()) {
-      for (Quadric& q : if_kept) {
-        q.add(turn_[a]);
-        q.add(turn_[b]);
-      }
-    }
-    const double cost_a = if_kept[0].at(pa), cost_b = if_kept[1].at(pb);
-    return cost_a < cost_b ? Placed{cost_a + tie, pa} : Placed{cost_b + tie, pb};
+    Quadric if_a = sum, if_b = sum;
+    add_endpoint_attribute_costs(a, b, if_a);
+    add_endpoint_attribute_costs(b, a, if_b);
+    const Quadric free_a = if_a, free_b = if_b;
+    add_turns(if_a);
+    add_turns(if_b);
+    const double cost_a = if_a.at(pa), cost_b = if_b.at(pb);
+    return cost_a < cost_b ? placed_at(pa, cost_a, pa == pb ? free_b : free_a)
+                           : placed_at(pb, cost_b, free_b);
   }
 
   add_attribute_costs(a, b, sum);
-  if (cost_if_kept) cost_if_kept[0] = cost_if_kept[1] = sum;
-  if (!turn_.empty()) {
-    sum.add(turn_[a]);
-    sum.add(turn_[b]);
-  }
+  const Quadric free = sum;
+  add_turns(sum);
   const double cost_a = sum.at(pa), cost_b = sum.at(pb);
-  Placed best = cost_a < cost_b ? Placed{cost_a, pa} : Placed{cost_b, pb};
+  const double best_end = std::min(cost_a, cost_b);
+  const Vec3d& end = cost_a < cost_b ? pa : pb;
   const auto is_corner = [&](Index v) {
     return vertices_[v].flat_around && line_of_vertex_[v] != kNone;
   };
   const double share = is_corner(a) && is_corner(b) ? kLeavesPlanes : 1;
   const double noise = tie + grid_noise;
+  const double most = steering_.leaves_ends * share * best_end - noise;
+  if (!(most > 0)) return placed_at(end, best_end, free);  // as on planes: no cost is less
   const Vec3d middle = (pa + pb) * 0.5;
   Vec3d x = sum.minimum(middle, steering_.pull);
   // The pull, and rounding to a coarse grid, make this more than the least there is.
-  const bool is_cheap = sum.at(x) <= 1.5 * bound;
+  if (!(sum.at(x) <= 1.5 * bound))
+    return placed_at(end, best_end, free);  // nothing is cheap enough
   const Vec3d away = x - middle;
   const double away2 = dot(away, away);
   if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
   x = rounded(x);
   const double cost_x = sum.at(x);
-  const double most = steering_.leaves_ends * share * best.cost - noise;
-  if (is_cheap && cost_x < most) {  // or nothing is cheap enough
-    const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
-    if (between.cost < most) best = {between.cost, between.position};
-    if (cost_x < steering_.leaves_pair * share * best.cost - noise) best = {cost_x, x};
+  if (!(cost_x < most)) return placed_at(end, best_end, free);
+  const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
+  const bool leaves_end = between.cost < most;
+  const double least = leaves_end ? between.cost : best_end;
+  if (cost_x < steering_.leaves_pair * share * least - noise) return placed_at(x, cost_x, free);
+  return placed_at(leaves_end ? between.position : end, least, free);
+}
+
+// At a, at b, and in the middle.
+CREASE_WIDE void PatchSimplifier::find_costs_of_others(Candidate& pair) {
+  const Index a = pair.a, b = pair.b;
+  const Vec3d &pa = positions_[a], &pb = positions_[b];
+  Quadric sum = sum_of(a, b);
+  if (steering_.placement == Placement::Endpoint) {
+    Quadric if_b = sum;
+    add_endpoint_attribute_costs(a, b, sum);
+    add_endpoint_attribute_costs(b, a, if_b);
+    pair.cost_of_other[1] = if_b.at(pb);
+  } else {
+    add_attribute_costs(a, b, sum);
+    pair.cost_of_other[1] = sum.at(pb);
   }
-  best.cost += tie;
-  return best;
+  pair.cost_of_other[0] = sum.at(pa);
+  pair.cost_of_other[2] = sum.at(rounded((pa + pb) * 0.5));
+}
+
+void PatchSimplifier::keep_placed(const Placed& placed, Candidate& pair) {
+  pair.position = {static_cast<std::int32_t>(placed.position.x),
+                   static_cast<std::int32_t>(placed.position.y),
+                   static_cast<std::int32_t>(placed.position.z)};
+  pair.cost = placed.cost;
+  pair.free_cost = placed.free_cost;
+  pair.cost_of_other[0] = Candidate::kUnknown;
 }
 
 }  // namespace crease::simplification

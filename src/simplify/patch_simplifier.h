@@ -5,11 +5,15 @@
 //   patch.start(work, triangles, patch_id, steering);
 //   PatchResult result = patch.run();
 //
-// Inside, everything is local: 10,000 triangles take about 4 MB. Vertices that other patches share
+// Inside, everything is local: 10,000 triangles take about 6 MB. Vertices that other patches share
 // are locked: they neither move nor vanish.
 #pragma once
 
 #include "hierarchy/quadric.h"
+#include "simplify/cost_heap.h"
+#include "simplify/flat_shading.h"
+#include "simplify/ring_block.h"
+#include "simplify/scratch_list.h"
 #include "simplify/work_mesh.h"
 
 #include <cstdint>
@@ -68,8 +72,9 @@ class PatchSimplifier {
   };
   struct Vertex {
     Index global = 0;
-    Index into = kNone;  // of a removed vertex: the one it was contracted into
-    Slice triangles;     // in triangle_pool_
+    Index into = kNone;    // of a removed vertex: the one it was contracted into
+    Slice triangles;       // in triangle_pool_
+    Index changed_at = 0;  // so many contractions had been made when it last changed
     bool locked = false;
     bool alive = true;
     bool flat_around = true;  // all its triangles are flat or derived
@@ -80,25 +85,24 @@ class PatchSimplifier {
   };
   struct Placed {
     double cost = 0;
+    double free_cost = 0;  // without what flat triangles cost: make_legal() knows that better
     Vec3d position;
   };
-  // Costs only grow as quadrics do, so an entry whose ends have changed since is a lower bound: it
-  // is looked at again when it comes to the top, and not before.
-  struct Entry {
-    float cost;
-    Index pair;                             // in pairs_
-    Index held;                             // in held_, or kNone
-    Index tries;                            // so often it was held
-    bool operator<(const Entry& o) const {  // std heaps put the largest first
-      return cost != o.cost ? cost > o.cost : pair > o.pair;
-    }
+  // A pair, and what is known of it as long as its ends do not change.
+  struct Candidate {
+    Index a, b;
+    Index placed_at;          // so many contractions had been made
+    Vec3i position;           // less center_
+    double cost, free_cost;   // see Placed
+    double cost_of_other[3];  // free, at the other places that make_legal() tries; or kUnknown
+    static constexpr double kUnknown = -1;
   };
   // Of a triangle, as it is.
   struct Facing {
     Vec3d normal;  // of unit length, or zero without area
     double area = 0;
   };
-  // Of a pair at the start: its cost, then its place in pairs_.
+  // Of a pair at the start: its cost, then its place in candidates_.
   struct Ordered {
     float cost;
     Index pair;
@@ -109,9 +113,21 @@ class PatchSimplifier {
     Index fixed = kNone;                       // the member whose value is kept, or kNone: solve
   };
 
+  // Around a pair: a triangle that survives, and one that has both ends.
+  struct RingTriangle {
+    Index triangle;
+    Index corner;          // of the end of the pair that it has
+    Index next, previous;  // its other vertices, from there
+  };
+  struct Vanishing {
+    Index triangle;
+    Index third;  // its vertex that is no end
+  };
+
   struct Edge {
     Index other;
-    Index triangle[2];
+    Index corner[2];        // of the vertex that it was found at, in two of its triangles
+    Index other_corner[2];  // in the same triangles
     Index triangle_count;
   };
 
@@ -121,18 +137,23 @@ class PatchSimplifier {
   void load_quadrics();
   void load_edges();
   bool is_line(Index v, const Edge& edge) const;
+  void add_lines(Index v, const Edge& edge);
   void add_line(Index a, Index b, Index triangle);
 
   // virtual_pairs.cpp
   void find_virtual_pairs();
 
   // pair_cost.cpp
-  // `cost_if_kept`: when given, the cost as a function of the place, for keeping a's or b's values,
-  // without what flat triangles cost: make_legal() knows that better.
   // `bound`: a cost above it need not be exact.
-  Placed place(Index a, Index b, double bound, Quadric* cost_if_kept = nullptr);
+  Placed place(Index a, Index b, double bound);
+  Quadric sum_of(Index a, Index b) const;
+  void find_costs_of_others(Candidate& pair);
+  static void keep_placed(const Placed& placed, Candidate& pair);
   bool meet(Index a, Index b) const;
-  void join_wedges(std::size_t layer, Index a, Index b, std::vector<Joined>& joined);
+  // Into joined_.
+  void join_wedges(std::size_t layer, Index a, Index b);
+  template <typename Unite>
+  void unite_equal(std::size_t layer, Slice wa, Slice wb, Unite unite);
   void add_attribute_costs(Index a, Index b, Quadric& sum);
   void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum);
   double layer_scale(std::size_t layer) const;
@@ -141,21 +162,22 @@ class PatchSimplifier {
                       Quadric& sum) const;
 
   // legality.cpp
-  Placed make_legal(Index a, Index b, Placed best, double bound, const Quadric* cost_if_kept);
+  Placed make_legal(Candidate& pair, double bound);
   double ring_cost(Index a, Index b, const Vec3d& target, double bound);
   double category_cost(Index a, Index b, const Vec3d& target);
   double vanishing_cost(Index a, Index b);
+  void gather(std::size_t first, RingBlock& block) const;
+  void gather_shading(std::size_t first, RingBlock& block) const;
   double fold_cost(Index a, Index b, const Vec3d& target, double bound);
   double coincidence_cost(Index a, Index b);
   void blame(Index t, double cost);
 
   // flat_shading.cpp
-  void load_represented();
+  void load_shading();
   void load_turns();
   Vec3d shown_normal(Index t) const;
-  double flat_error(Index t, const Vec3d& normal, double area) const;
-  Index heir_of(Index vanishing) const;
-  double vanishing_error(Index t) const;
+  Index heir_of(const Vanishing& vanishing);
+  double vanishing_error(const Vanishing& vanishing);
   void hand_over_represented();
   void derive_where_better(Index kept, LevelError& error);
 
@@ -168,7 +190,6 @@ class PatchSimplifier {
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
                      const Vec3d& target, Wedge& result);
   void order_pairs();
-  void push(const Entry& entry);
   bool pop(Entry& entry);
   float next_cost() const;
   Index survivor(Index v);
@@ -176,6 +197,11 @@ class PatchSimplifier {
   void hold(const Entry& entry, double cost, double cost_with_ring);
   void release(Index triangle);
 
+  // Of a place on the grid, less center_.
+  Vec3i on_grid(const Vec3d& p) const {
+    return center_grid_ + Vec3i{static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
+                                static_cast<std::int32_t>(p.z)};
+  }
   Facing facing_of(Index t) const {
     const Index* v = &vertex_of_corner_[3 * t];
     const Vec3d& p0 = positions_[v[0]];
@@ -185,16 +211,23 @@ class PatchSimplifier {
     return {twice * (1 / twice_area), 0.5 * twice_area};
   }
   // Twice the area long.
-  Vec3d normal_if_moved(Index t, Index moved, const Vec3d& target) const {
-    const Index* v = &vertex_of_corner_[3 * t];
-    const auto at = [&](Index c) { return v[c] == moved ? target : positions_[v[c]]; };
-    const Vec3d p0 = at(0);
-    return cross(at(1) - p0, at(2) - p0);
+  Vec3d normal_if_moved(const RingTriangle& ring, const Vec3d& target) const {
+    return cross(positions_[ring.next] - target, positions_[ring.previous] - target);
   }
-  // -1: none.
-  int corner_of(Index t, Index v) const {
+  // 0 to 2, without branches; the triangle has v.
+  Index corner_at(Index t, Index v) const {
     const Index* corners = &vertex_of_corner_[3 * t];
-    return corners[0] == v ? 0 : corners[1] == v ? 1 : corners[2] == v ? 2 : -1;
+    return Index(corners[1] == v) + 2 * Index(corners[2] == v);
+  }
+  bool has_corner_at(Index t, Index v) const {
+    const Index* corners = &vertex_of_corner_[3 * t];
+    return (corners[0] == v) | (corners[1] == v) | (corners[2] == v);
+  }
+  RingTriangle ring_triangle(Index t, Index end) const {
+    const Index* v = &vertex_of_corner_[3 * t];
+    static constexpr std::uint8_t kNext[] = {1, 2, 0}, kPrevious[] = {2, 0, 1};
+    const Index c = corner_at(t, end);
+    return {t, 3 * t + c, v[kNext[c]], v[kPrevious[c]]};
   }
   std::span<const Index> triangles_of(Index v) const {
     return std::span(triangle_pool_)
@@ -226,9 +259,7 @@ class PatchSimplifier {
   std::vector<Facing> facing_;
   std::vector<char> flat_;  // stored normal the same at all three corners, and not derived
   std::vector<char> derived_;
-  std::vector<Represented> represented_;
-  std::vector<double> flat_error_;  // of flat and derived triangles, as they are
-  std::size_t normal_layer_ = 0;
+  std::vector<FlatShading> shading_;  // of flat and derived triangles; empty: there are none
   std::size_t live_triangles_ = 0;
 
   std::vector<std::vector<Wedge>> wedges_;                         // per layer, slices by vertex
@@ -239,15 +270,16 @@ class PatchSimplifier {
   std::vector<Index> category_around_;  // by vertex; kNone: several
   std::vector<std::pair<Index, double>> changed_area_;
 
-  // Edges, then virtual pairs. Contractions make pairs the same: the first that is looked at
+  std::vector<std::pair<Index, Index>> pairs_;  // edges, then virtual pairs
+  // Those that cost little enough. Contractions make pairs the same: the first that is looked at
   // afterwards owns its two ends, the others are dropped.
-  std::vector<std::pair<Index, Index>> pairs_;
+  std::vector<Candidate> candidates_;
   std::vector<Index>
       owners_;  // hash table of pairs that were looked at, by their ends; kNone: free
   std::size_t owner_count_ = 0;
   std::vector<Ordered> order_, order_scratch_;  // the pairs of the start, cheapest first
   std::size_t next_in_order_ = 0;
-  std::vector<Entry> heap_;  // those that were looked at again
+  CostHeap heap_;  // those that were looked at again
   double last_key_ = 0;
 
   PatchResult result_;
@@ -269,16 +301,19 @@ class PatchSimplifier {
 
   // Scratch of load_edges().
   std::vector<char> several_wedges_;
-  std::vector<Edge> edges_;
+  ScratchList<Edge> edges_;
   std::vector<Index> slot_;
 
   // Scratch of one contraction.
-  std::vector<Joined> joined_;
-  std::vector<Index> members_;
-  std::vector<Index> parent_;
-  std::vector<Index> vanishing_;     // triangles
-  std::vector<Index> ring_corners_;  // of the surviving triangles: kept's corners, removed's
-  std::size_t ring_kept_ = 0;        // so many are kept's
+  ScratchList<Joined> joined_;
+  ScratchList<Index> members_, parent_, place_of_set_;
+  std::vector<Index> by_id_;
+  ScratchList<Vanishing> vanishing_;
+  ScratchList<RingTriangle> ring_;  // kept's, then removed's
+  std::size_t ring_kept_ = 0;       // so many are kept's
+  std::vector<RingBlock> blocks_;   // of ring_, as far as fold_cost() has looked at it
+  std::uint32_t ring_count_ = 0;    // of those that make_legal() has looked at
+  ScratchList<Index> touching_, common_;
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
   std::vector<Index> mark_;

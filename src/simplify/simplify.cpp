@@ -233,7 +233,7 @@ class Simplifier {
     for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
     parallel_for(chosen.size(), [&](std::size_t i) {
       const std::size_t p = chosen[i];
-      PatchSimplifier& patch = patch_simplifiers_.local();
+      PatchSimplifier& patch = patch_simplifiers_->local();
       patch.start(work_, patches_.of(p), static_cast<std::uint32_t>(p), steering);
       const std::vector<double> own = patch.initial_costs();
       const std::lock_guard<std::mutex> lock(append);
@@ -280,7 +280,7 @@ class Simplifier {
     parallel_for(patches_.count(), [&](std::size_t p) {
       if (stop) return;
       const std::span<const std::uint32_t> triangles = patches_.of(p);
-      PatchSimplifier& patch = patch_simplifiers_.local();
+      PatchSimplifier& patch = patch_simplifiers_->local();
       patch.start(work_, triangles, static_cast<std::uint32_t>(p), steering);
       results_[p] = patch.run();
       const std::size_t gone = triangles.size() - results_[p].triangles_left;
@@ -290,6 +290,7 @@ class Simplifier {
         report.unlock();
       }
     });
+    patch_simplifiers_.emplace();  // their memory is for what follows
     if (stop) return false;
     number_new_values();
     append_contractions();
@@ -339,7 +340,14 @@ class Simplifier {
       double key;
       std::uint32_t patch, index;
     };
+    std::size_t contraction_count = 0, change_count = sequence_.changes.size();
+    for (const PatchResult& result : results_) {
+      contraction_count += result.contractions.size();
+      change_count += result.changes.size();
+    }
+    sequence_.changes.reserve(change_count);
     std::vector<At> order;
+    order.reserve(contraction_count);
     for (std::uint32_t p = 0; p < results_.size(); ++p) {
       for (std::uint32_t i = 0; i < results_[p].contractions.size(); ++i) {
         order.push_back({results_[p].contractions[i].key, p, i});
@@ -396,7 +404,7 @@ class Simplifier {
   Patches patches_;
   std::vector<PatchResult> results_;
   std::vector<std::uint32_t> first_new_;  // patch by patch, layer by layer
-  PerThread<PatchSimplifier> patch_simplifiers_;
+  std::optional<PerThread<PatchSimplifier>> patch_simplifiers_{std::in_place};
   int stalled_ = 0;
   std::uint32_t contractions_in_band_ = 0;
   float worst_surface_ = 0;
