@@ -156,6 +156,9 @@ class BlockLevels {
 };
 using BlockLevelsPtr = std::shared_ptr<const BlockLevels>;
 
+// Something that is to be freed.
+using UnusedPtr = std::shared_ptr<const void>;
+
 // Holds what making them takes, so that it runs on any thread.
 class BlockLevelsJob {
  public:
@@ -243,9 +246,10 @@ class BlockMesh {
   // what the view wants is never dropped. Time: O(blocks near the cut), nothing while neither view
   // nor blocks change.
   BlockUpdate update(const BlockViewParameters& parameters);
-  // What the last update() dropped. The next one frees what was not taken; but freeing may wait for
-  // threads that allocate, and so is better done by those.
-  std::vector<ResidentBlockPtr> take_dropped();
+  // What the last update() no longer needs: blocks that it dropped, lists of levels, and the like.
+  // The next one frees what was not taken; but freeing may wait for threads that allocate, and so
+  // is better done by those.
+  std::vector<UnusedPtr> take_unused();
   // Of the last update(): wanted and not resident, most valuable first, what a block needs before
   // it.
   std::span<const BlockEntry> missing() const;

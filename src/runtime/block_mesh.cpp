@@ -37,7 +37,7 @@ BlockChooser::Limits BlockMesh::Impl::limits(const BlockViewParameters& paramete
 
 BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
   BlockUpdate report;
-  dropped.clear();
+  unused.clear();
   const bool is_same = parameters.view == last.view && parameters.max_bytes == last.max_bytes &&
                        parameters.by_vertex == last.by_vertex &&
                        parameters.in_levels == last.in_levels;
@@ -179,7 +179,7 @@ void BlockMesh::Impl::drop_beyond(std::size_t max_bytes, BlockUpdate& report) {
     levels.drop(block);
     runs[block] = {};
     --resident_count;
-    dropped.push_back(std::exchange(resident[block], nullptr));
+    unused.push_back(std::exchange(resident[block], nullptr));
     report.dropped.push_back(graph.entry(block).id);
   }
 }
@@ -244,8 +244,8 @@ BlockUpdate BlockMesh::update(const BlockViewParameters& parameters) {
   return impl_->update(parameters);
 }
 
-std::vector<ResidentBlockPtr> BlockMesh::take_dropped() {
-  return std::exchange(impl_->dropped, {});
+std::vector<UnusedPtr> BlockMesh::take_unused() {
+  return std::exchange(impl_->unused, {});
 }
 
 std::span<const BlockEntry> BlockMesh::missing() const {

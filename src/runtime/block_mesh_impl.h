@@ -37,8 +37,8 @@ struct BlockMesh::Impl {
         page_count(pages),
         graph(schema->facts, blocks),
         chooser(graph, schema->facts.grid),
-        levels(graph),
-        cuts(graph, schema->facts.grid) {}
+        levels(graph, unused),
+        cuts(graph, schema->facts.grid, unused) {}
   // Of the same file, with no block.
   explicit Impl(const Impl* other)
       : schema(other->schema),
@@ -46,8 +46,8 @@ struct BlockMesh::Impl {
         page_count(other->page_count),
         graph(other->graph),
         chooser(graph, schema->facts.grid),
-        levels(graph),
-        cuts(graph, schema->facts.grid) {
+        levels(graph, unused),
+        cuts(graph, schema->facts.grid, unused) {
     make_room();
   }
 
@@ -76,7 +76,6 @@ struct BlockMesh::Impl {
   BlockChooser chooser;
   // Per block.
   std::vector<ResidentBlockPtr> resident;
-  std::vector<ResidentBlockPtr> dropped;    // by the last update
   std::vector<std::size_t> bytes_of_block;  // what it takes, or at most would
   std::vector<std::size_t> more_bytes;      // what levels and being by vertex take
   std::vector<std::vector<PatchRun>> runs;  // of resident ones
@@ -84,6 +83,7 @@ struct BlockMesh::Impl {
   std::vector<std::uint64_t> wanted_at;     // the last update that wanted it
   std::vector<std::uint32_t> cut;           // those that are refined, ascending
   std::vector<BlockEntry> missing;
+  std::vector<UnusedPtr> unused;  // since the last update
   LevelChoice levels;
   VertexCuts cuts;
   std::vector<BlockId> missing_hierarchies, missing_levels;

@@ -77,6 +77,11 @@ struct BlockStreamer::Impl {
   bool is_paused(BlockId id) const;
   bool waits_in_vain(BlockId id) const;
   std::vector<BlockEntry> missing_soon(const BlockViewParameters& parameters);
+  // What other threads have allocated is better freed by them.
+  template <typename Thing>
+  void free(Thing thing) {
+    workers.free(std::make_shared<const Thing>(std::move(thing)));
+  }
   std::size_t most_decoding() const {
     return kDecodingPerThread * std::size_t(std::max(options.decode_threads, 1));
   }
@@ -110,7 +115,7 @@ StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters, 
   BlockMesh& mesh = meshes[view];
   report.cut = mesh.update(parameters);
   statistics.blocks_dropped += report.cut.dropped.size();
-  if (!report.cut.dropped.empty()) workers.free(mesh.take_dropped());
+  workers.free(mesh.take_unused());
   ask_for_page();
   ask_for_names();
   ask_for_blocks(parameters, view);
@@ -118,13 +123,16 @@ StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters, 
   decode_what_can_be();
   make_hierarchies(view);
   make_levels(view);
+  workers.hand_over();
   report.is_complete = mesh.missing().empty() && !mesh.next_page() &&
                        mesh.missing_hierarchies().empty() && mesh.has_arrived();
   return report;
 }
 
 void BlockStreamer::Impl::take_answers() {
-  for (AsyncAnswer& answer : source->poll()) {
+  std::vector<AsyncAnswer> answers = source->poll();
+  if (answers.empty()) return;
+  for (AsyncAnswer& answer : answers) {
     if (names_ticket == answer.ticket) {
       take_names(answer.bytes);
       continue;
@@ -140,6 +148,7 @@ void BlockStreamer::Impl::take_answers() {
     block_of_ticket.erase(at);
     take_payload(id, std::move(answer.bytes));
   }
+  free(std::move(answers));
 }
 
 void BlockStreamer::Impl::take_page(Result<std::vector<std::byte>> bytes) {
@@ -233,13 +242,15 @@ void BlockStreamer::Impl::take_from_others(std::size_t view, StreamReport& repor
 }
 
 void BlockStreamer::Impl::take_hierarchies() {
-  for (const BlockHierarchyPtr& hierarchy : workers.take_hierarchies()) {
+  for (BlockHierarchyPtr& hierarchy : workers.take_hierarchies()) {
     making.erase(hierarchy->id());
     for (BlockMesh& mesh : meshes) mesh.insert(hierarchy);
+    workers.free(std::move(hierarchy));  // in case that the views have dropped the block
   }
-  for (const BlockLevelsPtr& levels : workers.take_levels()) {
+  for (BlockLevelsPtr& levels : workers.take_levels()) {
     making_levels.erase(levels->id());
     for (BlockMesh& mesh : meshes) mesh.insert(levels);
+    workers.free(std::move(levels));
   }
 }
 
@@ -383,6 +394,7 @@ void BlockStreamer::Impl::forget_unwanted() {
       source->cancel(p.ticket);
       block_of_ticket.erase(static_cast<std::uint64_t>(p.ticket));
     }
+    if (!p.payload.empty()) free(std::move(p.payload));
     pending_bytes -= p.entry.bytes;
     at = pending.erase(at);
   }

@@ -1,14 +1,27 @@
 // Threads that decode blocks, one after the other, in the order in which they were given, and while
 // there is nothing to decode make vertex hierarchies, or levels, of those that are there.
+//
+//   workers.add(job, payload);
+//   ... each frame:
+//   for (DecodeWorkers::Decoded& decoded : workers.take()) ...
+//   workers.hand_over();
+//
+// One thread calls, and only wait() ever waits. What it adds lies on its own side until take() or
+// hand_over() meets the lock free, and what is done on the threads' side likewise; so a frame may
+// hear a little later, but not stand still because a thread was stopped while it held the lock.
+// Vectors go to and fro whole: to free them may wait too, since the allocator has locks.
 #pragma once
 
+#include "base/bell.h"
 #include "crease/block_mesh.h"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -28,62 +41,70 @@ class DecodeWorkers {
   DecodeWorkers& operator=(const DecodeWorkers&) = delete;
 
   void add(BlockDecodeJob job, std::vector<std::byte> payload);
-  // Those that are done since the last call.
-  std::vector<Decoded> take();
-
   void add(BlockHierarchyJob job);
-  std::vector<BlockHierarchyPtr> take_hierarchies();  // after take()
-
   void add(BlockLevelsJob job);
-  std::vector<BlockLevelsPtr> take_levels();  // likewise
+  // On one of the threads, before anything else. Without threads at once.
+  void free(std::vector<UnusedPtr> unused);
+  void free(UnusedPtr unused);
+  void hand_over();
 
-  // On one of the threads, before anything else: the allocator has a lock, which those that decode
-  // hold at times. Without threads at once.
-  void free(std::vector<ResidentBlockPtr> blocks);
+  // Those that are done since the last call; until the next one.
+  std::span<Decoded> take();
+  std::span<BlockHierarchyPtr> take_hierarchies();  // after take()
+  std::span<BlockLevelsPtr> take_levels();          // likewise
 
-  std::size_t outstanding() const;         // blocks added and not taken
-  std::size_t outstanding_making() const;  // hierarchies and levels, likewise
-  double seconds() const;                  // spent decoding, over all threads
+  std::size_t outstanding() const { return decoding_.outstanding; }  // blocks added and not taken
+  std::size_t outstanding_making() const {  // hierarchies and levels, likewise
+    return hierarchies_.outstanding + levels_.outstanding;
+  }
+  double seconds() const { return seconds_; }  // spent decoding, over all threads
   // Until one of them has something (true), or the time is over. Not without threads.
   bool wait(std::chrono::milliseconds timeout);
 
  private:
-  struct Waiting {
+  struct Payload {
     BlockDecodeJob job;
-    std::vector<std::byte> payload;
+    std::vector<std::byte> bytes;
   };
 
-  // What is made of blocks that are there.
+  // The way of one kind of job, from the caller's side to the threads' and back.
   template <typename Job, typename Made>
-  struct Making {
-    std::deque<Job> waiting;
+  struct Kind {
+    std::vector<Job> added;   // the caller's side
+    std::vector<Job> given;   // under the lock, as all that follow
+    std::deque<Job> waiting;  // taken from there by the threads
     std::vector<Made> done;
+    std::vector<Made> arrived, taken;  // the caller's side
+    std::size_t outstanding = 0;       // likewise
+
+    void add(Job job);
+    void meet();
+    std::span<Made> take();
+    bool has_waiting() const { return !given.empty() || !waiting.empty(); }
+    Job next();
   };
 
   void work();
-  void free_unused(std::unique_lock<std::mutex>& lock);
+  void meet();
   bool has_waiting() const {
-    return !waiting_.empty() || !hierarchies_.waiting.empty() || !levels_.waiting.empty();
+    return decoding_.has_waiting() || hierarchies_.has_waiting() || levels_.has_waiting();
   }
-  // The lock is held before and after, not while it works. Something must be waiting.
+  // The lock is held before and after, not while they work. Something must be waiting.
+  void free_given(std::unique_lock<std::mutex>& lock);
   void do_next(std::unique_lock<std::mutex>& lock);
   void decode_next(std::unique_lock<std::mutex>& lock);
   template <typename Job, typename Made>
-  void add(Making<Job, Made>& making, Job job);
-  template <typename Job, typename Made>
-  std::vector<Made> take(Making<Job, Made>& making);
-  template <typename Job, typename Made>
-  void make_next(std::unique_lock<std::mutex>& lock, Making<Job, Made>& making);
+  void make_next(std::unique_lock<std::mutex>& lock, Kind<Job, Made>& kind);
 
   mutable std::mutex mutex_;
-  std::condition_variable has_work_, has_results_;
-  std::vector<ResidentBlockPtr> unused_;
-  std::deque<Waiting> waiting_;
-  std::vector<Decoded> done_;
-  Making<BlockHierarchyJob, BlockHierarchyPtr> hierarchies_;
-  Making<BlockLevelsJob, BlockLevelsPtr> levels_;
-  std::size_t outstanding_ = 0, outstanding_making_ = 0;
-  double seconds_ = 0;
+  Bell has_work_;
+  std::condition_variable has_results_;
+  Kind<Payload, Decoded> decoding_;
+  Kind<BlockHierarchyJob, BlockHierarchyPtr> hierarchies_;
+  Kind<BlockLevelsJob, BlockLevelsPtr> levels_;
+  std::vector<UnusedPtr> unused_;        // the caller's side
+  std::vector<UnusedPtr> given_unused_;  // under the lock
+  std::atomic<double> seconds_ = 0;      // changed under the lock
   bool is_ending_ = false;
   std::vector<std::thread> threads_;
 };

@@ -59,7 +59,11 @@ void LevelChoice::grow(std::size_t blocks) {
 }
 
 void LevelChoice::take_waiting() {
-  for (const BlockLevelsPtr& levels : std::exchange(waiting_, {})) take(*levels);
+  for (BlockLevelsPtr& levels : waiting_) {
+    take(*levels);
+    discard(levels);
+  }
+  waiting_.clear();
 }
 
 void LevelChoice::take(const BlockLevels& levels) {
@@ -70,12 +74,13 @@ void LevelChoice::take(const BlockLevels& levels) {
   const BlockLevels::Data& data = levels.data();
   if (!entry.facts || entry.facts->of_root != data.facts->of_root) {
     // Lists of before are good still, but finer than they need be.
-    entry.lists = {};
+    discard_lists(entry);
     state.lists = 0;
     for (const std::uint32_t coarser : graph_.dependencies(block)) {
       if (coarser < states_.size()) states_[coarser].is_stale = true;
     }
   }
+  discard(entry.facts);
   entry.facts = data.facts;
   state.is_known = true;
   state.can_choose = !data.facts->of_root.empty() && !graph_.is_base(block);
@@ -83,6 +88,7 @@ void LevelChoice::take(const BlockLevels& levels) {
   look_at(block, *data.facts);
   if (data.list) {
     const auto level = static_cast<std::size_t>(data.list->level);
+    discard(entry.lists[level]);
     entry.lists[level] = data.list;
     entry.shown_at[level] = choices_;
     state.lists = static_cast<std::uint16_t>(state.lists | 1u << level);
@@ -90,6 +96,10 @@ void LevelChoice::take(const BlockLevels& levels) {
   set_list(state, list_at(entry, state.shown));
   resized_.push_back(block);
   lists_have_changed_ = true;
+}
+
+void LevelChoice::discard_lists(Entry& entry) {
+  for (LevelListPtr& list : entry.lists) discard(list);
 }
 
 void LevelChoice::look_at(std::uint32_t block, const LevelFacts& facts) {
@@ -110,6 +120,8 @@ void LevelChoice::look_at(std::uint32_t block, const LevelFacts& facts) {
 
 void LevelChoice::drop(std::uint32_t block) {
   if (block >= states_.size()) return;
+  discard(entries_[block].facts);
+  discard_lists(entries_[block]);
   entries_[block] = {};
   states_[block] = {};
   looked_[block] = {};
@@ -124,7 +136,7 @@ bool LevelChoice::drop_lists(std::uint32_t age) {
     Entry& entry = entries_[block];
     for (std::size_t k = 1; k < kFullLevel; ++k) {
       if (!entry.lists[k] || state.shown == k || entry.shown_at[k] + age > choices_) continue;
-      entry.lists[k] = nullptr;
+      discard(entry.lists[k]);
       state.lists = static_cast<std::uint16_t>(state.lists & ~(1u << k));
       resized_.push_back(block);
       any = true;

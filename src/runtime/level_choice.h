@@ -32,7 +32,9 @@ struct LeftAtLevels {
 
 class LevelChoice {
  public:
-  explicit LevelChoice(const BlockGraph& graph) : graph_(graph) {}
+  // What is no longer needed goes to `unused`.
+  LevelChoice(const BlockGraph& graph, std::vector<UnusedPtr>& unused)
+      : graph_(graph), unused_(unused) {}
 
   // Of a block that is resident. What is shown does not change until the next choice.
   void insert(BlockLevelsPtr levels) { waiting_.push_back(std::move(levels)); }
@@ -102,6 +104,11 @@ class LevelChoice {
   };
 
   void take(const BlockLevels& levels);
+  template <typename Pointer>
+  void discard(Pointer& pointer) {
+    if (pointer) unused_.push_back(std::exchange(pointer, nullptr));
+  }
+  void discard_lists(Entry& entry);
   int wanted_level(std::uint32_t block, const View& view);
   static int coarsest_right(Looked& looked, const ViewError& error,
                             const ViewError::Reaches& reaches, int level, int end);
@@ -117,6 +124,7 @@ class LevelChoice {
   bool hide_others();
 
   const BlockGraph& graph_;
+  std::vector<UnusedPtr>& unused_;
   std::vector<Entry> entries_;  // per block
   std::vector<State> states_;   // likewise
   std::vector<Looked> looked_;

@@ -44,7 +44,10 @@ void VertexCuts::insert(BlockHierarchyPtr hierarchy) {
 void VertexCuts::drop(std::uint32_t block) {
   if (block >= entries_.size()) return;
   hide(block);
-  entries_[block] = {};
+  Entry dropped = std::exchange(entries_[block], {});
+  if (dropped.hierarchy) unused_.push_back(std::move(dropped.hierarchy));
+  if (dropped.errors) unused_.push_back(std::move(dropped.errors));
+  if (dropped.cut) unused_.push_back(std::move(dropped.cut));
   has_changed_ = true;
 }
 

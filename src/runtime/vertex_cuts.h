@@ -27,7 +27,9 @@ namespace crease {
 
 class VertexCuts {
  public:
-  VertexCuts(const BlockGraph& graph, const Grid& grid) : graph_(graph), grid_(grid) {}
+  // What is no longer needed goes to `unused`.
+  VertexCuts(const BlockGraph& graph, const Grid& grid, std::vector<UnusedPtr>& unused)
+      : graph_(graph), grid_(grid), unused_(unused) {}
 
   // The cut by block.
   struct Blocks {
@@ -103,6 +105,7 @@ class VertexCuts {
 
   const BlockGraph& graph_;
   const Grid grid_;
+  std::vector<UnusedPtr>& unused_;
   std::vector<Entry> entries_;                  // per block
   std::vector<std::uint32_t> stale_, resized_;  // stale_: a heap, finest first
   struct Waiting {

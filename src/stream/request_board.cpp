@@ -63,7 +63,7 @@ Ticket RequestBoard::add(std::span<const RangeRequest> ranges) {
     }
   }
   if (has_work) {
-    has_work_.notify_all();
+    has_work_.ring();
     if (wake_) wake_();
   }
   return first;
@@ -202,10 +202,15 @@ std::optional<Batch> RequestBoard::take() {
 }
 
 std::optional<Batch> RequestBoard::take_or_wait() {
-  std::unique_lock guard(lock_);
-  has_work_.wait(guard, [this] { return closed_ || !waiting_.empty(); });
-  if (closed_) return std::nullopt;
-  return take_under_lock();
+  for (;;) {
+    const std::uint32_t heard = has_work_.rings();
+    {
+      const std::lock_guard guard(lock_);
+      if (closed_) return std::nullopt;
+      if (!waiting_.empty()) return take_under_lock();
+    }
+    has_work_.wait(heard);
+  }
 }
 
 std::optional<Batch> RequestBoard::take_under_lock() {
@@ -269,7 +274,7 @@ void RequestBoard::close() {
     const std::lock_guard guard(lock_);
     closed_ = true;
   }
-  has_work_.notify_all();
+  has_work_.ring();
 }
 
 bool RequestBoard::is_abandoned(const Batch& batch) const {

@@ -14,6 +14,7 @@
 // Threads: every call from any; a batch belongs to the worker that took it.
 #pragma once
 
+#include "base/bell.h"
 #include "crease/async_source.h"
 
 #include <chrono>
@@ -122,7 +123,8 @@ class RequestBoard {
   const std::function<void()> wake_;
 
   mutable std::mutex lock_;
-  std::condition_variable has_answer_, has_work_;
+  std::condition_variable has_answer_;
+  Bell has_work_;
   std::optional<std::uint64_t> size_;
   std::span<const std::byte> prefix_;
   std::vector<std::byte> kept_;  // where prefix_ lies, if it was appended
