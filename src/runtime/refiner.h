@@ -6,9 +6,10 @@
 // the one that came to be a leaf of the cut last, until it merges or that vertex is split; where
 // the other one has been split meanwhile, the answer is of no use and the watch is dropped then.
 //
-// Without a budget the cut that is reached does not depend on the order, so moves are done as they
-// are found, and what the next ones need is fetched meanwhile. With one, heaps order them: splits
-// by what is most visible, merges by what is least.
+// Without a budget the cut that is reached does not depend on the order. So moves are done in about
+// the order of wedges, which follow the tree and the curve of its roots: neighbours share vertices,
+// triangles and what the hierarchy says of them; and what the next ones need is fetched meanwhile.
+// With a budget heaps order moves: splits by what is most visible, merges by what is least.
 //
 // Memory: a watch per slot and per pair, 4 bytes a slot and 8 a pair.
 #pragma once
@@ -54,8 +55,8 @@ class Refiner {
   std::size_t bytes() const {
     return wrong_.bytes() + merged_.bytes() + 4 * pair_of_slot_.capacity() +
            sizeof(Pair) * pairs_.capacity() +
-           sizeof(Wish) * (splits_.capacity() + merges_.capacity()) +
-           sizeof(Required) * required_leaves_.capacity();
+           sizeof(Wish) * (splits_.capacity() + merges_.capacity() + sorted_.capacity()) +
+           4 * first_in_range_.capacity() + sizeof(Required) * required_leaves_.capacity();
   }
 
  private:
@@ -96,6 +97,7 @@ class Refiner {
   Watch watch_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const;
   void find_merges(const ActiveCut& cut);
   void find_splits(const ActiveCut& cut);
+  void sort_by_place(const ActiveCut& cut, std::vector<Wish>& wishes);
   void wish_split(const ActiveCut& cut, std::uint32_t slot);
   void wish_merge(const ActiveCut& cut, SplitId s, std::uint32_t slot);
   float excess_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const;
@@ -139,9 +141,11 @@ class Refiner {
   std::vector<Pair> pairs_;                  // in no order
   std::vector<std::uint32_t> pair_of_slot_;  // or kNone
   Queue splits_, merges_;
-  bool finds_splits_ = false;               // still to be done for this view
-  std::span<const std::uint8_t> required_;  // per split; or empty: none is
-  std::vector<Required> required_leaves_;   // new ones
+  std::vector<Wish> sorted_;                   // scratch
+  std::vector<std::uint32_t> first_in_range_;  // scratch
+  bool finds_splits_ = false;                  // still to be done for this view
+  std::span<const std::uint8_t> required_;     // per split; or empty: none is
+  std::vector<Required> required_leaves_;      // new ones
   bool requires_anew_ = false;
   std::vector<Wish>
       least_visible_;  // a heap of every possible merge, while a triangle budget binds
