@@ -8,8 +8,10 @@
 //
 // Without a budget the cut that is reached does not depend on the order. So moves are done in about
 // the order of wedges, which follow the tree and the curve of its roots: neighbours share vertices,
-// triangles and what the hierarchy says of them; and what the next ones need is fetched meanwhile.
-// With a budget heaps order moves: splits by what is most visible, merges by what is least.
+// triangles and what the hierarchy says of them. And they are done at once: first all vertices are
+// merged, or split, and only what is not to be moved again is watched; then corners follow
+// (ActiveCut). With a budget heaps order moves, splits by what is most visible, merges by what is
+// least, and each is done by itself.
 //
 // Memory: a watch per slot and per pair, 4 bytes a slot and 8 a pair.
 #pragma once
@@ -92,6 +94,7 @@ class Refiner {
   void look_from(const ActiveCut& cut, const ViewParameters& view);
   void watch_all(const ActiveCut& cut);
   void watch_vertex(const ActiveCut& cut, std::uint32_t slot);
+  bool watch_child(const ActiveCut& cut, std::uint32_t slot);
   void watch_pair(std::uint32_t slot, SplitId s, const Watch& watch);
   void drop_pair(std::uint32_t slot);
   Watch watch_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const;
@@ -115,6 +118,9 @@ class Refiner {
   std::uint32_t move_down(ActiveCut& cut, std::uint32_t slot);
   void move_up(ActiveCut& cut, SplitId s, const ActiveCut::Children& children);
   bool waits(const ActiveCut& cut, SplitId s, const ActiveCut::Children& children, bool for_room);
+  bool has_geomorphs() const {
+    return geomorphs_ != nullptr && (geomorphs_->is_on() || geomorphs_->moving_count() > 0);
+  }
   void turn_back(const ActiveCut& cut);
   void merge_arrived(ActiveCut& cut);
   std::size_t leaving_triangles() const {
@@ -133,6 +139,7 @@ class Refiner {
   ViewError error_;
   bool has_view_ = false;
   bool is_ordered_ = false;
+  bool at_once_ = false;  // all that is found to be due is done by this update()
   float merge_below_ = 1;
   Odometer odometer_;
   int frames_on_odometer_ = 0;

@@ -87,6 +87,12 @@ class WatchList {
     watch.reach_aside = f.reach_aside[lane];
     return watch;
   }
+  void prefetch(std::size_t i) const {
+    const char* const spheres = reinterpret_cast<const char*>(&spheres_[i / kLanes]);
+    __builtin_prefetch(spheres);
+    __builtin_prefetch(spheres + 64);
+    __builtin_prefetch(&due_[i / kLanes / kLanes]);
+  }
   void turn_off(std::size_t i) { set(i, {}); }
   void look_at_all() {
     due_.assign(due_.size(), kNow);
