@@ -49,7 +49,7 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy, const char* is_hidden)
     vertices_[slot].end = h_.root_wedges[r + 1];
     map_.set(h_.root_wedges[r], slot);
     stand(slot, h_.root(r), h_.root_positions[r]);
-    show_vertex(slot);
+    show_vertex(slot, attributes_of_normals(h_.root(r)));
   }
   const TriangleRange coarse = h_.coarse_triangles();
   for (std::uint32_t t = coarse.begin; t < coarse.end; ++t) {
@@ -88,12 +88,8 @@ void ActiveCut::stand(std::uint32_t slot, NodeId node, const Vec3i& position) {
 }
 
 // What it shows where it stands.
-void ActiveCut::show_vertex(std::uint32_t slot) {
-  if (normal_layer_ != kNone) {
-    const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
-    ActiveVertex& v = vertices_[slot];
-    v.normal = normal_in(layer.attribute_ranges.range(index_of(v.node)));
-  }
+void ActiveCut::show_vertex(std::uint32_t slot, const CompactRanges::Range& normals) {
+  if (normal_layer_ != kNone) vertices_[slot].normal = normal_in(normals);
   vertex_changes_.mark(slot);
 }
 

@@ -163,7 +163,12 @@ class ActiveCut {
   }
   std::uint32_t take_slot();
   void stand(std::uint32_t slot, NodeId node, const Vec3i& position);
-  void show_vertex(std::uint32_t slot);
+  // Of a node; empty where there are none.
+  CompactRanges::Range attributes_of_normals(NodeId node) const {
+    if (normal_layer_ == kNone || node == kNoNode) return {};
+    return hierarchy_.layers[normal_layer_].attribute_ranges.range(index_of(node));
+  }
+  void show_vertex(std::uint32_t slot, const CompactRanges::Range& normals);
   void stand_at_children(SplitId s, std::uint32_t first, std::uint32_t second,
                          const Vec3i& position);
   std::uint32_t normal_in(const CompactRanges::Range& attributes) const;
@@ -227,8 +232,8 @@ class ActiveCut {
     __builtin_prefetch(vertex + 64);
   }
   void prefetch_corners(std::uint32_t slot) const;
-  void prefetch_normal(NodeId node) const;
-  void prefetch_normal_further(NodeId node) const;
+  void prefetch_normals(NodeId node) const;
+  void prefetch_normal(std::uint32_t attribute) const;
   void prefetch_values(WedgeId wedge) const {  // of corners that arrive
     for (const PackedIndices<>* constants : constants_) constants->prefetch(index_of(wedge));
   }

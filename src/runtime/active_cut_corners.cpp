@@ -2,6 +2,7 @@
 #include "runtime/active_cut.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace crease {
@@ -29,16 +30,27 @@ void ActiveCut::visit_corners_following(Moves moves, Visit visit) {
 
 // Vertices stand where they will stay. Those that have merged left tell where their corners go.
 void ActiveCut::show_following() {
+  constexpr std::size_t kAhead = 4;
   const std::size_t count = following_.size();
-  for (std::size_t i = 0; i < count; ++i) {
+  const auto normals_of = [&](std::size_t i) {
+    return attributes_of_normals(vertices_[following_[i].slot].node);
+  };
+  std::array<CompactRanges::Range, kAhead> normals{};  // of the next ones
+  for (std::size_t i = 0; i < count + kAhead; ++i) {
     if (i + 16 < count) __builtin_prefetch(&vertices_[following_[i + 16].slot]);
-    if (i + 8 < count) prefetch_normal(vertices_[following_[i + 8].slot].node);
-    if (i + 4 < count) prefetch_normal_further(vertices_[following_[i + 4].slot].node);
-    const std::uint32_t slot = following_[i].slot;
-    if (vertices_[slot].node != kNoNode) {
-      show_vertex(slot);
-    } else {
-      to_of_slot_[slot] = map_.slot_at(vertices_[slot].begin);
+    if (i + 8 < count) prefetch_normals(vertices_[following_[i + 8].slot].node);
+    CompactRanges::Range& range = normals[i % kAhead];
+    if (i >= kAhead) {
+      const std::uint32_t slot = following_[i - kAhead].slot;
+      if (vertices_[slot].node != kNoNode) {
+        show_vertex(slot, range);
+      } else {
+        to_of_slot_[slot] = map_.slot_at(vertices_[slot].begin);
+      }
+    }
+    if (i < count) {
+      range = normals_of(i);
+      prefetch_normal(range.begin);
     }
   }
 }

@@ -50,19 +50,18 @@ void ActiveCut::prefetch_children(SplitId s) const {
   }
 }
 
-void ActiveCut::prefetch_normal(NodeId node) const {
+void ActiveCut::prefetch_normals(NodeId node) const {
   if (normal_layer_ == kNone || node == kNoNode) return;
   hierarchy_.layers[normal_layer_].attribute_ranges.prefetch(index_of(node));
 }
 
-void ActiveCut::prefetch_normal_further(NodeId node) const {
-  if (normal_layer_ == kNone || node == kNoNode) return;
+void ActiveCut::prefetch_normal(std::uint32_t attribute) const {
+  if (normal_layer_ == kNone) return;
   const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
-  const std::uint32_t first = layer.attribute_ranges.begin(index_of(node));
   if (layer.has_value.size() > 0) {
-    layer.has_value.prefetch(first);
+    layer.has_value.prefetch(attribute);
   } else if (!layer.value_of_attribute.empty()) {
-    layer.value_of_attribute.prefetch(first);
+    layer.value_of_attribute.prefetch(attribute);
   }
 }
 

@@ -136,7 +136,7 @@ class CornerLists {
     return {&refs_[first(list)], &wedges_[first(list)], list.count};
   }
 
-  void push_back(CornerList& list, const CornerAt& at) {
+  void push_back(CornerList& list, CornerAt at) {
     if (list.is_own() && list.count < CornerList::kOwn) {
       list.refs[list.count] = at.corner;
       list.wedges[list.count++] = at.wedge;
@@ -210,7 +210,7 @@ class CornerLists {
     return i;
   }
   // Not inline, as such lists are rare: what is common keeps its registers.
-  [[gnu::noinline]] void push_back_further(CornerList& list, const CornerAt& at) {
+  [[gnu::noinline]] void push_back_further(CornerList& list, CornerAt at) {
     resize(list, list.count + 1);
     refs_[first(list) + list.count - 1] = at.corner;
     wedges_[first(list) + list.count - 1] = at.wedge;
