@@ -264,7 +264,11 @@ bool Refiner::watch_child(const ActiveCut& cut, std::uint32_t slot) {
   }
   const Watch watch = error_.watch(bounds_of(cut, v.split), error_.position(v.position), 1);
   const bool is_wrong = error_.is_wrong(watch);
-  if (!at_once_ || !is_wrong) wrong_.set(slot, watch);
+  if (!is_wrong) {
+    wrong_.set<true>(slot, watch, error_, odometer_);
+  } else if (!at_once_) {
+    wrong_.set(slot, watch);
+  }
   if (is_wrong) wish_split(cut, slot);
   return is_wrong;
 }

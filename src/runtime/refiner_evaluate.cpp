@@ -69,7 +69,7 @@ void Refiner::watch_vertex(const ActiveCut& cut, std::uint32_t slot) {
   const ActiveVertex& v = cut.vertices()[slot];
   if (v.split == kNoSplit) return wrong_.turn_off(slot);
   const SplitBounds& bounds = bounds_of(cut, v.split);
-  wrong_.set(slot, error_.watch(bounds, error_.position(v.position), 1));
+  wrong_.set<true>(slot, error_.watch(bounds, error_.position(v.position), 1), error_, odometer_);
 }
 
 void Refiner::watch_pair(std::uint32_t slot, SplitId s, const Watch& watch) {
@@ -80,7 +80,7 @@ void Refiner::watch_pair(std::uint32_t slot, SplitId s, const Watch& watch) {
     merged_.grow(pairs_.size(), error_.uses_cones());
   }
   pairs_[pair] = {s, slot};
-  merged_.set(pair, watch);
+  merged_.set<false>(pair, watch, error_, odometer_);
 }
 
 void Refiner::drop_pair(std::uint32_t slot) {
