@@ -5,19 +5,26 @@
 //   cut.split(cut.slot_of(root));         // v_t keeps the slot, v_u gets one
 //   cut.merge(s);                         // the exact inverse
 //
-// A split costs: one look-up per introduced triangle (its third vertex, WedgeMap), one comparison
-// per corner at v_s, one write per corner that goes to v_u. Nothing depends on the model's size.
+// A split costs: three look-ups per introduced triangle (WedgeMap), one comparison per corner at
+// v_s, a look-up and a write per corner that goes to v_u. Nothing depends on the model's size.
 // Normals, colours and kinds are not computed here: what may have changed is marked.
+//
+// Many moves cost less together, since corners go straight to where the last of them leaves them:
+//
+//   cut.merge_vertices(s, cut.children(s));   // any number of them
+//   cut.bring_corners_up();
+//   cut.split_vertex(slot);                   // and of these
+//   cut.bring_corners_down();
 //
 // A corner at a vertex with several attributes of a layer keeps its value, not the relative index
 // of G03 3.6: on the walls of a city values stay while indices change with every move. Where a
-// value does change (AttributeHierarchy::keeps_values), the way goes by indices. A layer whose
-// values do not repeat has an AttributeOrder instead.
+// value may change on the way (AttributeHierarchy::keeps_values), it is looked up where the corner
+// ends. A layer whose values do not repeat has an AttributeOrder for that.
 //
 // A vertex without triangles has no wedges and no slot; its splits and merges are never needed. So
 // a split one of whose children has no triangles only renames the slot.
 //
-// Memory: a vertex and the corners at it 128, its position and normal to be drawn 24; a triangle as
+// Memory: a vertex and the corners at it 136, its position and normal to be drawn 24; a triangle as
 // in active_triangles.h. Whatever is active: a bit a split, 4.2 bytes a wedge, and
 // the AttributeOrders.
 #pragma once
@@ -93,8 +100,8 @@ class ActiveCut {
   void merge(SplitId s) { merge(s, children(s)); }  // can_merge(s)
   void merge(SplitId s, const Children& slots);
 
-  // The same in two steps: vertices first, then all corners, of as many splits, or merges, as there
-  // were meanwhile. Until then no corner, triangle or normal is asked for.
+  // The same in two steps: first vertices, of any number of splits, or of merges, then all corners.
+  // Between them no corner, triangle or normal is to be asked for.
   std::uint32_t split_vertex(std::uint32_t slot);
   void bring_corners_down();
   void merge_vertices(SplitId s, const Children& slots);
