@@ -182,7 +182,7 @@ class WatchList {
 
     bool has_bound() const { return finds > kFindsToBound; }
   };
-  static constexpr std::uint32_t kFindsToBound = 1, kMostWidened = 16;
+  static constexpr std::uint32_t kFindsToBound = 1, kMostWidened = kGroup;
   static constexpr float kRounding = 1e-6f, kSafe = 0.999f;
   static constexpr Dates kNow{{-kNever, -kNever, -kNever, -kNever},
                               {-kNever, -kNever, -kNever, -kNever}};
