@@ -5,19 +5,26 @@
 //   cut.split(cut.slot_of(root));         // v_t keeps the slot, v_u gets one
 //   cut.merge(s);                         // the exact inverse
 //
-// A split costs: one look-up per introduced triangle (its third vertex, WedgeMap), one comparison
-// per corner at v_s, one write per corner that goes to v_u. Nothing depends on the model's size.
+// A split costs: three look-ups per introduced triangle (WedgeMap), one comparison per corner at
+// v_s, a look-up and a write per corner that goes to v_u. Nothing depends on the model's size.
 // Normals, colours and kinds are not computed here: what may have changed is marked.
+//
+// Many moves cost less together, since corners go straight to where the last of them leaves them:
+//
+//   cut.merge_vertices(s, cut.children(s));   // any number of them
+//   cut.bring_corners_up();
+//   cut.split_vertex(slot);                   // and of these
+//   cut.bring_corners_down();
 //
 // A corner at a vertex with several attributes of a layer keeps its value, not the relative index
 // of G03 3.6: on the walls of a city values stay while indices change with every move. Where a
-// value does change (AttributeHierarchy::keeps_values), the way goes by indices. A layer whose
-// values do not repeat has an AttributeOrder instead.
+// value may change on the way (AttributeHierarchy::keeps_values), it is looked up where the corner
+// ends. A layer whose values do not repeat has an AttributeOrder for that.
 //
 // A vertex without triangles has no wedges and no slot; its splits and merges are never needed. So
 // a split one of whose children has no triangles only renames the slot.
 //
-// Memory: a vertex and the corners at it 128, its position and normal to be drawn 24; a triangle as
+// Memory: a vertex and the corners at it 136, its position and normal to be drawn 24; a triangle as
 // in active_triangles.h. Whatever is active: a bit a split, 4.2 bytes a wedge, and
 // the AttributeOrders.
 #pragma once
@@ -93,15 +100,27 @@ class ActiveCut {
   void merge(SplitId s) { merge(s, children(s)); }  // can_merge(s)
   void merge(SplitId s, const Children& slots);
 
+  // The same in two steps: first vertices, of any number of splits, or of merges, then all corners.
+  // Between them no corner, triangle or normal is to be asked for.
+  std::uint32_t split_vertex(std::uint32_t slot);
+  void bring_corners_down();
+  void merge_vertices(SplitId s, const Children& slots);
+  void bring_corners_up();
+
   // What a move soon to be done will read, some moves ahead; each step follows what the one before
   // it has brought.
   void prefetch_split(std::uint32_t slot, SplitId s) const;
-  void prefetch_split_further(std::uint32_t slot, SplitId s) const;
+  void prefetch_split_further(SplitId s) const;
   void prefetch_merge(std::uint32_t slot, SplitId s) const;
-  void prefetch_merge_further(std::uint32_t slot, SplitId s) const;
+  void prefetch_merge_further(SplitId s) const;
+  void prefetch_children(SplitId s) const;
+  // The slot that will be taken when `count` others were.
+  std::uint32_t slot_to_come(std::size_t count) const {
+    return count < free_slots_.size() ? free_slots_[free_slots_.size() - 1 - count] : kNoSlot;
+  }
   void prefetch_vertices_of(const ActiveTriangles& part, std::size_t triangle) const {
     const std::uint32_t* const slots = &part.slots[3 * triangle];
-    for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[slots[k]]);
+    for (std::size_t k = 0; k < 3; ++k) prefetch_vertex(slots[k]);
   }
 
   CornerLists::View corners_of(std::uint32_t slot) const {
@@ -151,6 +170,12 @@ class ActiveCut {
   }
   std::uint32_t take_slot();
   void stand(std::uint32_t slot, NodeId node, const Vec3i& position);
+  // Of a node; empty where there are none.
+  CompactRanges::Range attributes_of_normals(NodeId node) const {
+    if (normal_layer_ == kNone || node == kNoNode) return {};
+    return hierarchy_.layers[normal_layer_].attribute_ranges.range(index_of(node));
+  }
+  void show_vertex(std::uint32_t slot, const CompactRanges::Range& normals);
   void stand_at_children(SplitId s, std::uint32_t first, std::uint32_t second,
                          const Vec3i& position);
   std::uint32_t normal_in(const CompactRanges::Range& attributes) const;
@@ -171,29 +196,37 @@ class ActiveCut {
     return l == normal_layer_ ? !v.has_one_normal()
                               : hierarchy_.layers[l].attribute_count(v.node) > 1;
   }
-  std::uint32_t value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge) const;
-  // Of the corners at both children; kNoSlot where one has no triangles.
-  void pass_down(SplitId s, std::uint32_t first, std::uint32_t second, bool had_one_normal);
-  void pass_up(SplitId s, std::uint32_t first, std::uint32_t second);
-  void renew_values(std::uint32_t slot, std::size_t place);
-  void renew_after_merge(SplitId s, std::uint32_t slot);
-  void step_down(SplitId s, std::uint32_t slot, bool second, std::size_t place);
-  void step_up(SplitId s, std::uint32_t slot, bool second, std::size_t place);
+  std::uint32_t value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge,
+                         const CornerLists::View& seen) const;
+  // A vertex that has moved, whose corners have not yet.
+  struct Following {
+    std::uint32_t slot;
+    NodeId from;  // where its corners' values are right
+    bool had_one_normal;
+    bool is_new;  // another one has its corners
+  };
+  std::uint32_t follow(std::uint32_t slot);
+  void forget_following();
+  template <typename Visit>
+  void visit_following(Visit visit);
+  template <typename Moves, typename Visit>
+  void visit_corners_following(Moves moves, Visit visit);
+  void show_following();
+  bool keeps_between(std::size_t place, NodeId above, NodeId below) const;
+  void renew_values(const Following& f, const ActiveVertex& v, std::size_t place);
+  void look_up_values(const CornerList& list, const ActiveVertex& v, std::size_t place);
+  void renew_corners(const Following& f, std::uint32_t to);
+  void give_corners(std::uint32_t slot);
+  void take_corners(const Following& f);
+  bool is_left(std::uint32_t slot) const { return to_of_slot_[slot] != slot; }
+  bool goes_up(CornerRef corner);
+  void activate_born();
   std::uint32_t kept_value(const CornerAt& at, std::size_t place) const {
     return parts_[at.corner.part()].values[tracked_.size() * at.corner.index() + place];
   }
-  void set_value(const CornerAt& at, std::size_t place, std::uint32_t value) {
-    ActiveTriangles& part = parts_[at.corner.part()];
-    part.values[tracked_.size() * at.corner.index() + place] = value;
-    part.touched.mark(at.corner.triangle());
-  }
-  void touch_corners(std::uint32_t slot, bool had_one_normal);
-  void give_corners(std::uint32_t from, std::uint32_t to, WedgeId middle);
-  void take_corners(std::uint32_t from, std::uint32_t to);
-  void take_many_corners(std::uint32_t from, std::uint32_t to);
+  void touch_corners(const CornerList& list, bool had_one_normal, bool has_one_normal);
   void activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
                 const std::array<std::uint32_t, 3>& slots);
-  void deactivate(CornerRef corner, std::uint32_t from, std::uint32_t to);
   void stand_at(CornerRef corner, std::uint32_t slot) {
     ActiveTriangles& part = parts_[corner.part()];
     part.slots[corner.index()] = slot;
@@ -206,6 +239,11 @@ class ActiveCut {
     __builtin_prefetch(vertex + 64);
   }
   void prefetch_corners(std::uint32_t slot) const;
+  void prefetch_normals(NodeId node) const;
+  void prefetch_normal(std::uint32_t attribute) const;
+  void prefetch_values(WedgeId wedge) const {  // of corners that arrive
+    for (const PackedIndices<>* constants : constants_) constants->prefetch(index_of(wedge));
+  }
   void replace_corner(CornerRef from, CornerRef to);
   void copy_triangle(Part from, std::uint32_t source, Part to, std::uint32_t target);
   std::uint32_t* slots_of(CornerRef corner) {
@@ -221,27 +259,30 @@ class ActiveCut {
   const VertexHierarchy& h_;
   const char* const is_hidden_;
   std::uint32_t normal_layer_ = kNone, color_layer_ = kNone, texcoord_layer_ = kNone;
-  std::vector<std::uint32_t> tracked_;         // layers that have nodes of several attributes
-  std::vector<std::uint32_t> place_of_layer_;  // in tracked_, or kNone
-  std::vector<AttributeOrder> orders_;         // of those; empty where wedges keep values
-  bool tracks_others_ = false;                 // layers beside normals
-  bool touches_triangles_ = false;             // some triangle is, or may become, other than SN
-  std::vector<std::uint64_t> done_;            // a bit a split
+  std::vector<std::uint32_t> tracked_;             // layers that have nodes of several attributes
+  std::vector<std::uint32_t> place_of_layer_;      // in tracked_, or kNone
+  std::vector<AttributeOrder> orders_;             // of those; empty where wedges keep values
+  std::vector<const PackedIndices<>*> constants_;  // constant_of_wedge of those
+  bool tracks_others_ = false;                     // layers beside normals
+  bool touches_triangles_ = false;                 // some triangle is, or may become, other than SN
+  std::vector<std::uint64_t> done_;                // a bit a split
   WedgeMap map_;
   std::vector<ActiveVertex> vertices_;
   std::vector<std::uint32_t> free_slots_;
   CornerLists lists_;
   std::array<ActiveTriangles, kPartCount> parts_;
   ChangeSet vertex_changes_;
-  std::vector<CornerAt> leaving_;        // scratch of one move
   std::vector<std::uint32_t> arriving_;  // scratch of one triangle
-  // Scratch of one move: an attribute of v_s and what it is at a child.
-  struct Step {
-    std::uint32_t above = kNone, below = kNone;  // values
-    RelativeAttribute at_parent = 0;
-    bool has_more = false;  // others of the child as well
+  std::vector<Following> following_;
+  std::vector<std::uint32_t> following_of_slot_;  // or kNone
+  std::vector<std::uint32_t> to_of_slot_;         // itself, but for one that merges left
+  std::vector<SplitId> moves_;                    // that corners have not followed
+  struct Born {
+    TriangleId triangle;
+    std::array<WedgeId, 3> wedges;
+    std::array<std::uint32_t, 3> slots;
   };
-  std::vector<Step> steps_;
+  std::vector<Born> born_;  // scratch
 };
 
 }  // namespace crease

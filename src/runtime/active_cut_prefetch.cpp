@@ -5,37 +5,32 @@ namespace crease {
 
 void ActiveCut::prefetch_split(std::uint32_t slot, SplitId s) const {
   const std::size_t first = index_of(h_.first_child(s));
-  prefetch_vertex(slot);
+  __builtin_prefetch(&vertices_[slot]);
+  __builtin_prefetch(&following_of_slot_[slot]);
   h_.second_wedge.prefetch(index_of(s));
   h_.deltas.prefetch(3 * (first - h_.root_count));
   h_.deltas.prefetch(3 * (first - h_.root_count) + 5);
   h_.is_split.prefetch(first);
-  h_.triangle_ranges.prefetch(index_of(s) + 1);
-  if (normal_layer_ != kNone) hierarchy_.layers[normal_layer_].attribute_ranges.prefetch(first);
 }
 
-void ActiveCut::prefetch_split_further(std::uint32_t slot, SplitId s) const {
+void ActiveCut::prefetch_split_further(SplitId s) const {
   const std::size_t first = index_of(h_.first_child(s));
   __builtin_prefetch(&h_.bounds[index_of(s)]);
   const std::size_t below = h_.is_split.rank(first);
   if (below < h_.bounds.size()) __builtin_prefetch(&h_.bounds[below]);
-  const TriangleRange born = h_.triangles_of(s);
-  if (born.begin < born.end) h_.triangles.of_corner.prefetch(3 * std::size_t(born.begin));
-  if (vertices_[slot].split == s) prefetch_corners(slot);
 }
 
 void ActiveCut::prefetch_merge(std::uint32_t slot, SplitId s) const {
-  prefetch_vertex(slot);
+  __builtin_prefetch(&vertices_[slot]);
   h_.second_wedge.prefetch(index_of(s));
   h_.node_of_split.prefetch(index_of(s));
   h_.deltas.prefetch(3 * (index_of(h_.first_child(s)) - h_.root_count));
 }
 
-void ActiveCut::prefetch_merge_further(std::uint32_t slot, SplitId s) const {
+void ActiveCut::prefetch_merge_further(SplitId s) const {
   const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
   if (middle < h_.wedge_count()) map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle)});
   if (middle > 0) map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle - 1)});
-  prefetch_corners(slot);
   const NodeId node = h_.node_of_split[index_of(s)];
   h_.is_split.prefetch(index_of(node));
   if (h_.is_root(node)) return;
@@ -45,9 +40,34 @@ void ActiveCut::prefetch_merge_further(std::uint32_t slot, SplitId s) const {
   h_.deltas.prefetch(3 * (index_of(node) - h_.root_count));
 }
 
+void ActiveCut::prefetch_children(SplitId s) const {
+  const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
+  if (middle == 0 || middle >= h_.wedge_count()) return;
+  for (const std::size_t wedge : {middle - 1, middle}) {
+    const std::uint32_t slot = map_.slot_at(WedgeId{static_cast<std::uint32_t>(wedge)});
+    __builtin_prefetch(&vertices_[slot]);
+    __builtin_prefetch(&following_of_slot_[slot]);
+  }
+}
+
+void ActiveCut::prefetch_normals(NodeId node) const {
+  if (normal_layer_ == kNone || node == kNoNode) return;
+  hierarchy_.layers[normal_layer_].attribute_ranges.prefetch(index_of(node));
+}
+
+void ActiveCut::prefetch_normal(std::uint32_t attribute) const {
+  if (normal_layer_ == kNone) return;
+  const AttributeHierarchy& layer = hierarchy_.layers[normal_layer_];
+  if (layer.has_value.size() > 0) {
+    layer.has_value.prefetch(attribute);
+  } else if (!layer.value_of_attribute.empty()) {
+    layer.value_of_attribute.prefetch(attribute);
+  }
+}
+
 void ActiveCut::prefetch_corners(std::uint32_t slot) const {
   // So many whatever there are: those beyond the end were there once, and do no harm.
-  constexpr std::size_t kMost = 8;
+  constexpr std::size_t kMost = 6;
   const CornerList& list = vertices_[slot].corners;
   if (!list.is_own()) return;
   for (std::size_t i = 0; i < kMost; ++i) {

@@ -58,14 +58,17 @@ struct ActiveTriangles {
     }
     holes.clear();
     ids.push_back(id);
-    if (slots.size() < 3 * ids.size()) {  // too large until the holes are filled
-      const std::size_t size = ids.size() + kMoreAtOnce;
-      slots.resize(3 * size);
-      values.resize(values_per_triangle * size);
-      is_derived.resize(size);
-      for (ChangeSet* set : {&moved, &touched, &shaded}) set->grow(size);
-    }
+    if (slots.size() < 3 * ids.size()) grow(values_per_triangle);
     return static_cast<std::uint32_t>(ids.size() - 1);
+  }
+
+  // Too large until the holes are filled.
+  [[gnu::noinline]] void grow(std::size_t values_per_triangle) {
+    const std::size_t size = ids.size() + kMoreAtOnce;
+    slots.resize(3 * size);
+    values.resize(values_per_triangle * size);
+    is_derived.resize(size);
+    for (ChangeSet* set : {&moved, &touched, &shaded}) set->grow(size);
   }
 
   void remove(std::uint32_t triangle) {

@@ -111,6 +111,7 @@ class CornerLists {
         : refs_(refs), wedges_(wedges), count_(count) {}
     std::uint32_t size() const { return count_; }
     CornerAt operator[](std::size_t i) const { return {refs_[i], wedges_[i]}; }
+    View first(std::uint32_t count) const { return {refs_, wedges_, count}; }
 
     struct Iterator {
       const View* view;
@@ -135,22 +136,20 @@ class CornerLists {
     return {&refs_[first(list)], &wedges_[first(list)], list.count};
   }
 
-  void push_back(CornerList& list, const CornerAt& at) {
+  void push_back(CornerList& list, CornerAt at) {
     if (list.is_own() && list.count < CornerList::kOwn) {
       list.refs[list.count] = at.corner;
       list.wedges[list.count++] = at.wedge;
       return;
     }
-    resize(list, list.count + 1);
-    refs_[first(list) + list.count - 1] = at.corner;
-    wedges_[first(list) + list.count - 1] = at.wedge;
+    push_back_further(list, at);
   }
   // The order is of no consequence.
   void erase(CornerList& list, CornerRef corner) {
     if (list.is_own()) {
       list.erase_own(static_cast<std::uint32_t>(std::countr_zero(list.same(corner))));
     } else {
-      erase_at(list, find(list, corner));
+      erase_further(list, corner);
     }
   }
   void replace(CornerList& list, CornerRef from, CornerRef to) {
@@ -162,20 +161,36 @@ class CornerLists {
   }
   void clear(CornerList& list) { resize(list, 0); }
 
-  // Moves the corners of the wedges from `middle` on to another list, which is empty, and calls
-  // visit(corner) for each.
+  // Takes out the corners of the wedges from `middle` on and calls visit(at) for each.
   template <typename Visit>
-  void give(CornerList& from, CornerList& to, WedgeId middle, Visit visit) {
-    if (!from.is_own()) return give_many(from, to, middle, visit);
-    for (std::uint32_t leaving = from.from_wedge(middle); leaving != 0;) {
+  void give(CornerList& list, WedgeId middle, Visit visit) {
+    if (!list.is_own()) {
+      keep_if(list, [&](const CornerAt& at) {
+        if (at.wedge >= middle) visit(at);
+        return at.wedge < middle;
+      });
+      return;
+    }
+    for (std::uint32_t leaving = list.from_wedge(middle); leaving != 0;) {
       const auto i = static_cast<std::uint32_t>(31 - std::countl_zero(leaving));
       leaving ^= 1u << i;
-      const CornerAt at = from.own(i);
-      to.refs[to.count] = at.corner;
-      to.wedges[to.count++] = at.wedge;
-      from.erase_own(i);
-      visit(at.corner);
+      const CornerAt at = list.own(i);
+      list.erase_own(i);
+      visit(at);
     }
+  }
+  // Takes out those for which keeps(at) is false.
+  template <typename Keeps>
+  void keep_if(CornerList& list, Keeps keeps) {
+    std::uint32_t staying = 0;
+    for (std::uint32_t i = 0; i < list.count; ++i) {
+      const CornerAt at = of(list)[i];
+      const bool stays = keeps(at);  // may move the pool
+      (list.is_own() ? list.refs.data() : &refs_[first(list)])[staying] = at.corner;
+      (list.is_own() ? list.wedges.data() : &wedges_[first(list)])[staying] = at.wedge;
+      staying += stays ? 1 : 0;
+    }
+    resize(list, staying);
   }
 
   std::size_t bytes() const {
@@ -194,27 +209,18 @@ class CornerLists {
     while (!(refs_[first(list) + i] == corner)) ++i;
     return i;
   }
-  void erase_at(CornerList& list, std::uint32_t i) {
+  // Not inline, as such lists are rare: what is common keeps its registers.
+  [[gnu::noinline]] void push_back_further(CornerList& list, CornerAt at) {
+    resize(list, list.count + 1);
+    refs_[first(list) + list.count - 1] = at.corner;
+    wedges_[first(list) + list.count - 1] = at.wedge;
+  }
+  [[gnu::noinline]] void erase_further(CornerList& list, CornerRef corner) {
+    const std::uint32_t i = find(list, corner);
     refs_[first(list) + i] = refs_[first(list) + list.count - 1];
     wedges_[first(list) + i] = wedges_[first(list) + list.count - 1];
     resize(list, list.count - 1);
   }
-  template <typename Visit>
-  void give_many(CornerList& from, CornerList& to, WedgeId middle, Visit visit) {
-    std::uint32_t staying = 0;
-    for (std::uint32_t i = 0; i < from.count; ++i) {
-      const CornerAt at = of(from)[i];
-      if (at.wedge >= middle) {
-        push_back(to, at);
-        visit(at.corner);
-      } else {
-        refs_[first(from) + staying] = at.corner;
-        wedges_[first(from) + staying++] = at.wedge;
-      }
-    }
-    resize(from, staying);
-  }
-
   // New ones at the end are to be written.
   void resize(CornerList& list, std::uint32_t count) {
     if (!list.is_own() || count > CornerList::kOwn) change_block(list, count);
@@ -226,7 +232,7 @@ class CornerLists {
     return std::max(kSmallest, static_cast<std::uint32_t>(std::bit_width((count - 1) / kUnit)));
   }
   // `list.count` corners are there, `count` must have room.
-  void change_block(CornerList& list, std::uint32_t count) {
+  [[gnu::noinline]] void change_block(CornerList& list, std::uint32_t count) {
     const bool was_own = list.is_own();
     const std::uint32_t log = was_own ? 0 : log_of_unit_[list.block];
     const std::uint32_t old = list.block;

@@ -34,25 +34,13 @@ const Geomorphs::Row* Geomorphs::row_of(const Moving& m, std::uint32_t value) {
   return nullptr;
 }
 
-Vec3f Geomorphs::value(std::uint32_t index) const {
-  return hierarchy_.layers[normal_layer_].values.direction(index);
+Vec3f Geomorphs::position_of(const Moving& m) const {
+  return lerp(m.from, m.to, share(m));
 }
 
 Vec3f Geomorphs::normal_of(const Moving& m, std::uint32_t index) const {
   const Row* const row = row_of(m, index);
   return row == nullptr ? value(index) : slerp(row->from, row->to, share(m));
-}
-
-Vec3f Geomorphs::normal(std::uint32_t slot, std::uint32_t index) const {
-  if (moving_.empty()) return value(index);
-  const std::uint32_t i = moving_of(slot);
-  return i == kNone ? value(index) : normal_of(moving_[i], index);
-}
-
-Vec3f Geomorphs::position(const ActiveCut& cut, std::uint32_t slot) const {
-  const std::uint32_t i = moving_of(slot);
-  if (i == kNone) return draw_position(hierarchy_.vertices.grid, cut.vertices()[slot].position);
-  return lerp(moving_[i].from, moving_[i].to, share(moving_[i]));
 }
 
 // What the corners that have attribute a of a child show once s is merged, or kNone.

@@ -26,6 +26,7 @@
 
 #include "crease/mesh_hierarchy.h"
 #include "runtime/active_cut.h"
+#include "runtime/draw_values.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -74,9 +75,16 @@ class Geomorphs {
   void mark(ActiveCut& cut);
 
   bool is_moving(std::uint32_t slot) const { return moving_of(slot) != kNone; }
-  Vec3f position(const ActiveCut& cut, std::uint32_t slot) const;
+  Vec3f position(const ActiveCut& cut, std::uint32_t slot) const {
+    const std::uint32_t i = moving_of(slot);
+    if (i != kNone) return position_of(moving_[i]);
+    return draw_position(hierarchy_.vertices.grid, cut.vertices()[slot].position);
+  }
   // The normal at corners that have this value at the vertex.
-  Vec3f normal(std::uint32_t slot, std::uint32_t value) const;
+  Vec3f normal(std::uint32_t slot, std::uint32_t value) const {
+    const std::uint32_t i = moving_.empty() ? kNone : moving_of(slot);
+    return i == kNone ? this->value(value) : normal_of(moving_[i], value);
+  }
   bool moves_normal(std::uint32_t slot, std::uint32_t value) const {
     const std::uint32_t i = moving_of(slot);
     return i != kNone && row_of(moving_[i], value) != nullptr;
@@ -110,7 +118,10 @@ class Geomorphs {
   float share(const Moving& m) const;
   static const Row* row_of(const Moving& m, std::uint32_t value);
   Vec3f normal_of(const Moving& m, std::uint32_t value) const;
-  Vec3f value(std::uint32_t index) const;
+  Vec3f value(std::uint32_t index) const {
+    return hierarchy_.layers[normal_layer_].values.direction(index);
+  }
+  Vec3f position_of(const Moving& m) const;
   std::uint32_t value_above(SplitId s, bool second, RelativeAttribute a) const;
   template <typename Visit>
   void visit_normals(NodeId node, Visit visit) const;

@@ -42,6 +42,7 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
   stop_at_ = view.clock == nullptr ? std::numeric_limits<double>::infinity()
                                    : view.clock(view.clock_context) + view.max_seconds;
   moves_until_clock_ = 0;
+  at_once_ = !is_ordered_ && !view.consistent && !has_geomorphs();
   merge_arrived(cut);
   if (cut.triangle_count() > view_.max_triangles) {
     keep_to_budget(cut, {std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot}, 0);
@@ -59,6 +60,7 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
 // Done from the top down and from the bottom up; nothing is queued.
 UpdateReport Refiner::set_error(ActiveCut& cut, float error) {
   report_ = {};
+  at_once_ = false;
   has_view_ = false;
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const auto is_coarse = [&](SplitId s) {
@@ -111,20 +113,36 @@ bool Refiner::out_of_time() {
   return false;
 }
 
-// Of moves to come. To follow them further, to third vertices and siblings, took as long as it
-// saved.
+// Of moves to come. To follow them further, to third vertices, took as long as it saved.
 void Refiner::fetch_merges(const ActiveCut& cut) const {
   const std::vector<Wish>& wishes = merges_.wishes;
   const std::size_t i = merges_.next, count = wishes.size();
-  if (i + 8 < count) cut.prefetch_merge(wishes[i + 8].slot, wishes[i + 8].split);
-  if (i + 4 < count) cut.prefetch_merge_further(wishes[i + 4].slot, wishes[i + 4].split);
+  if (i + 12 < count) {
+    cut.prefetch_merge(wishes[i + 12].slot, wishes[i + 12].split);
+    __builtin_prefetch(&pair_of_slot_[wishes[i + 12].slot]);
+  }
+  if (i + 8 < count) {
+    cut.prefetch_merge_further(wishes[i + 8].split);
+    const std::uint32_t slot = wishes[i + 8].slot;
+    wrong_.prefetch(slot);
+    if (pair_of_slot_[slot] != kNone) merged_.prefetch(pair_of_slot_[slot]);
+  }
+  if (i + 4 < count) cut.prefetch_children(wishes[i + 4].split);
 }
 
 void Refiner::fetch_splits(const ActiveCut& cut) const {
   const std::vector<Wish>& wishes = splits_.wishes;
   const std::size_t i = splits_.next, count = wishes.size();
-  if (i + 8 < count) cut.prefetch_split(wishes[i + 8].slot, wishes[i + 8].split);
-  if (i + 4 < count) cut.prefetch_split_further(wishes[i + 4].slot, wishes[i + 4].split);
+  if (i + 8 < count) {
+    const std::uint32_t slot = wishes[i + 8].slot, other = cut.slot_to_come(8);
+    cut.prefetch_split(slot, wishes[i + 8].split);
+    wrong_.prefetch(slot);
+    if (other != kNoSlot) {
+      wrong_.prefetch(other);
+      __builtin_prefetch(&cut.vertices()[other]);
+    }
+  }
+  if (i + 4 < count) cut.prefetch_split_further(wishes[i + 4].split);
 }
 
 void Refiner::do_merges(ActiveCut& cut) {
@@ -146,6 +164,7 @@ void Refiner::do_merges(ActiveCut& cut) {
     }
   }
   if (merges_.empty()) merges_.clear();
+  if (at_once_) cut.bring_corners_up();
 }
 
 void Refiner::do_splits(ActiveCut& cut) {
@@ -175,6 +194,7 @@ void Refiner::do_splits(ActiveCut& cut) {
     view_.consistent ? split_consistently(cut, wish.slot) : split(cut, wish.slot);
   }
   if (splits_.empty()) splits_.clear();
+  if (at_once_) cut.bring_corners_down();
 }
 
 // Merges what is less visible than `wish`, least visible first, until there is room.
@@ -222,37 +242,61 @@ void Refiner::split(ActiveCut& cut, std::uint32_t slot) {
     pair_of_slot_.resize(cut.vertices().size(), kNone);
     wrong_.resize(cut.vertices().size(), error_.uses_cones());
   }
-  watch_pair(
-      slot, s,
-      is_required(s) ? kAlwaysWrong : error_.watch(bounds_of(cut, s), position, merge_below_));
-  for (const std::uint32_t child : {slot, other}) {
-    if (child == kNoSlot) continue;
-    watch_vertex(cut, child);
-    if (error_.is_wrong(wrong_.get(child))) wish_split(cut, child);
+  // What is to be split at once is watched when that is done.
+  const bool splits_slot = watch_child(cut, slot);
+  const bool splits_other = other != kNoSlot && watch_child(cut, other);
+  if (!at_once_ || !(splits_slot || splits_other)) {
+    watch_pair(
+        slot, s,
+        is_required(s) ? kAlwaysWrong : error_.watch(bounds_of(cut, s), position, merge_below_));
+  } else if (!splits_slot) {
+    drop_pair(slot);
   }
   if (counts_all_merges_) count_merge(cut, s, slot);
+}
+
+// Of a split. Whether it is to be split as well.
+bool Refiner::watch_child(const ActiveCut& cut, std::uint32_t slot) {
+  const ActiveVertex& v = cut.vertices()[slot];
+  if (v.split == kNoSplit) {
+    wrong_.turn_off(slot);
+    return false;
+  }
+  const Watch watch = error_.watch(bounds_of(cut, v.split), error_.position(v.position), 1);
+  const bool is_wrong = error_.is_wrong(watch);
+  if (!is_wrong) {
+    wrong_.set<true>(slot, watch, error_, odometer_);
+  } else if (!at_once_) {
+    wrong_.set(slot, watch);
+  }
+  if (is_wrong) wish_split(cut, slot);
+  return is_wrong;
 }
 
 void Refiner::merge(ActiveCut& cut, SplitId s, const ActiveCut::Children& children) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
   move_up(cut, s, children);
-  for (const std::uint32_t slot : {children.first, children.second}) {
-    if (slot == kNoSlot) continue;
-    drop_pair(slot);
-    wrong_.turn_off(slot);
+  if (children.first != kNoSlot && children.second != kNoSlot) {
+    drop_pair(children.second);
+    wrong_.turn_off(children.second);
   }
   const std::uint32_t slot = children.first != kNoSlot ? children.first : children.second;
   if (slot == kNoSlot) return;
-  watch_vertex(cut, slot);
+  drop_pair(slot);
   const ActiveVertex& v = cut.vertices()[slot];
+  if (!h.is_root(v.node)) {
+    const SplitId above = h.split_above(v.node);
+    if (cut.is_cut_leaf(h.child(above, !h.is_second(v.node)))) {  // its sibling
+      const Watch watch = watch_above(cut, v, above);
+      const bool merges_above = !error_.is_wrong(watch);
+      if (merges_above) wish_merge(cut, above, slot);
+      if (merges_above && at_once_) return;  // watched when that is done
+      watch_pair(slot, above, watch);
+      if (counts_all_merges_) count_merge(cut, above, slot);
+    }
+  }
+  watch_vertex(cut, slot);
   if (counts_all_merges_ && error_.is_wrong(wrong_.get(slot))) wish_split(cut, slot);
-  if (h.is_root(v.node)) return;
-  const SplitId above = h.split_above(v.node);
-  if (!cut.is_cut_leaf(h.child(above, !h.is_second(v.node)))) return;  // its sibling
-  const Watch watch = watch_above(cut, v, above);
-  watch_pair(slot, above, watch);
-  if (!error_.is_wrong(watch)) wish_merge(cut, above, slot);
-  if (counts_all_merges_) count_merge(cut, above, slot);
 }
 
 void Refiner::count_merge(const ActiveCut& cut, SplitId s, std::uint32_t slot) {

@@ -6,9 +6,12 @@
 // the one that came to be a leaf of the cut last, until it merges or that vertex is split; where
 // the other one has been split meanwhile, the answer is of no use and the watch is dropped then.
 //
-// Without a budget the cut that is reached does not depend on the order, so moves are done as they
-// are found, and what the next ones need is fetched meanwhile. With one, heaps order them: splits
-// by what is most visible, merges by what is least.
+// Without a budget the cut that is reached does not depend on the order. So moves are done in about
+// the order of wedges, which follow the tree and the curve of its roots: neighbours share vertices,
+// triangles and what the hierarchy says of them. And they are done at once: first all vertices are
+// merged, or split, and only what is not to be moved again is watched; then corners follow
+// (ActiveCut). With a budget heaps order moves, splits by what is most visible, merges by what is
+// least, and each is done by itself.
 //
 // Memory: a watch per slot and per pair, 4 bytes a slot and 8 a pair.
 #pragma once
@@ -54,8 +57,8 @@ class Refiner {
   std::size_t bytes() const {
     return wrong_.bytes() + merged_.bytes() + 4 * pair_of_slot_.capacity() +
            sizeof(Pair) * pairs_.capacity() +
-           sizeof(Wish) * (splits_.capacity() + merges_.capacity()) +
-           sizeof(Required) * required_leaves_.capacity();
+           sizeof(Wish) * (splits_.capacity() + merges_.capacity() + sorted_.capacity()) +
+           4 * first_in_range_.capacity() + sizeof(Required) * required_leaves_.capacity();
   }
 
  private:
@@ -91,11 +94,13 @@ class Refiner {
   void look_from(const ActiveCut& cut, const ViewParameters& view);
   void watch_all(const ActiveCut& cut);
   void watch_vertex(const ActiveCut& cut, std::uint32_t slot);
+  bool watch_child(const ActiveCut& cut, std::uint32_t slot);
   void watch_pair(std::uint32_t slot, SplitId s, const Watch& watch);
   void drop_pair(std::uint32_t slot);
   Watch watch_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const;
   void find_merges(const ActiveCut& cut);
   void find_splits(const ActiveCut& cut);
+  void sort_by_place(const ActiveCut& cut, std::vector<Wish>& wishes);
   void wish_split(const ActiveCut& cut, std::uint32_t slot);
   void wish_merge(const ActiveCut& cut, SplitId s, std::uint32_t slot);
   float excess_above(const ActiveCut& cut, const ActiveVertex& v, SplitId above) const;
@@ -113,6 +118,9 @@ class Refiner {
   std::uint32_t move_down(ActiveCut& cut, std::uint32_t slot);
   void move_up(ActiveCut& cut, SplitId s, const ActiveCut::Children& children);
   bool waits(const ActiveCut& cut, SplitId s, const ActiveCut::Children& children, bool for_room);
+  bool has_geomorphs() const {
+    return geomorphs_ != nullptr && (geomorphs_->is_on() || geomorphs_->moving_count() > 0);
+  }
   void turn_back(const ActiveCut& cut);
   void merge_arrived(ActiveCut& cut);
   std::size_t leaving_triangles() const {
@@ -131,6 +139,7 @@ class Refiner {
   ViewError error_;
   bool has_view_ = false;
   bool is_ordered_ = false;
+  bool at_once_ = false;  // all that is found to be due is done by this update()
   float merge_below_ = 1;
   Odometer odometer_;
   int frames_on_odometer_ = 0;
@@ -139,9 +148,11 @@ class Refiner {
   std::vector<Pair> pairs_;                  // in no order
   std::vector<std::uint32_t> pair_of_slot_;  // or kNone
   Queue splits_, merges_;
-  bool finds_splits_ = false;               // still to be done for this view
-  std::span<const std::uint8_t> required_;  // per split; or empty: none is
-  std::vector<Required> required_leaves_;   // new ones
+  std::vector<Wish> sorted_;                   // scratch
+  std::vector<std::uint32_t> first_in_range_;  // scratch
+  bool finds_splits_ = false;                  // still to be done for this view
+  std::span<const std::uint8_t> required_;     // per split; or empty: none is
+  std::vector<Required> required_leaves_;      // new ones
   bool requires_anew_ = false;
   std::vector<Wish>
       least_visible_;  // a heap of every possible merge, while a triangle budget binds

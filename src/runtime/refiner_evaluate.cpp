@@ -3,6 +3,7 @@
 #include "runtime/refiner.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace crease {
 
@@ -68,7 +69,7 @@ void Refiner::watch_vertex(const ActiveCut& cut, std::uint32_t slot) {
   const ActiveVertex& v = cut.vertices()[slot];
   if (v.split == kNoSplit) return wrong_.turn_off(slot);
   const SplitBounds& bounds = bounds_of(cut, v.split);
-  wrong_.set(slot, error_.watch(bounds, error_.position(v.position), 1));
+  wrong_.set<true>(slot, error_.watch(bounds, error_.position(v.position), 1), error_, odometer_);
 }
 
 void Refiner::watch_pair(std::uint32_t slot, SplitId s, const Watch& watch) {
@@ -79,7 +80,7 @@ void Refiner::watch_pair(std::uint32_t slot, SplitId s, const Watch& watch) {
     merged_.grow(pairs_.size(), error_.uses_cones());
   }
   pairs_[pair] = {s, slot};
-  merged_.set(pair, watch);
+  merged_.set<false>(pair, watch, error_, odometer_);
 }
 
 void Refiner::drop_pair(std::uint32_t slot) {
@@ -114,11 +115,33 @@ void Refiner::find_merges(const ActiveCut& cut) {
   report_.evaluated += merged_.find<false>(error_, odometer_, [&](std::uint32_t pair) {
     wish_merge(cut, pairs_[pair].split, pairs_[pair].slot);
   });
+  if (!is_ordered_) sort_by_place(cut, merges_.wishes);
 }
 
 void Refiner::find_splits(const ActiveCut& cut) {
   report_.evaluated +=
       wrong_.find<true>(error_, odometer_, [&](std::uint32_t slot) { wish_split(cut, slot); });
+  if (!is_ordered_) sort_by_place(cut, splits_.wishes);
+}
+
+// Into as many ranges of wedges as there are wishes, about. What is found on the way (split(),
+// merge()) comes in the same order.
+void Refiner::sort_by_place(const ActiveCut& cut, std::vector<Wish>& wishes) {
+  constexpr unsigned kMostBits = 12;
+  const unsigned bits = bits_for(cut.hierarchy().vertices.wedge_count());
+  const unsigned range_bits =
+      std::min({bits, kMostBits, static_cast<unsigned>(std::bit_width(wishes.size()))});
+  const auto range_of = [&](const Wish& wish) {
+    return index_of(cut.vertices()[wish.slot].begin) >> (bits - range_bits);
+  };
+  first_in_range_.assign((std::size_t(1) << range_bits) + 1, 0);
+  for (const Wish& wish : wishes) ++first_in_range_[range_of(wish) + 1];
+  for (std::size_t i = 1; i < first_in_range_.size(); ++i) {
+    first_in_range_[i] += first_in_range_[i - 1];
+  }
+  sorted_.resize(wishes.size());
+  for (const Wish& wish : wishes) sorted_[first_in_range_[range_of(wish)]++] = wish;
+  wishes.swap(sorted_);
 }
 
 void Refiner::wish_split(const ActiveCut& cut, std::uint32_t slot) {

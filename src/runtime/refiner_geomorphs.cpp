@@ -6,6 +6,7 @@ namespace crease {
 
 std::uint32_t Refiner::move_down(ActiveCut& cut, std::uint32_t slot) {
   ++report_.splits;
+  if (at_once_) return cut.split_vertex(slot);
   if (geomorphs_ == nullptr) return cut.split(slot);
   const SplitId s = cut.vertices()[slot].split;
   geomorphs_->before_split(cut, slot);
@@ -16,6 +17,7 @@ std::uint32_t Refiner::move_down(ActiveCut& cut, std::uint32_t slot) {
 
 void Refiner::move_up(ActiveCut& cut, SplitId s, const ActiveCut::Children& children) {
   ++report_.merges;
+  if (at_once_) return cut.merge_vertices(s, children);
   cut.merge(s, children);
   if (geomorphs_ != nullptr) geomorphs_->merged(s, children);
 }

@@ -15,8 +15,8 @@
 //
 // What the simplifier leaves of a large model are many roots that have nothing to show, and they
 // are numbered along a curve (make_forest()), as their slots are. So 64 in a row have a date as
-// well, and where none of them was set since the last frame, a watch that bounds theirs: while that
-// is not wrong, none of them is.
+// well, and a watch that bounds theirs: while that is not wrong, none of them is. One that is set
+// widens it, and brings its own date where it is not to be found from where the camera is.
 //
 // Memory per watch: 22.5 bytes, and 24 more while facing counts.
 #pragma once
@@ -61,18 +61,23 @@ class WatchList {
   std::size_t size() const { return size_; }
 
   void set(std::size_t i, const Watch& watch) {
-    const std::size_t lane = i % kLanes;
     set_due(i / kLanes, -kNever, -kNever);
     groups_[i / kGroup] = {};
-    Spheres& s = spheres_[i / kLanes];
-    s.x[lane] = watch.center.x, s.y[lane] = watch.center.y, s.z[lane] = watch.center.z;
-    s.reach[lane] = watch.reach;
-    s.radius[lane] = watch.radius;
-    if (facings_.empty()) return;
-    Facings& f = facings_[i / kLanes];
-    f.x[lane] = watch.axis.x, f.y[lane] = watch.axis.y, f.z[lane] = watch.axis.z;
-    f.sine[lane] = watch.sine, f.cosine[lane] = watch.cosine;
-    f.reach_aside[lane] = watch.reach_aside;
+    put(i, watch);
+  }
+  // The same for one that is not to be found from here; kWrong as for find().
+  template <bool kWrong>
+  void set(std::size_t i, const Watch& watch, const ViewError& error, const Odometer& now) {
+    if (!facings_.empty()) return set(i, watch);
+    put(i, watch);
+    const Date due = due_of<kWrong>(error, from(now), watch);
+    Dates& four = due_[i / kLanes / kLanes];
+    const std::size_t lane = i / kLanes % kLanes;
+    four.travel[lane] = lesser(due.travel, four.travel[lane]);
+    four.turn[lane] = lesser(due.turn, four.turn[lane]);
+    Group& group = groups_[i / kGroup];
+    group.due = {lesser(due.travel, group.due.travel), lesser(due.turn, group.due.turn)};
+    if (kWrong && group.has_bound()) widen(group, watch);
   }
   Watch get(std::size_t i) const {
     const std::size_t lane = i % kLanes;
@@ -87,7 +92,13 @@ class WatchList {
     watch.reach_aside = f.reach_aside[lane];
     return watch;
   }
-  void turn_off(std::size_t i) { set(i, {}); }
+  void prefetch(std::size_t i) const {
+    const char* const spheres = reinterpret_cast<const char*>(&spheres_[i / kLanes]);
+    __builtin_prefetch(spheres);
+    __builtin_prefetch(spheres + 64);
+    __builtin_prefetch(&due_[i / kLanes / kLanes]);
+  }
+  void turn_off(std::size_t i) { put(i, {}); }  // never found, so no date comes sooner
   void look_at_all() {
     due_.assign(due_.size(), kNow);
     groups_.assign(groups_.size(), {});
@@ -98,9 +109,7 @@ class WatchList {
   template <bool kWrong, typename Found>
   std::size_t find(const ViewError& error, const Odometer& now, Found found) {
     const auto travel = static_cast<float>(now.travel), turn = static_cast<float>(now.turn);
-    // So much sooner that no rounding makes a date late.
-    const Date from{static_cast<float>(now.travel * (1 - 1e-6)) - now.slop,
-                    static_cast<float>(now.turn * (1 - 1e-6)) - kRounding};
+    const Date from = WatchList::from(now);
     std::size_t looked_at = 0;
     const std::size_t block_count = (size_ + kLanes - 1) / kLanes;
     for (std::size_t g = 0; g * kGroup < size_; ++g) {
@@ -164,20 +173,64 @@ class WatchList {
   struct Dates {  // of four blocks
     FourFloats travel, turn;
   };
-  // Since one of them was set.
   struct Group {
     Date due{-kNever, -kNever};
     Vec3f center;
     float reach = 0, radius = 0;
-    std::uint32_t finds = 0;  // how often it was looked at
+    std::uint32_t finds = 0;    // how often it was looked at
+    std::uint32_t widened = 0;  // how often since it was bounded
 
     bool has_bound() const { return finds > kFindsToBound; }
   };
-  static constexpr std::uint32_t kFindsToBound = 1;
+  static constexpr std::uint32_t kFindsToBound = 1, kMostWidened = kGroup;
   static constexpr float kRounding = 1e-6f, kSafe = 0.999f;
   static constexpr Dates kNow{{-kNever, -kNever, -kNever, -kNever},
                               {-kNever, -kNever, -kNever, -kNever}};
   static constexpr Spheres kOff{{}, {}, {}, {-kNever, -kNever, -kNever, -kNever}, {}};
+
+  void put(std::size_t i, const Watch& watch) {
+    const std::size_t lane = i % kLanes;
+    Spheres& s = spheres_[i / kLanes];
+    s.x[lane] = watch.center.x, s.y[lane] = watch.center.y, s.z[lane] = watch.center.z;
+    s.reach[lane] = watch.reach;
+    s.radius[lane] = watch.radius;
+    if (facings_.empty()) return;
+    Facings& f = facings_[i / kLanes];
+    f.x[lane] = watch.axis.x, f.y[lane] = watch.axis.y, f.z[lane] = watch.axis.z;
+    f.sine[lane] = watch.sine, f.cosine[lane] = watch.cosine;
+    f.reach_aside[lane] = watch.reach_aside;
+  }
+  // So much sooner that no rounding makes a date late.
+  static Date from(const Odometer& now) {
+    return {static_cast<float>(now.travel * (1 - 1e-6)) - now.slop,
+            static_cast<float>(now.turn * (1 - 1e-6)) - kRounding};
+  }
+  // As date() of four.
+  template <bool kWrong>
+  static Date due_of(const ViewError& error, const Date& from, const Watch& w) {
+    if (w.reach == -kNever) return kWrong ? Date{kNever, kNever} : Date{-kNever, -kNever};
+    const float distance = error.distance(w.center.x, w.center.y, w.center.z);
+    const float gap = magnitude(w.reach - distance);
+    if (kWrong && !(distance < w.reach)) {
+      return {from.travel + kSafe * (gap - kRounding * distance), kNever};
+    }
+    const float inside = error.inside(w.center.x, w.center.y, w.center.z) + w.radius;
+    if ((inside >= 0) == kWrong || !(distance < w.reach)) return {-kNever, -kNever};
+    constexpr float kFar = 1e30f;
+    const float half = lesser(0.5f * magnitude(inside), kFar);
+    const float turn = half / (distance + half);
+    const float travel = (kWrong ? half : lesser(gap, half)) - kRounding * distance;
+    return {from.travel + kSafe * travel, turn < 1 ? from.turn + kSafe * turn : kNever};
+  }
+  static void widen(Group& group, const Watch& w) {
+    constexpr float kMore = 1 + 1e-5f;
+    if (w.reach == -kNever) return;
+    const Vec3f aside = w.center - group.center;
+    const float distance = kMore * root(dot(aside, aside));
+    group.reach = std::max(group.reach, kMore * (distance + w.reach));
+    group.radius = std::max(group.radius, kMore * (distance + w.radius));
+    ++group.widened;
+  }
 
   // Whether no watch of the group can be wrong; then it is dated.
   static bool is_far(const ViewError& error, const Date& from, Group& g) {
@@ -205,8 +258,9 @@ class WatchList {
       first.turn = lesser(first.turn, due_[i].turn);
     }
     groups_[g].due = {least(first.travel), least(first.turn)};
-    if (kWrong && facings_.empty() && groups_[g].finds <= kFindsToBound &&
-        ++groups_[g].finds > kFindsToBound) {
+    if (!kWrong || !facings_.empty()) return;
+    Group& group = groups_[g];
+    if (group.has_bound() ? group.widened > kMostWidened : ++group.finds > kFindsToBound) {
       bound(g);
     }
   }
@@ -227,6 +281,7 @@ class WatchList {
       }
     }
     Group& group = groups_[g];
+    group.widened = 0;
     float middle[3];
     for (int k = 0; k < 3; ++k) middle[k] = 0.5f * (least(low[k]) - least(-high[k]));
     if (!(least(low[0]) < kNever)) middle[0] = middle[1] = middle[2] = 0;

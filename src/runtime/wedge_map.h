@@ -85,7 +85,7 @@ class WedgeMap {
     return i;
   }
   static std::size_t last_bit(std::uint64_t word) {
-    return static_cast<std::size_t>(63 - std::countl_zero(word));
+    return static_cast<std::size_t>(std::countl_zero(word)) ^ 63;  // one instruction
   }
 
   static constexpr std::size_t kMaxLevels = 6;  // of 32 bits

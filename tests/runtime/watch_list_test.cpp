@@ -39,14 +39,16 @@ Watch house(std::size_t i, float reach, float radius) {
   return watch;
 }
 
-std::vector<std::uint32_t> wrong_ones(const WatchList& watches, const ViewError& error) {
-  std::vector<std::uint32_t> wrong;
+template <bool kWrong>
+std::vector<std::uint32_t> those_to_find(const WatchList& watches, const ViewError& error) {
+  std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < watches.size(); ++i) {
-    if (error.is_wrong(watches.get(i))) wrong.push_back(i);
+    if (error.is_wrong(watches.get(i)) == kWrong) found.push_back(i);
   }
-  return wrong;
+  return found;
 }
 
+template <bool kWrong>
 void check_flight(bool coarse_outside, std::uint64_t seed) {
   constexpr std::size_t kCount = 1500;
   std::mt19937_64 random(seed);
@@ -64,25 +66,34 @@ void check_flight(bool coarse_outside, std::uint64_t seed) {
     const Vec3d eye{kCount * (0.5 + 0.6 * std::sin(a)), 8 * std::sin(3 * a), 5};
     flight.move_to(eye, eye + Vec3d{std::cos(7 * a), std::sin(7 * a), -0.3});
     std::vector<std::uint32_t> found;
-    watches.find<true>(flight.error, flight.odometer,
-                       [&found](std::uint32_t i) { found.push_back(i); });
-    REQUIRE(found == wrong_ones(watches, flight.error));
+    watches.find<kWrong>(flight.error, flight.odometer,
+                         [&found](std::uint32_t i) { found.push_back(i); });
+    REQUIRE(found == those_to_find<kWrong>(watches, flight.error));
+    const auto set = [&](std::size_t i, const Watch& watch) {
+      if (random() % 2 == 0) return watches.set(i, watch);
+      watches.set<kWrong>(i, watch, flight.error, flight.odometer);
+    };
     for (const std::uint32_t i : found) {  // as after a split
-      if (random() % 2 == 0) watches.set(i, house(i, 10 * share(), 3 * share()));
+      if (random() % 2 == 0) set(i, house(i, 10 * share(), 3 * share()));
     }
-    if (random() % 4 == 0) {
+    for (std::uint64_t left = random() % 4; left > 0; --left) {
       const std::size_t i = random() % kCount;
-      watches.set(i, house(i, 200 * share(), 3 * share()));
+      set(i, house(i, 200 * share(), 3 * share()));
+      if (kWrong && random() % 4 == 0) watches.turn_off(i);
     }
     a += random() % 8 == 0 ? 0 : std::pow(10.0, -double(random() % 5)) * 0.1;
   }
 }
 
-TEST_CASE("what is found is what is wrong, wherever the camera goes and whatever is set") {
+TEST_CASE(
+    "what is found is what is wrong, or what is not, wherever the camera goes and whatever is "
+    "set") {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     CAPTURE(seed);
-    check_flight(true, seed);
-    check_flight(false, seed);
+    check_flight<true>(true, seed);
+    check_flight<true>(false, seed);
+    check_flight<false>(true, seed);
+    check_flight<false>(false, seed);
   }
 }
 
