@@ -34,26 +34,7 @@ struct AxisMixture {
 // Places are seen from a whole number near which they are likely.
 class LikelyComponents {
  public:
-  LikelyComponents(const EightFloats& weight, const EightFloats& center,
-                   const EightFloats& inverse_scale) {
-    const EightFloats least(sum_of(weight) * kLeastShare);
-    const EightInts counts = weight > least;
-    all_ = sum_of(counts & weight);
-    steepest_ = greatest_of(counts & inverse_scale);
-    std::array<std::int32_t, kComponents> one;
-    std::array<float, kComponents> weights, centers, inverses;
-    counts.store(one.data());
-    weight.store(weights);
-    center.store(centers);
-    inverse_scale.store(inverses);
-    for (std::size_t k = 0; k < kComponents; ++k) {
-      weight_[count_] = weights[k];
-      center_[count_] = centers[k];
-      inverse_scale_[count_] = inverses[k];
-      count_ -= static_cast<std::size_t>(std::int64_t(one[k]));
-    }
-    weight_[count_] = center_[count_] = inverse_scale_[count_] = 0;  // makes an even number of them
-  }
+  LikelyComponents(const AxisMixture& mixture, std::int32_t start);
 
   float all() const { return all_; }  // the weight of these
   // Within so much of each other all places are about as likely: what telling them apart by odds
@@ -75,19 +56,7 @@ class LikelyComponents {
     return sum;
   }
   // The same at the ends of eight parts of one width that follow each other from `low`.
-  [[gnu::always_inline]] EightFloats at_ends(std::int64_t low, std::int64_t width) const {
-    constexpr std::array<float, 8> kEnds{1, 2, 3, 4, 5, 6, 7, 8};
-    const EightFloats y = EightFloats(static_cast<float>(low)) +
-                          static_cast<float>(width) * EightFloats(kEnds) - 0.5f;
-    EightFloats sum(0.0f);
-    for (std::size_t i = 0; i < count_; i += 2) {
-      const EightFloats z0 = (y - center_[i]) * inverse_scale_[i];
-      const EightFloats z1 = (y - center_[i + 1]) * inverse_scale_[i + 1];
-      sum = sum + weight_[i] * (z0 / root(1.0f + z0 * z0));
-      sum = sum + weight_[i + 1] * (z1 / root(1.0f + z1 * z1));
-    }
-    return sum;
-  }
+  void at_ends(std::int64_t low, std::int64_t width, std::array<float, 8>& ends) const;
 
  private:
   static constexpr float kLeastShare = 1.0f / 256, kWidest = 1 << 28;
@@ -97,6 +66,10 @@ class LikelyComponents {
   float all_ = 0, steepest_ = 0;
   std::array<float, kComponents + 1> weight_, center_, inverse_scale_;
 };
+
+// Multiplies weights by how likely each component makes it that a number lies from `low` on, within
+// `width`. Places are seen from `start`.
+void weigh(AxisMixture& mixture, std::int32_t start, std::int64_t low, std::int64_t width);
 
 // From which whole number on one lies, within a power of two; and the sums before both ends.
 struct AxisInterval {
@@ -133,9 +106,7 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, f
   using EightShares = Shares<8>;
   const std::int64_t away = static_cast<std::int32_t>(static_cast<std::uint32_t>(value) -
                                                       static_cast<std::uint32_t>(start));
-  const EightFloats weight(mixture.weight), inverse(mixture.inverse_scale);
-  const EightFloats center = EightFloats(mixture.center) - static_cast<float>(start);
-  const LikelyComponents likely(weight, center, inverse);
+  const LikelyComponents likely(mixture, start);
   const float all = likely.all();
 
   // Three steps to either side, or farther away.
@@ -145,7 +116,7 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, f
   in.bits = std::bit_width(static_cast<std::uint32_t>(cut));
   in.low = -4 * in.width();
   std::array<float, 8> up_to;
-  likely.at_ends(in.low, in.width()).store(up_to);
+  likely.at_ends(in.low, in.width(), up_to);
   up_to[7] = all;
   std::uint32_t part = 0;
   if constexpr (Coder::kEncodes) {
@@ -161,7 +132,7 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, f
   while (in.bits > even) {
     const int bits = std::min(3, in.bits - even);
     in.bits -= bits;
-    likely.at_ends(in.low, in.width()).store(up_to);
+    likely.at_ends(in.low, in.width(), up_to);
     part = 0;
     if constexpr (Coder::kEncodes) part = static_cast<std::uint32_t>((away - in.low) >> in.bits);
     part = coder.one_of(EightShares(up_to, in.below, std::size_t(1) << bits), part);
@@ -169,9 +140,7 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, f
     in.below = part > 0 ? up_to[part - 1] : in.below;
   }
 
-  const EightFloats low = (static_cast<float>(in.low) - 0.5f - center) * inverse;
-  const EightFloats high = (static_cast<float>(in.low + in.width()) - 0.5f - center) * inverse;
-  (weight * (high / root(1.0f + high * high) - low / root(1.0f + low * low))).store(mixture.weight);
+  weigh(mixture, start, in.low, in.width());
   const std::uint32_t rest =
       in.bits == 0 ? 0 : code_bits(coder, in.bits, static_cast<std::uint32_t>(away - in.low));
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(start) +

@@ -8,14 +8,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace crease::codec {
 
 class ContractingPatch {
  public:
-  explicit ContractingPatch(const PatchMesh& fine) : corners_(fine.triangles) {
-    around_.fill(fine.positions.size(), corners_, 0);
+  explicit ContractingPatch(const PatchMesh& fine)
+      : ContractingPatch(fine.positions.size(), fine.triangles) {}
+  ContractingPatch(std::size_t vertex_count, std::vector<Corners> triangles)
+      : corners_(std::move(triangles)) {
+    around_.fill(vertex_count, corners_, 0);
   }
 
   const Corners& corners(std::uint32_t t) const { return corners_[t]; }
@@ -45,13 +49,19 @@ class ContractingPatch {
     }
     around_.clear(second);
     for (const std::uint32_t t : vanished_) {
-      for (const std::uint32_t v : corners_[t]) {
-        if (v != second) around_.remove(v, t);
-      }
+      const Corners& corners = corners_[t];
+      const std::size_t c = corner_of(corners, second);
+      around_.remove(corners[kCornerAfter[c]], t);
+      around_.remove(corners[kCornerBefore[c]], t);
     }
     around_.add(first, std::span(moved_).first(moved_count_));
     return vanished_;
   }
+
+  // Brings into the caches what the other calls ask for, in this order.
+  void fetch_list(std::uint32_t v) const { around_.fetch_list(v); }
+  void fetch_names(std::uint32_t v) const { __builtin_prefetch(around_[v].data()); }
+  void fetch_corners(std::uint32_t t) const { __builtin_prefetch(&corners_[t]); }
 
   // How many of the last ones in around(first) came from `second` with the last call.
   std::size_t moved_count() const { return moved_count_; }

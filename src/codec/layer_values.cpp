@@ -47,6 +47,12 @@ codec::CodedValue LayerValues::code(std::span<const float> value) const {
   return code;
 }
 
+codec::CodedValue LayerValues::nearest_code(std::span<const float> value) const {
+  if (!octahedral_) return code(value);
+  return codec::coded(
+      octahedral_->encode(Vec3d{double(value[0]), double(value[1]), double(value[2])}));
+}
+
 void LayerValues::read(const codec::CodedValue& code, std::span<float> value) const {
   if (octahedral_) {
     const OctahedralCode c = codec::octahedral_code(code);

@@ -21,6 +21,8 @@ class LayerValues {
 
   // Of a value that is snapped to the coding; of any other, the nearest.
   codec::CodedValue code(std::span<const float> value) const;
+  // The same; less work where the value is hardly one of the coding's.
+  codec::CodedValue nearest_code(std::span<const float> value) const;
   // Any code gives a value of the coding: what is out of range becomes what is nearest in it, or
   // for directions zero. Floats are what the bits say, finite or not.
   void read(const codec::CodedValue& code, std::span<float> value) const;

@@ -44,28 +44,41 @@ class LineFinder {
       if (is_plain_[v]) continue;  // then its edges are lines only by the other end
       list_edges(v);
       for (std::size_t begin = 0, end = 0; begin < edges_.size(); begin = end) {
-        while (end < edges_.size() && edges_[end].to == edges_[begin].to) ++end;
-        if (end == begin + 2 && is_smooth(v, edges_[begin], edges_[begin + 1])) continue;
-        for (std::size_t i = begin; i < end; ++i) add(v, edges_[i].to, edges_[i].triangle);
+        const std::uint32_t to = edges_[begin].to();
+        while (end < edges_.size() && edges_[end].to() == to) ++end;
+        if (end == begin + 2 &&
+            is_smooth(v, to, edges_[begin].triangle(), edges_[begin + 1].triangle())) {
+          continue;
+        }
+        for (std::size_t i = begin; i < end; ++i) add(v, to, edges_[i].triangle());
       }
     }
   }
 
  private:
-  struct Edge {
-    std::uint32_t to = 0, triangle = 0;
-    bool operator<(const Edge& o) const { return to != o.to ? to < o.to : triangle < o.triangle; }
+  struct Edge {  // by the vertex across, then by the triangle
+    std::uint64_t key = 0;
+    std::uint32_t to() const { return static_cast<std::uint32_t>(key >> 32); }
+    std::uint32_t triangle() const { return static_cast<std::uint32_t>(key); }
+    bool operator<(const Edge& o) const { return key < o.key; }
   };
 
-  // The triangles at v and the vertices across, by those; but none that was listed before.
+  // The triangles at v and the vertices across, by those; but none that was listed before. Without
+  // branches, since nobody can tell which are.
   void list_edges(std::uint32_t v) {
-    edges_.clear();
-    for (const std::uint32_t t : patch_.around(v)) {
-      for (const std::uint32_t w : mesh_.triangles[t]) {
-        if (w == v || !(is_contracted_[v] || is_contracted_[w])) continue;
-        if (w > v || is_plain_[w]) edges_.push_back({w, t});
+    const std::span<const std::uint32_t> around = patch_.around(v);
+    edges_.resize(2 * around.size());
+    std::size_t count = 0;
+    for (const std::uint32_t t : around) {
+      const Corners& corners = mesh_.triangles[t];
+      const std::size_t c = corner_of(corners, v);
+      for (const std::uint32_t w : {corners[kCornerAfter[c]], corners[kCornerBefore[c]]}) {
+        edges_[count] = {std::uint64_t(w) << 32 | t};
+        const bool is_contracted = (is_contracted_[v] | is_contracted_[w]) != 0;
+        count += is_contracted & (unsigned(w > v) | unsigned(is_plain_[w] != 0));
       }
     }
+    edges_.resize(count);
     std::sort(edges_.begin(), edges_.end());
   }
 
@@ -105,8 +118,8 @@ class LineFinder {
     return (x ^ x >> 29) * 0xbf58476d1ce4e5b9u;
   }
 
-  bool is_smooth(std::uint32_t v, const Edge& x, const Edge& y) const {
-    const std::uint32_t t = x.triangle, u = y.triangle;
+  // Of the edge from v to w, with triangles t and u.
+  bool is_smooth(std::uint32_t v, std::uint32_t w, std::uint32_t t, std::uint32_t u) const {
     if (mesh_.category[t] != mesh_.category[u]) return false;
     for (std::size_t l = 0; l < coding_.layers.size(); ++l) {
       if (coding_.layers[l].is_normal && is_face_[t] && is_face_[u]) {
@@ -114,7 +127,7 @@ class LineFinder {
         continue;
       }
       if (coding_.layers[l].is_normal && (mesh_.derived[t] || mesh_.derived[u])) continue;
-      for (const std::uint32_t end : {v, x.to}) {
+      for (const std::uint32_t end : {v, w}) {
         const std::vector<CodedValue>& values = mesh_.values[l];
         if (value(values, t, end) != value(values, u, end)) return false;
       }

@@ -43,6 +43,7 @@ CornerChanges AttributeRejoiner::rejoin(const UnfoldedBlock& block,
   all.changes_of.resize(order.size());
   all.derived_of.resize(order.size());
   if (layers_.empty()) return all;
+  load(block, wedges);
   ContractingPatch patch(block.end);
   std::vector<std::uint32_t> splits_left(block.vertices.size(), 0);
   for (const Split& split : block.splits) ++splits_left[split.vertex];
@@ -55,46 +56,90 @@ CornerChanges AttributeRejoiner::rejoin(const UnfoldedBlock& block,
     const std::uint32_t second = block.second_child(order[i].split);
     const bool is_last = --splits_left[first] == 0 && first < block.coarse_vertex_count;
     const Vec3i& parent = block.splits[order[i].split].parent_position;
-    const double second_share = share_on_the_way(parent, positions[first], positions[second]);
-    positions[first] = parent;
+    const Vec3i before = std::exchange(positions[first], parent);
     const auto vanished = patch.contract(first, second);
     const std::size_t first_change = all.changes.size(), first_derived = all.derived.size();
     derive(block, patch, first, all.derived);
     all.derived_of[i] = since(first_derived, all.derived.size());
     for (std::size_t l = 0; l < layers_.size(); ++l) {
       find_values(block, patch, first, l, is_last, wedges[l]);
-      join(block, patch, vanished, first, second, l);
+      join(patch, vanished, first, second, l);
       if (is_last) {
         change_to_coarse(block, first, l, all.changes);
       } else if (are_known(wedges[l])) {
         change_to_best(wedges[l], l, all.changes);
       } else {
-        blend(l, second_share, all.changes);
+        blend(l, share_on_the_way(parent, before, positions[second]), all.changes);
       }
+      for (const Shown& shown : shown_) *shown.id = at_vertex_[shown.value].to;
     }
     all.changes_of[i] = since(first_change, all.changes.size());
-    apply(block, patch, first, all.changed(i));
   }
   // What no contraction touches, which a file of our own does not have.
-  if (!has_normals_ || order.empty()) return all;
-  for (std::uint32_t t = 0; t < block.coarse_triangle_count(); ++t) {
-    if (!block.coarse_derived[t] || is_derived_[block.triangles[t]]) continue;
-    is_derived_[block.triangles[t]] = 1;
+  for (std::uint32_t t = 0; any_next_derived_ && t < block.coarse_triangle_count(); ++t) {
+    if (order.empty() || normals_[t] != Normals::NextDerived || !block.coarse_derived[t]) continue;
+    normals_[t] = Normals::Derived;
     all.derived.push_back(TriangleId{block.triangles[t]});
     ++all.derived_of.back().count;
   }
+  store(block);
   return all;
+}
+
+void AttributeRejoiner::load(const UnfoldedBlock& block, std::span<const WedgeValues> wedges) {
+  const std::size_t count = block.triangles.size();
+  at_corners_.resize(layers_.size());
+  for (std::size_t l = 0; l < layers_.size(); ++l) {
+    at_corners_[l].resize(count);
+    const std::vector<std::uint32_t>& wedge_of_corner = wedges[l].of_corner;
+    for (std::size_t t = 0; t < count; ++t) {
+      AtCorners& at = at_corners_[l][t];
+      std::copy_n(&of_corner_[l][3 * std::size_t(block.triangles[t])], 3, at.ids.begin());
+      if (wedge_of_corner.empty()) {
+        at.wedges.fill(kNone);
+      } else {
+        std::copy_n(&wedge_of_corner[3 * t], 3, at.wedges.begin());
+      }
+    }
+  }
+  coarse_is_flat_.resize(layers_.size());
+  for (std::size_t l = 0; l < layers_.size(); ++l) {
+    coarse_is_flat_[l].resize(block.coarse_triangle_count());
+    for (std::size_t t = 0; t < block.coarse_triangle_count(); ++t) {
+      const CodedValue* coarse = &block.coarse_values[l][3 * t];
+      coarse_is_flat_[l][t] = coarse[0] == coarse[1] && coarse[1] == coarse[2];
+    }
+  }
+  normals_.assign(count, Normals::Stored);
+  any_next_derived_ = false;
+  for (std::size_t t = 0; has_normals_ && t < count; ++t) {
+    if (is_derived_[block.triangles[t]]) {
+      normals_[t] = Normals::Derived;
+    } else if (block.end.derived[t] ||
+               (t < block.coarse_triangle_count() && block.coarse_derived[t])) {
+      normals_[t] = Normals::NextDerived;
+      any_next_derived_ = true;
+    }
+  }
+}
+
+// Those that the coarse end does not have are met no more.
+void AttributeRejoiner::store(const UnfoldedBlock& block) {
+  for (std::size_t t = 0; t < block.coarse_triangle_count(); ++t) {
+    const std::size_t of_model = block.triangles[t];
+    for (std::size_t l = 0; l < layers_.size(); ++l) {
+      std::copy_n(at_corners_[l][t].ids.begin(), 3, &of_corner_[l][3 * of_model]);
+    }
+    is_derived_[of_model] = normals_[t] == Normals::Derived;
+  }
 }
 
 void AttributeRejoiner::derive(const UnfoldedBlock& block, const ContractingPatch& patch,
                                std::uint32_t v, std::vector<TriangleId>& derived) {
-  if (!has_normals_) return;
+  if (!any_next_derived_) return;
   for (const std::uint32_t t : patch.around(v)) {
-    const bool is_coarse = t < block.coarse_triangle_count();
-    if (!block.end.derived[t] && !(is_coarse && block.coarse_derived[t])) continue;
-    char& is_derived = is_derived_[block.triangles[t]];
-    if (is_derived) continue;
-    is_derived = 1;
+    if (normals_[t] != Normals::NextDerived) continue;
+    normals_[t] = Normals::Derived;
     derived.push_back(TriangleId{block.triangles[t]});
   }
 }
@@ -109,42 +154,45 @@ AttributeRejoiner::AtVertex* AttributeRejoiner::find(std::uint32_t id) {
 // Which values stand at v, and where each is to be looked up at the coarse end.
 void AttributeRejoiner::find_values(const UnfoldedBlock& block, const ContractingPatch& patch,
                                     std::uint32_t v, std::size_t layer, bool is_last,
-                                    WedgeValues& wedges) {
+                                    const WedgeValues& wedges) {
   at_vertex_.clear();
+  shown_.clear();
+  std::uint32_t last = kNone;
+  AtVertex* value = nullptr;
+  const std::vector<char>& is_flat = coarse_is_flat_[layer];
   const std::span<const std::uint32_t> around = patch.around(v);
   const std::size_t from_first = around.size() - patch.moved_count();
   for (std::size_t i = 0; i < around.size(); ++i) {
     const std::uint32_t t = around[i];
     const std::uint32_t c = corner_of(patch.corners(t), v);
-    std::uint32_t wedge = kNone;
-    if (!wedges.of_corner.empty()) {
-      std::uint32_t& of_corner = wedges.of_corner[3 * std::size_t(t) + c];
-      if (of_corner != kNone) of_corner = wedges.into[of_corner];
-      wedge = of_corner;
+    AtCorners& at = at_corners_[layer][t];
+    std::uint32_t& wedge = at.wedges[c];
+    if (wedge != kNone) wedge = wedges.into[wedge];
+    if (is_hidden(layer, t)) continue;
+    const std::uint32_t id = at.ids[c];
+    if (id != last) {  // mostly the next one has it too
+      last = id;
+      value = find(id);
+      if (value == nullptr) {
+        const auto place = static_cast<std::uint32_t>(at_vertex_.size());
+        at_vertex_.push_back({.id = id, .to = id, .wedge = wedge, .joined = place});
+        value = &at_vertex_.back();
+      }
     }
-    if (is_hidden(layer, block.triangles[t])) continue;
-    const std::uint32_t id = of_corner_[layer][3 * std::size_t(block.triangles[t]) + c];
-    AtVertex* value = find(id);
-    if (value == nullptr) {
-      at_vertex_.push_back(
-          {.id = id, .wedge = wedge, .joined = static_cast<std::uint32_t>(at_vertex_.size())});
-      value = &at_vertex_.back();
-    }
+    shown_.push_back({&at.ids[c], static_cast<std::size_t>(value - at_vertex_.data())});
     ++value->corners[i >= from_first];
     if (!is_last || t >= block.coarse_triangle_count()) continue;
     if (value->wanted == kNone) value->wanted = 3 * t + c;
-    const CodedValue* coarse = &block.coarse_values[layer][3 * std::size_t(t)];
-    value->is_flat = value->is_flat || (coarse[0] == coarse[1] && coarse[1] == coarse[2]);
+    value->is_flat = value->is_flat || is_flat[t] != 0;
   }
 }
 
 // A collapsed triangle joins what it has at the two children.
-void AttributeRejoiner::join(const UnfoldedBlock& block, const ContractingPatch& patch,
-                             std::span<const std::uint32_t> vanished, std::uint32_t first,
-                             std::uint32_t second, std::size_t layer) {
+void AttributeRejoiner::join(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
+                             std::uint32_t first, std::uint32_t second, std::size_t layer) {
   for (const std::uint32_t t : vanished) {
-    if (is_hidden(layer, block.triangles[t])) continue;
-    const std::uint32_t* ids = &of_corner_[layer][3 * std::size_t(block.triangles[t])];
+    if (is_hidden(layer, t)) continue;
+    const std::array<std::uint32_t, 3>& ids = at_corners_[layer][t].ids;
     const AtVertex* a = find(ids[corner_of(patch.corners(t), first)]);
     const AtVertex* b = find(ids[corner_of(patch.corners(t), second)]);
     if (a == nullptr || b == nullptr || a->joined == b->joined) continue;
@@ -175,7 +223,7 @@ void AttributeRejoiner::change_to_coarse(const UnfoldedBlock& block, std::uint32
     if (stays(at_vertex_[i])) goes_to[i] = at_vertex_[i].id;
   }
   for (std::size_t i = 0; i < at_vertex_.size(); ++i) {
-    const AtVertex& value = at_vertex_[i];
+    AtVertex& value = at_vertex_[i];
     if (goes_to[i] != kNone) continue;
     const CodedValue& wanted = coarse[value.wanted];
     bool is_flat = value.is_flat;
@@ -194,8 +242,7 @@ void AttributeRejoiner::change_to_coarse(const UnfoldedBlock& block, std::uint32
           find(to) != nullptr || std::count(goes_to.begin(), goes_to.end(), to) > 0;
       goes_to[i] = is_taken ? pool.add(wanted) : to;
     }
-    changes.push_back(
-        {static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{goes_to[i]}});
+    change(layer, value, goes_to[i], changes);
   }
 }
 
@@ -241,14 +288,12 @@ void AttributeRejoiner::blend(std::size_t layer, double second_share,
       std::array<float, 4> blended{};
       for (std::size_t k = 0; k < sum.size(); ++k) blended[k] = static_cast<float>(sum[k]);
       const CodedValue code =
-          pool.code_of(std::span<const float>(blended).first(layers_[layer].dimension));
+          pool.nearest_code(std::span<const float>(blended).first(layers_[layer].dimension));
       // Of its own, whatever its value: what is not joined here may part at the coarse end.
       to = pool.code(most->id) == code ? most->id : pool.add(code);
     }
-    for (const AtVertex& value : at_vertex_) {
-      if (value.joined != i || value.id == to) continue;
-      changes.push_back(
-          {static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{to}});
+    for (AtVertex& value : at_vertex_) {
+      if (value.joined == i && value.id != to) change(layer, value, to, changes);
     }
   }
 }
@@ -287,25 +332,17 @@ void AttributeRejoiner::change_to_best(const WedgeValues& wedges, std::size_t la
     if (is_done) continue;
     const double same = members == 1 ? kSameCopy : kSameValue;
     std::uint32_t to = nearest;
-    if (!(nearest_away2 <= same * same)) to = pool.add(pool.code_of(best));
-    for (const AtVertex& value : at_vertex_) {
-      if (value.wedge != wedge || value.id == to) continue;
-      changes.push_back(
-          {static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{to}});
+    if (!(nearest_away2 <= same * same)) to = pool.add(pool.nearest_code(best));
+    for (AtVertex& value : at_vertex_) {
+      if (value.wedge == wedge && value.id != to) change(layer, value, to, changes);
     }
   }
 }
 
-void AttributeRejoiner::apply(const UnfoldedBlock& block, const ContractingPatch& patch,
-                              std::uint32_t v, std::span<const AttributeChange> changes) {
-  for (const std::uint32_t t : patch.around(v)) {
-    const std::uint32_t c = corner_of(patch.corners(t), v);
-    for (const AttributeChange& change : changes) {
-      if (is_hidden(change.layer, block.triangles[t])) continue;
-      std::uint32_t& id = of_corner_[change.layer][3 * std::size_t(block.triangles[t]) + c];
-      if (id == static_cast<std::uint32_t>(change.from)) id = static_cast<std::uint32_t>(change.to);
-    }
-  }
+void AttributeRejoiner::change(std::size_t layer, AtVertex& value, std::uint32_t to,
+                               std::vector<AttributeChange>& changes) {
+  value.to = to;
+  changes.push_back({static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{to}});
 }
 
 }  // namespace crease::codec

@@ -43,7 +43,7 @@ struct CornerChanges {
 class AttributeRejoiner {
  public:
   // `of_corner`: per layer, the ids of all corners of the model at its finest. Moves on with every
-  // block; blocks come finest first.
+  // block, for the triangles that its coarse end has; blocks come finest first.
   AttributeRejoiner(std::span<const LayerSchema> layers, std::vector<ValuePool>& pools,
                     std::vector<std::vector<std::uint32_t>> of_corner);
 
@@ -54,6 +54,7 @@ class AttributeRejoiner {
  private:
   struct AtVertex {  // a value that corners at the present vertex have
     std::uint32_t id = 0;
+    std::uint32_t to = 0;                    // what becomes of it, and of those corners
     std::array<std::uint32_t, 2> corners{};  // that came from the first child, from the second
     std::uint32_t wedge = kNone;             // of WedgeValues
     std::uint32_t joined = 0;                // the first one of those that it is joined with
@@ -61,13 +62,25 @@ class AttributeRejoiner {
     bool is_flat = false;                    // and all corners of a triangle have that value there
   };
 
+  // What a triangle of the present block has at its corners, in one layer: of the model's arrays
+  // and of WedgeValues, side by side, since contractions come from all over the block.
+  struct AtCorners {
+    std::array<std::uint32_t, 3> ids{}, wedges{};  // kNone: of no wedge
+  };
+  enum class Normals : std::uint8_t {  // of a triangle of the present block
+    Stored,
+    NextDerived,  // geometric from the first contraction on that touches it
+    Derived,
+  };
+
+  void load(const UnfoldedBlock& block, std::span<const WedgeValues> wedges);
+  void store(const UnfoldedBlock& block);
   void derive(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
               std::vector<TriangleId>& derived);
   void find_values(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
-                   std::size_t layer, bool is_last, WedgeValues& wedges);
-  void join(const UnfoldedBlock& block, const ContractingPatch& patch,
-            std::span<const std::uint32_t> vanished, std::uint32_t first, std::uint32_t second,
-            std::size_t layer);
+                   std::size_t layer, bool is_last, const WedgeValues& wedges);
+  void join(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
+            std::uint32_t first, std::uint32_t second, std::size_t layer);
   void change_to_coarse(const UnfoldedBlock& block, std::uint32_t v, std::size_t layer,
                         std::vector<AttributeChange>& changes);
   // `second_share`: where the parent stands on the way from the first child to the second.
@@ -76,19 +89,30 @@ class AttributeRejoiner {
   // They must be known.
   void change_to_best(const WedgeValues& wedges, std::size_t layer,
                       std::vector<AttributeChange>& changes);
-  void apply(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
-             std::span<const AttributeChange> changes);
+  void change(std::size_t layer, AtVertex& value, std::uint32_t to,
+              std::vector<AttributeChange>& changes);
   bool is_hidden(std::size_t layer, std::uint32_t triangle) const {
-    return layers_[layer].role == AttributeRole::Normal && is_derived_[triangle] != 0;
+    return layers_[layer].role == AttributeRole::Normal && normals_[triangle] == Normals::Derived;
   }
   AtVertex* find(std::uint32_t id);
+
+  struct Shown {  // by a corner at the present vertex
+    std::uint32_t* id = nullptr;
+    std::size_t value = 0;  // in at_vertex_
+  };
 
   std::span<const LayerSchema> layers_;
   std::vector<ValuePool>& pools_;
   std::vector<std::vector<std::uint32_t>> of_corner_;  // per layer, 3 a triangle
   std::vector<char> is_derived_;                       // per triangle
   bool has_normals_ = false;
+  // Of the present block.
+  std::vector<std::vector<AtCorners>> at_corners_;  // per layer and triangle
+  std::vector<std::vector<char>> coarse_is_flat_;   // per layer and triangle of the coarse end
+  std::vector<Normals> normals_;                    // per triangle
+  bool any_next_derived_ = false;
   std::vector<AtVertex> at_vertex_;  // scratch
+  std::vector<Shown> shown_;
   std::vector<std::uint32_t> scratch_;
 };
 

@@ -25,16 +25,20 @@ class ValuePool {
   // kFlat: of what is flat.
   static constexpr std::uint32_t kFlat = kNone;
   std::uint32_t intern(const CodedValue& code, std::uint32_t vertex) {
-    Place& place = place_of(code, vertex);
-    if (place.id != kNone) return place.id;
-    place = {vertex, size()};
+    if (vertex == kFlat) return intern_flat(code, [&] { add(code); });
+    if (vertex >= newest_of_vertex_.size()) newest_of_vertex_.resize(vertex + 1, kNone);
+    std::uint32_t& newest = newest_of_vertex_[vertex];
+    for (std::uint32_t id = newest; id != kNone; id = entries_[id].before) {
+      if (entries_[id].code == code) return id;
+    }
+    const std::uint32_t before = std::exchange(newest, size());
     add(code);
-    ++interned_count_;
-    return size() - 1;
+    entries_.back().before = before;
+    return newest;
   }
   // An id of its own for a code that others have too.
   std::uint32_t add(const CodedValue& code) {
-    codes_.push_back(code);
+    entries_.push_back({code});
     numbers_.resize(numbers_.size() + dimension_);
     values_.read(code, std::span(numbers_).last(dimension_));
     return size() - 1;
@@ -43,63 +47,66 @@ class ValuePool {
   std::uint32_t intern_direction(const Vec3f& d) {
     const CodedValue bits{std::bit_cast<std::int32_t>(d.x), std::bit_cast<std::int32_t>(d.y),
                           std::bit_cast<std::int32_t>(d.z), kIsDirection};
-    Place& place = place_of(bits, kFlat);
-    if (place.id != kNone) return place.id;
-    place = {kFlat, size()};
-    codes_.push_back(bits);
-    numbers_.insert(numbers_.end(), {d.x, d.y, d.z});
-    ++interned_count_;
-    return size() - 1;
+    return intern_flat(bits, [&] {
+      entries_.push_back({bits});
+      numbers_.insert(numbers_.end(), {d.x, d.y, d.z});
+    });
   }
 
-  std::uint32_t size() const { return static_cast<std::uint32_t>(codes_.size()); }
-  const CodedValue& code(std::uint32_t id) const { return codes_[id]; }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(entries_.size()); }
+  const CodedValue& code(std::uint32_t id) const { return entries_[id].code; }
   std::span<const float> value(std::uint32_t id) const {
     return std::span(numbers_).subspan(std::size_t(id) * dimension_, dimension_);
   }
   const std::vector<float>& numbers() const { return numbers_; }
-  CodedValue code_of(std::span<const float> value) const { return values_.code(value); }
+  CodedValue nearest_code(std::span<const float> value) const {
+    return values_.nearest_code(value);
+  }
 
  private:
   static constexpr std::int32_t kIsDirection = 1;  // in a component that directions leave 0
-  struct Place {                                   // of an interned value; free: kNone
-    std::uint32_t vertex = 0, id = kNone;
+  struct Entry {
+    CodedValue code;
+    std::uint32_t before = kNone;  // interned at the same vertex
   };
 
-  static std::size_t hash_of(const CodedValue& code, std::uint32_t vertex) {
+  static std::size_t hash_of(const CodedValue& code) {
     std::uint64_t pairs[2];
     std::memcpy(pairs, code.data(), sizeof pairs);
-    std::uint64_t h = (pairs[0] ^ vertex) * 0x9e3779b97f4a7c15u;
+    std::uint64_t h = pairs[0] * 0x9e3779b97f4a7c15u;
     h = (h ^ h >> 32 ^ pairs[1]) * 0x9e3779b97f4a7c15u;
     return static_cast<std::size_t>(h ^ h >> 32);
   }
-  // Where it is, or would be.
-  Place& place_of(const CodedValue& code, std::uint32_t vertex) {
-    if (2 * interned_count_ >= places_.size()) grow();
-    std::size_t at = hash_of(code, vertex) & (places_.size() - 1);
-    while (places_[at].id != kNone &&
-           (places_[at].vertex != vertex || codes_[places_[at].id] != code)) {
-      at = (at + 1) & (places_.size() - 1);
-    }
-    return places_[at];
+  template <typename Add>
+  std::uint32_t intern_flat(const CodedValue& code, const Add& add_it) {
+    if (2 * flat_count_ >= flat_.size()) grow();
+    std::size_t at = hash_of(code) & (flat_.size() - 1);
+    while (flat_[at] != kNone && entries_[flat_[at]].code != code)
+      at = (at + 1) & (flat_.size() - 1);
+    if (flat_[at] != kNone) return flat_[at];
+    flat_[at] = size();
+    ++flat_count_;
+    add_it();
+    return size() - 1;
   }
   void grow() {
-    std::vector<Place> before = std::exchange(places_, {});
-    places_.resize(before.empty() ? 64 : 4 * before.size());
-    for (const Place& place : before) {
-      if (place.id == kNone) continue;
-      std::size_t at = hash_of(codes_[place.id], place.vertex) & (places_.size() - 1);
-      while (places_[at].id != kNone) at = (at + 1) & (places_.size() - 1);
-      places_[at] = place;
+    const std::vector<std::uint32_t> before = std::exchange(flat_, {});
+    flat_.resize(before.empty() ? 64 : 4 * before.size(), kNone);
+    for (const std::uint32_t id : before) {
+      if (id == kNone) continue;
+      std::size_t at = hash_of(entries_[id].code) & (flat_.size() - 1);
+      while (flat_[at] != kNone) at = (at + 1) & (flat_.size() - 1);
+      flat_[at] = id;
     }
   }
 
   const LayerValues& values_;
   std::uint32_t dimension_;
-  std::vector<CodedValue> codes_;
+  std::vector<Entry> entries_;  // per id
   std::vector<float> numbers_;
-  std::vector<Place> places_;  // by hash, at most half of them taken
-  std::size_t interned_count_ = 0;
+  std::vector<std::uint32_t> newest_of_vertex_;  // interned at it, or kNone
+  std::vector<std::uint32_t> flat_;              // ids by hash, at most half of them taken
+  std::size_t flat_count_ = 0;
 };
 
 }  // namespace crease::codec

@@ -99,7 +99,7 @@ CREASE_WIDE void WedgeQuadrics::load_quadrics(const PatchMesh& mesh, const Patch
     const Vec3d e2 = geometry.place(mesh.triangles[t][2]) - p;
     const double area = 0.5 * n.size;
     // The second and the third corner's barycentric coordinates, as linear functions.
-    const double longest = std::max({dot(e1, e1), dot(e2, e2), dot(e2 - e1, e2 - e1)});
+    const double longest = std::max(std::max(dot(e1, e1), dot(e2, e2)), dot(e2 - e1, e2 - e1));
     Row second{0, 0, 0, 1.0 / 3}, third = second;
     if (n.size >= kThin * longest) {
       const double inverse = 1 / n.size;
@@ -187,9 +187,11 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
   const auto corner_at = [&](std::uint32_t t, std::uint32_t v) {
     return 3 * std::size_t(t) + corner_of(patch.corners(t), v);
   };
+  std::uint32_t last = kNone;  // mostly the next one has it too
   for (const std::uint32_t t : patch.around(first)) {
     const std::uint32_t wedge = layer.wedge_of_corner[corner_at(t, first)];
-    if (wedge != kNone) place_of(wedge);
+    if (wedge != last && wedge != kNone) place_of(wedge);
+    last = wedge;
   }
   for (const std::uint32_t t : vanished) {
     const std::uint32_t wa = layer.wedge_of_corner[corner_at(t, first)];

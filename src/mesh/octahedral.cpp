@@ -3,6 +3,8 @@
 #include "base/assert.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -26,18 +28,32 @@ struct ScaledVector {
   std::int64_t sum() const { return std::abs(x) + std::abs(y) + std::abs(z); }
 };
 
-ScaledVector scaled(const Vec3d& d) {
-  const double largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-  if (largest == 0) return {};
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  const auto integer = [&](double c) { return std::llround(std::ldexp(c, 30 - exponent)); };
-  return {integer(d.x), integer(d.y), integer(d.z)};
+// Halves away from zero; |x| < 2^62.
+std::int64_t rounded(double x) {
+  const auto whole = static_cast<std::int64_t>(x);
+  const double rest = x - static_cast<double>(whole);
+  return whole + (rest >= 0.5) - (rest <= -0.5);
 }
 
-// round(m * part / whole), halves away from zero.
+ScaledVector scaled(const Vec3d& d) {
+  const double largest = std::max(std::max(std::abs(d.x), std::abs(d.y)), std::abs(d.z));
+  if (largest == 0) return {};
+  if (!(largest > 1e-200 && largest < 1e200)) {
+    const double up = largest > 1 ? 0x1p-500 : 0x1p500;
+    return scaled({d.x * up, d.y * up, d.z * up});
+  }
+  // 2^30 / (the next power of two)
+  const std::uint64_t exponent = std::bit_cast<std::uint64_t>(largest) >> 52;
+  const double scale = std::bit_cast<double>((2 * 1023 + 29 - exponent) << 52);
+  return {rounded(d.x * scale), rounded(d.y * scale), rounded(d.z * scale)};
+}
+
+// round(m * part / whole), halves away from zero. The quotient of doubles is cut as that of
+// integers would be: of fewer than 2^33 parts each, it is 2^-33 at least below the next one, or
+// that.
 std::int32_t rounded_share(std::int32_t m, std::int64_t part, std::int64_t whole) {
-  const std::int64_t size = (2 * m * std::abs(part) + whole) / (2 * whole);
+  const double size =
+      static_cast<double>(2 * m * std::abs(part) + whole) / static_cast<double>(2 * whole);
   return with_sign_of(static_cast<std::int32_t>(size), part);
 }
 
@@ -91,22 +107,33 @@ OctahedralCode OctahedralCoding::encode(const Vec3d& direction) const {
   }
   // On a face of the octahedron the codes are a lattice of equilateral triangles, which the square
   // shears: the nearest is the rounded one or one of its eight neighbours.
+  std::array<Point, 9> points;
+  std::array<double, 9> along, squared, cosine2;
+  const bool is_inside = std::abs(near.x) < m_ - 1 && std::abs(near.y) < m_ - 1;
+  for (std::int32_t i = 0; i < 9; ++i) {
+    Point p{near.x + i % 3 - 1, near.y + i / 3 - 1};
+    points[std::size_t(i)] = is_inside ? p : settled(inside(p));
+  }
+  double most = 0;
+  for (std::size_t i = 0; i < 9; ++i) {
+    const Vec3i n = octahedral_vector(m_, points[i].x, points[i].y);
+    along[i] = static_cast<double>(d.x * n.x + d.y * n.y + d.z * n.z);  // 47 bits: exact
+    squared[i] = static_cast<double>(std::int64_t(n.x) * n.x + std::int64_t(n.y) * n.y +
+                                     std::int64_t(n.z) * n.z);
+    cosine2[i] = along[i] > 0 ? along[i] * along[i] / squared[i] : 0;
+    most = std::max(most, cosine2[i]);
+  }
+  // Mostly one is the nearest by far, else roots tell, and of equals the first.
   OctahedralCode best{};
   double best_cosine = -1e300;
-  for (std::int32_t dy = -1; dy <= 1; ++dy) {
-    for (std::int32_t dx = -1; dx <= 1; ++dx) {
-      const Point p = settled(inside({near.x + dx, near.y + dy}));
-      const Vec3i n = octahedral_vector(m_, p.x, p.y);
-      const std::int64_t along = d.x * n.x + d.y * n.y + d.z * n.z;  // 47 bits: exact as a double
-      const std::int64_t squared =
-          std::int64_t(n.x) * n.x + std::int64_t(n.y) * n.y + std::int64_t(n.z) * n.z;
-      const double cosine = static_cast<double>(along) / std::sqrt(static_cast<double>(squared));
-      const OctahedralCode code = code_of(p);
-      const bool first = code.v != best.v ? code.v < best.v : code.u < best.u;
-      if (cosine < best_cosine || (cosine == best_cosine && !first)) continue;
-      best = code;
-      best_cosine = cosine;
-    }
+  for (std::size_t i = 0; i < 9; ++i) {
+    if (cosine2[i] < most * (1 - 1e-12)) continue;
+    const double cosine = along[i] / std::sqrt(squared[i]);
+    const OctahedralCode code = code_of(points[i]);
+    const bool first = code.v != best.v ? code.v < best.v : code.u < best.u;
+    if (cosine < best_cosine || (cosine == best_cosine && !first)) continue;
+    best = code;
+    best_cosine = cosine;
   }
   return best;
 }

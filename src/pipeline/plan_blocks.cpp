@@ -1,7 +1,7 @@
 #include "pipeline/plan_blocks.h"
 
 #include "base/assert.h"
-#include "codec/triangle_lists.h"
+#include "codec/contracting_patch.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -168,50 +168,38 @@ class Planner {
     for (std::uint32_t slot = 0; slot < vertices.size(); ++slot) {
       slot_of_vertex_[vertices[slot]] = slot;
     }
-    codec::TriangleLists around;
-    around.resize(vertices.size());
-    for (const std::uint32_t t : triangles) {
-      for (const std::uint32_t v : corners_[t]) around.add(slot_of_vertex_[v], t);
-    }
+    codec::ContractingPatch patch(plan.fine);
     plan.steps.reserve(contractions.size());
     for (const std::size_t i : contractions) {
       const Contraction& c = sequence_.contractions[i];
       const std::uint32_t removed = static_cast<std::uint32_t>(c.removed);
       const std::uint32_t kept = static_cast<std::uint32_t>(c.kept);
       const std::uint32_t removed_slot = slot_of_vertex_[removed], slot = slot_of_vertex_[kept];
-      for (std::size_t k = 0; k < around[removed_slot].size(); ++k) {
-        const std::uint32_t t = around[removed_slot][k];
-        if (!is_alive_[t]) continue;
-        codec::Corners& corners = corners_[t];
-        if (corners[0] == kept || corners[1] == kept || corners[2] == kept) {
-          is_alive_[t] = 0;
-        } else {
-          std::replace(corners.begin(), corners.end(), removed, kept);
-          around.add(slot, t);
-        }
-      }
-      around.clear(removed_slot);
-      around.remove_if(slot, [this](std::uint32_t t) { return !is_alive_[t]; });
+      for (const std::uint32_t t : patch.contract(slot, removed_slot)) is_alive_[triangles[t]] = 0;
       positions_[kept] = c.position;
       error_[kept] = c.error;
       for (TriangleId t : sequence_.derived_of(c)) derived_[index_of(t)] = 1;
       for (const AttributeChange& change : sequence_.changes_of(c)) {
-        change_attribute(around[slot], kept, change);
+        change_attribute(patch, slot, triangles, change);
       }
       plan.steps.push_back({removed_slot, slot, c.position});
+    }
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) corners_[triangles[t]][k] = vertices[patch.corners(t)[k]];
     }
     for (const std::uint32_t v : vertices) slot_of_vertex_[v] = kNone;
   }
 
-  void change_attribute(std::span<const std::uint32_t> at_kept, std::uint32_t kept,
+  void change_attribute(const codec::ContractingPatch& patch, std::uint32_t kept,
+                        const std::vector<std::uint32_t>& triangles,
                         const AttributeChange& change) {
     const bool is_normal = mesh_.layers[change.layer].role == AttributeRole::Normal;
-    for (const std::uint32_t t : at_kept) {
-      if (!is_alive_[t] || (is_normal && derived_[t])) continue;
-      for (std::size_t c = 0; c < 3; ++c) {
-        AttributeId& attribute = of_corner_[change.layer][3 * t + c];
-        if (corners_[t][c] == kept && attribute == change.from) attribute = change.to;
-      }
+    for (const std::uint32_t t : patch.around(kept)) {
+      const std::size_t of_model = triangles[t];
+      if (is_normal && derived_[of_model]) continue;
+      const std::uint32_t c = codec::corner_of(patch.corners(t), kept);
+      AttributeId& attribute = of_corner_[change.layer][3 * of_model + c];
+      if (attribute == change.from) attribute = change.to;
     }
   }
 
