@@ -58,11 +58,6 @@ class ContractingPatch {
     return vanished_;
   }
 
-  // Brings into the caches what the other calls ask for, in this order.
-  void fetch_list(std::uint32_t v) const { around_.fetch_list(v); }
-  void fetch_names(std::uint32_t v) const { __builtin_prefetch(around_[v].data()); }
-  void fetch_corners(std::uint32_t t) const { __builtin_prefetch(&corners_[t]); }
-
   // How many of the last ones in around(first) came from `second` with the last call.
   std::size_t moved_count() const { return moved_count_; }
 

@@ -19,7 +19,6 @@ class TriangleLists {
     const List& list = lists_[vertex];
     return {triangles_.data() + list.first, list.count};
   }
-  void fetch_list(std::uint32_t vertex) const { __builtin_prefetch(&lists_[vertex]); }
   void add_vertex() { lists_.push_back({}); }
   void resize(std::size_t vertices) { lists_.resize(vertices); }
   // Every triangle at each of its corners, in order, with room for some more.
