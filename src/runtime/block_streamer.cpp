@@ -224,6 +224,7 @@ void BlockStreamer::Impl::take_decoded(StreamReport& report) {
     for (std::size_t v = 0; v < meshes.size(); ++v) {
       if ((wanted_by >> v & 1) != 0) meshes[v].insert(*decoded.block);
     }
+    workers.free(*std::move(decoded.block));  // in case that the views drop it at once
     ++report.inserted;
   }
 }
