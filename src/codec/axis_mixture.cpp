@@ -74,6 +74,11 @@ void LikelyComponents::at_ends(std::int64_t low, std::int64_t width,
                    static_cast<float>(low), static_cast<float>(width), ends.data());
   }
 #endif
+  at_ends_by_fours(low, width, ends);
+}
+
+void LikelyComponents::at_ends_by_fours(std::int64_t low, std::int64_t width,
+                                        std::array<float, 8>& ends) const {
   constexpr std::array<float, 8> kEnds{1, 2, 3, 4, 5, 6, 7, 8};
   const EightFloats y =
       EightFloats(static_cast<float>(low)) + static_cast<float>(width) * EightFloats(kEnds) - 0.5f;
@@ -88,11 +93,19 @@ void LikelyComponents::at_ends(std::int64_t low, std::int64_t width,
 }
 
 void weigh(AxisMixture& mixture, std::int32_t start, std::int64_t low, std::int64_t width) {
+#if defined(CREASE_AVX2)
+  if (has_avx2()) {
+    return weigh_wide(mixture, static_cast<float>(start), static_cast<float>(low) - 0.5f,
+                      static_cast<float>(low + width) - 0.5f);
+  }
+#endif
+  weigh_by_fours(mixture, start, low, width);
+}
+
+void weigh_by_fours(AxisMixture& mixture, std::int32_t start, std::int64_t low,
+                    std::int64_t width) {
   const float from = static_cast<float>(low) - 0.5f;
   const float to = static_cast<float>(low + width) - 0.5f;
-#if defined(CREASE_AVX2)
-  if (has_avx2()) return weigh_wide(mixture, static_cast<float>(start), from, to);
-#endif
   const EightFloats center = EightFloats(mixture.center) - static_cast<float>(start);
   const EightFloats inverse(mixture.inverse_scale);
   const EightFloats odds =

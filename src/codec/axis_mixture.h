@@ -57,6 +57,8 @@ class LikelyComponents {
   }
   // The same at the ends of eight parts of one width that follow each other from `low`.
   void at_ends(std::int64_t low, std::int64_t width, std::array<float, 8>& ends) const;
+  // The same to the bit, as processors do it that have no eight at once.
+  void at_ends_by_fours(std::int64_t low, std::int64_t width, std::array<float, 8>& ends) const;
 
  private:
   static constexpr float kLeastShare = 1.0f / 256, kWidest = 1 << 28;
@@ -70,6 +72,8 @@ class LikelyComponents {
 // Multiplies weights by how likely each component makes it that a number lies from `low` on, within
 // `width`. Places are seen from `start`.
 void weigh(AxisMixture& mixture, std::int32_t start, std::int64_t low, std::int64_t width);
+// As at_ends_by_fours().
+void weigh_by_fours(AxisMixture& mixture, std::int32_t start, std::int64_t low, std::int64_t width);
 
 // From which whole number on one lies, within a power of two; and the sums before both ends.
 struct AxisInterval {
