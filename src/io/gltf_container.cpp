@@ -128,6 +128,10 @@ Result<GltfDocument> open_gltf(const Source& source) {
     return fail_at_place(Error::NotSupported, source, "asset.version",
                          "glTF " + version + "; only 2.0 is read");
   }
+  if (at(json, "meshes").is_object()) {  // glTF 1.0 had names where 2.0 has indices
+    return fail_at_place(Error::NotSupported, source, "meshes",
+                         "an object, as in glTF 1.0; only 2.0 is read");
+  }
   if (const auto center = as_vector(at(at(at(json, "extensions"), "CESIUM_RTC"), "center"))) {
     document->center += *center;
   }

@@ -113,7 +113,8 @@ struct HeaderReader {
         if (!has_format) return refuse(Error::BadFormat, "header without a format line");
         return true;
       } else if (word != "obj_info" && !word.empty()) {
-        return refuse(Error::BadFormat, "not a word of a PLY header: " + in_quotes(word));
+        header.unknown_words.emplace_back(
+            word);  // older exporters wrote comments without 'comment'
       }
     }
     return refuse(Error::Truncated, "the header has no end_header");

@@ -40,7 +40,8 @@ struct PlyHeader {
   PlyEncoding encoding{};
   std::vector<PlyElement> elements;
   std::vector<std::string> comments;
-  std::size_t byte_count = 0;  // the body begins here
+  std::vector<std::string> unknown_words;  // that other lines begin with
+  std::size_t byte_count = 0;              // the body begins here
   std::size_t line_count = 0;
 };
 

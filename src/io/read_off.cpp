@@ -143,6 +143,10 @@ class OffReader {
     return true;
   }
 
+  static std::string corner_of_face(std::int64_t corner, std::int64_t count) {
+    return "corner " + std::to_string(corner) + " of " + std::to_string(count) + " of a face";
+  }
+
   bool read_faces() {
     raw_.triangles.reserve(face_count_);
     for (std::size_t f = 0; f < face_count_; ++f) {
@@ -157,9 +161,11 @@ class OffReader {
       corners_.clear();
       for (std::int64_t c = 0; c < count; ++c) {
         std::int64_t v = 0;
+        // A face may go on in the next line.
+        if (line_.done() && !next_line(corner_of_face(c, count))) return false;
         if (!line_.integer(v)) {
-          return refuse(Error::BadFormat, "face promises " + std::to_string(count) +
-                                              " corners and has " + std::to_string(c));
+          return refuse(Error::BadFormat,
+                        corner_of_face(c, count) + ": not an index: " + in_quotes(line_.word()));
         }
         if (v < 0 || static_cast<std::size_t>(v) >= vertex_count_) {
           return refuse(Error::BadValue, "face index " + std::to_string(v) + " of " +

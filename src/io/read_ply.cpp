@@ -64,6 +64,9 @@ class PlyReader {
     raw_.report.format = header_.encoding == PlyEncoding::Text           ? "text PLY"
                          : header_.encoding == PlyEncoding::LittleEndian ? "binary PLY"
                                                                          : "big-endian binary PLY";
+    for (const std::string& word : header_.unknown_words) {
+      raw_.report.notes.push_back("line of the header ignored that begins with " + in_quotes(word));
+    }
     for (const PlyElement& element : header_.elements) {
       if (element.properties.empty()) continue;
       if (!fits(element) || !read_element(element)) return *failure_;

@@ -326,6 +326,9 @@ TEST_CASE("glTF: what cannot be meant is refused, with its place") {
     CHECK(message.starts_with("bad.gltf: "));
     CHECK(message.find(place) != std::string::npos);
   };
+  refused("meshes: an object, as in glTF 1.0", [](GltfBuilder& b) {
+    b.json["meshes"] = {{"named", {{"primitives", nlohmann::json::array()}}}};
+  });
   refused("nodes[1]", [](GltfBuilder& b) {  // a loop below a root
     b.json["nodes"] = {{{"children", {1}}}, {{"children", {2}}}, {{"children", {1}}, {"mesh", 0}}};
   });

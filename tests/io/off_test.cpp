@@ -40,10 +40,21 @@ TEST_CASE("colours of faces, as components and as an index") {
   CHECK(index.layers[1].value_count() == 2);
 }
 
+TEST_CASE("a face goes on in the next lines") {
+  const Mesh mesh =
+      import_text("OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0\n1 # half\n2\n3\n3 0 1\n2\n",
+                  "a.off")
+          .mesh;
+  CHECK(mesh.triangle_count() == 3);
+}
+
 TEST_CASE("every refusal names the line and the reason") {
   const std::string three = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
   CHECK(refusal_of(three + "3 0 1 3\n", "a.off") == "a.off:6: face index 3 of 3 vertices");
-  CHECK(refusal_of(three + "4 0 1 2\n", "a.off") == "a.off:6: face promises 4 corners and has 3");
+  CHECK(refusal_of(three + "4 0 1 2\n", "a.off") ==
+        "a.off:6: the file ends; corner 3 of 4 of a face expected");
+  CHECK(refusal_of(three + "3 0 1 x\n", "a.off") ==
+        "a.off:6: corner 2 of 3 of a face: not an index: 'x'");
   CHECK(refusal_of(three, "a.off") == "a.off:5: the file ends; face 0 of 1 expected");
   CHECK(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n", "a.off") ==
         "a.off:5: vertex 2 of 3 is not finite");

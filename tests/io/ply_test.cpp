@@ -187,6 +187,15 @@ TEST_CASE("unknown elements and lists are passed over") {
   CHECK(in.report.notes.size() == 2);
 }
 
+TEST_CASE("a line of the header that says nothing is passed over and told") {
+  std::string text = header("", "") + kThreePoints + "3 0 1 2\n";
+  text.insert(text.find("element"), "Created by Blender3D 247\n");
+  const Imported read = import_text(text, "a.ply");
+  CHECK(read.mesh.triangle_count() == 1);
+  REQUIRE(read.report.notes.size() == 1);
+  CHECK(read.report.notes[0] == "line of the header ignored that begins with 'Created'");
+}
+
 TEST_CASE("rows that hold more than the header says keep what is certain") {
   const Imported in =
       import_text(header("", "property uchar red\nproperty uchar green\nproperty uchar blue\n") +
