@@ -9,9 +9,9 @@
 
 namespace crease::bench {
 
-std::vector<Peer> all_peers(const std::filesystem::path& programs,
-                            const std::filesystem::path& modules) {
+std::vector<Peer> all_peers(const std::filesystem::path& programs) {
   const std::string script = std::string(CREASE_BENCH_SOURCE) + "/peers/meshoptimizer.mjs";
+  const std::filesystem::path modules = programs.parent_path() / "bench_cache";
   const auto node = [&](const char* mode) {
     return std::vector<std::string>{"node", script, modules.string(), mode};
   };

@@ -17,9 +17,8 @@ struct Peer {
 };
 
 // update, attributes (meshoptimizer), vtk, lt (CGAL), openmesh. `programs` is where the peers were
-// built to, `modules` where npm put meshoptimizer.
-std::vector<Peer> all_peers(const std::filesystem::path& programs,
-                            const std::filesystem::path& modules);
+// built to; beside it is bench_cache/, where npm put meshoptimizer (setup.sh).
+std::vector<Peer> all_peers(const std::filesystem::path& programs);
 
 // Runs a command and gives the last line it printed, or nothing when it failed.
 std::optional<std::string> run_command(const std::vector<std::string>& command);

@@ -119,7 +119,7 @@ bool add_chain(const ModelEntry& entry, const Mesh& original, const Options& opt
   std::filesystem::create_directories(cache, none);
   const std::filesystem::path input = cache / "input.bin", decoded = cache / "decoded.bin";
   if (!exchange::write_mesh(input.string(), to_exchange(original))) return false;
-  const Peer update = all_peers(options.programs, options.cache).front();
+  const Peer update = all_peers(options.programs).front();
   std::size_t bytes = 0, zipped = 0;
   double last_triangles = 0;
   for (const std::size_t part : kChain) {

@@ -273,7 +273,7 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", entries.failure().message.c_str());
     return 2;
   }
-  std::vector<Peer> peers = all_peers(self.parent_path(), options.cache);
+  std::vector<Peer> peers = all_peers(self.parent_path());
   std::erase_if(peers, [&](const Peer& peer) {
     return std::ranges::find(options.peers, peer.name) == options.peers.end();
   });

@@ -80,7 +80,7 @@ bool measure_model(const ModelEntry& entry, const Options& options,
                        .processor_seconds = {}});
   }
   const std::size_t target = triangles / 100;
-  for (const Peer& peer : all_peers(programs, options.cache)) {
+  for (const Peer& peer : all_peers(programs)) {
     if (std::ranges::find(options.peers, peer.name) == options.peers.end()) continue;
     std::vector<std::string> command = peer.command;
     command.insert(command.end(), {input.string(), output.string(), std::to_string(target)});
