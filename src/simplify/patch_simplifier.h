@@ -152,6 +152,7 @@ class PatchSimplifier {
   bool meet(Index a, Index b) const;
   // Into joined_.
   void join_wedges(std::size_t layer, Index a, Index b);
+  Joined* join_pinned(std::size_t layer, Index first, Index end, Joined* joined);
   template <typename Unite>
   void unite_equal(std::size_t layer, Slice wa, Slice wb, Unite unite);
   void add_attribute_costs(Index a, Index b, Quadric& sum);
