@@ -135,6 +135,7 @@ class PatchSimplifier {
   void load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id);
   void load_wedges();
   void load_quadrics();
+  void gather_edge_sides();
   void load_edges();
   bool is_line(Index v, const Edge& edge) const;
   void add_lines(Index v, const Edge& edge);
@@ -302,8 +303,10 @@ class PatchSimplifier {
 
   // Scratch of load_edges().
   std::vector<char> several_wedges_;
+  std::vector<Index> edge_sides_;    // 8 * triangle + way along it
+  std::vector<Index> end_of_sides_;  // by vertex
   ScratchList<Edge> edges_;
-  std::vector<Index> slot_;
+  std::vector<Index> edge_at_;  // the last that a vertex was met at
 
   // Scratch of one contraction.
   ScratchList<Joined> joined_;

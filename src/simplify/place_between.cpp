@@ -37,7 +37,7 @@ struct Way {
   Way(const Quadric& sum, const Vec3d& a, const Vec3d& b, double cost, double pull)
       : cost_at_a(cost) {
     const Row* q = sum.row;
-    const Row linear = {q[0][3], q[1][3], q[2][3], 0};
+    const Row linear = {q[0][3], q[1][3], q[2][3], q[2][3]};
     slope_at_a = (a.x * q[0] + a.y * q[1] + a.z * q[2]) + linear;
     slope_grows = ((b.x * q[0] + b.y * q[1] + b.z * q[2]) + linear) - slope_at_a;
     const Vec3d along = b - a;
@@ -46,11 +46,11 @@ struct Way {
     second = dot_along(slope_grows);
     farthest2 = dot(along, along);
     const double mu = pull * sum.trace();
-    stiff = Row{q[0][0], q[1][1], q[2][2], 0} + mu;
+    stiff = Row{q[0][0], q[1][1], q[2][2], q[2][2]} + mu;
 
     Row one, other;
-    take_absolute(Row{along.y, along.z, along.x, 0}, one);
-    take_absolute(Row{along.z, along.x, along.y, 0}, other);
+    take_absolute(Row{along.y, along.z, along.x, along.x}, one);
+    take_absolute(Row{along.z, along.x, along.y, along.y}, other);
     const Row apart = one < other ? other : one;
     Bits shift = (reinterpret_cast<Bits>(apart) >> 52) - (1022 + kBetweenBits);
     shift = shift > 0 ? shift : Bits{};
@@ -122,7 +122,8 @@ CREASE_WIDE PlaceBetween place_between(const Quadric& sum, const Vec3d& a, const
   }
   // between_ends() of all axes: eighths are whole numbers of them, and rounded down.
   const double of_a = 8 - eighths, of_b = eighths;
-  Row place = (Row{a.x, a.y, a.z, 0} * of_a + Row{b.x, b.y, b.z, 0} * of_b + 4) * 0.125 - 0.4375;
+  Row place =
+      (Row{a.x, a.y, a.z, a.z} * of_a + Row{b.x, b.y, b.z, b.z} * of_b + 4) * 0.125 - 0.4375;
   round_all(place);
   Vec3d position{place[0], place[1], place[2]};
   position[axis] += away_on_axis;
