@@ -263,7 +263,7 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   for (Index t : triangles_of(kept)) release(t);
 }
 
-void PatchSimplifier::find_ring(Index kept, Index removed) {
+CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {
   const std::span<const Index> around_kept = triangles_of(kept);
   const std::span<const Index> around_removed = triangles_of(removed);
   // What does not belong to a list is written over by what comes next: no branches.
@@ -360,8 +360,8 @@ PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
   return away2 <= same * same ? inherit() : kNone;
 }
 
-void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index removed,
-                                     const Vec3d& target, LevelError& error) {
+CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index removed,
+                                                 const Vec3d& target, LevelError& error) {
   const WorkLayer& work = work_->layers[layer];
   join_wedges(layer, kept, removed);
   std::vector<Wedge>& wedges = wedges_[layer];

@@ -208,7 +208,7 @@ double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
 }
 
 // What does not depend on where the vertex goes.
-double PatchSimplifier::vanishing_cost(Index a, Index b) {
+CREASE_WIDE double PatchSimplifier::vanishing_cost(Index a, Index b) {
   double cost = coincidence_cost(a, b);
   if (ring_.empty()) {
     // A part disappears. Its own planes may not mind; whoever looks at it does.
@@ -233,7 +233,7 @@ double PatchSimplifier::ring_cost(Index a, Index b, const Vec3d& target, double 
 
 // The place with the triangles around it included: where the optimum would fold one, an end of the
 // pair or its middle may not. A cost above `bound` is a lower one.
-PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double bound) {
+CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double bound) {
   const Index a = pair.a, b = pair.b;
   blamed_ = kNone;
   blamed_cost_ = 0;

@@ -111,7 +111,7 @@ void PatchSimplifier::unite_equal(std::size_t layer, Slice wa, Slice wb, Unite u
 // Which wedges at a and b become one: those that a vanishing triangle has at its two corners, and
 // those that are the same attribute (DESIGN 6.3; equal index, same attribute). Members are indices
 // into wedges_[layer].
-void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
+CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
   const Slice wa = wedges_of(layer, a), wb = wedges_of(layer, b);
   const Wedge* wedges = wedges_[layer].data();
   const Index n = wa.count + wb.count;
