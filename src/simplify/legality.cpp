@@ -241,7 +241,7 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair,
   ++ring_count_;
   blocks_.resize(std::max(blocks_.size(), ring_.size() / RingBlock::kTriangles + 1));
   const double free_cost = pair.free_cost;
-  const Vec3d position{double(pair.position.x), double(pair.position.y), double(pair.position.z)};
+  const Vec3d position = to_double(pair.position);
   const double fold = ring_cost(a, b, position, bound - free_cost);
   Placed best{free_cost + fold, free_cost, position};
   const double noise = kGridNoise * kGridNoise * (surface_[a].weight + surface_[b].weight);
@@ -258,7 +258,10 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair,
       if (total < best.cost) best = {total, cost, others[i]};
     }
   }
-  if (best.cost <= bound) best.cost += vanishing_cost(a, b);
+  if (best.cost <= bound) {
+    best.cost += vanishing_cost(a, b);
+    best.lasts = !ring_.empty();
+  }
   return best;
 }
 

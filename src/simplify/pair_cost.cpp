@@ -400,9 +400,7 @@ CREASE_WIDE void PatchSimplifier::find_costs_of_others(Candidate& pair) {
 }
 
 void PatchSimplifier::keep_placed(const Placed& placed, Candidate& pair) {
-  pair.position = {static_cast<std::int32_t>(placed.position.x),
-                   static_cast<std::int32_t>(placed.position.y),
-                   static_cast<std::int32_t>(placed.position.z)};
+  pair.position = whole(placed.position);
   pair.cost = placed.cost;
   pair.free_cost = placed.free_cost;
   pair.cost_of_other[0] = Candidate::kUnknown;

@@ -40,6 +40,10 @@ struct Steering {
 // What rounding to the grid is worth: less than this is no reason to leave an end, grid units.
 inline constexpr double kGridNoise = 0.5;
 
+inline Vec3d to_double(const Vec3i& v) {
+  return {double(v.x), double(v.y), double(v.z)};
+}
+
 class PatchSimplifier {
  public:
   using Index = std::uint32_t;
@@ -87,6 +91,7 @@ class PatchSimplifier {
     double cost = 0;
     double free_cost = 0;  // without what flat triangles cost: make_legal() knows that better
     Vec3d position;
+    bool lasts = false;  // of make_legal(): it says the same until something around has changed
   };
   // A pair, and what is known of it as long as its ends do not change.
   struct Candidate {
@@ -196,14 +201,15 @@ class PatchSimplifier {
   float next_cost() const;
   Index survivor(Index v);
   bool claim(Index pair, Index a, Index b);
-  void hold(const Entry& entry, double cost, double cost_with_ring);
+  void hold(const Entry& entry, double cost, const Placed& placed);
   void release(Index triangle);
 
   // Of a place on the grid, less center_.
-  Vec3i on_grid(const Vec3d& p) const {
-    return center_grid_ + Vec3i{static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
-                                static_cast<std::int32_t>(p.z)};
+  static Vec3i whole(const Vec3d& p) {
+    return {static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
+            static_cast<std::int32_t>(p.z)};
   }
+  Vec3i on_grid(const Vec3d& p) const { return center_grid_ + whole(p); }
   Facing facing_of(Index t) const {
     const Index* v = &vertex_of_corner_[3 * t];
     const Vec3d& p0 = positions_[v[0]];
@@ -248,6 +254,8 @@ class PatchSimplifier {
   std::vector<Vertex> vertices_;
   std::vector<Vec3d> positions_;       // per vertex, grid units less center_
   std::vector<Errors> errors_;         // per vertex
+  std::vector<Index> changed_around_;  // per vertex: so many contractions had been made when it or
+                                       // one of its triangles last changed
   std::vector<Quadric> surface_;       // per vertex
   std::vector<Quadric> turn_;          // per vertex, what its flat triangles' turning costs about;
                                        // empty: none is flat
@@ -293,8 +301,12 @@ class PatchSimplifier {
     Index pair;
     Index next;  // in the list of the same triangle
     float cost;  // without the fold
-    Index tries;
+    std::uint16_t tries;
     bool waiting;
+    bool lasts;       // and so do the place and the cost below; see Placed
+    Index looked_at;  // so many contractions had been made
+    Vec3i position;   // less center_
+    double cost_with_ring;
   };
   std::vector<Held> held_;
   std::vector<Index> held_of_triangle_;  // head of a list in held_, or kNone
