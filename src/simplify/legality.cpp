@@ -137,7 +137,7 @@ CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& tar
       block.shading.more_with(normal, 0.5 * twice_after, more);
       own += turns ? normal_scale2 * more : Row{};
     }
-    own = counts & (own > 0) ? own : Row{};
+    own = (counts & (own > 0)) ? own : Row{};
     // One by one, until they are too many: which these are is asked only then.
     const double with_all = (((cost + own[0]) + own[1]) + own[2]) + own[3];
     if (with_all <= bound) {
