@@ -65,19 +65,26 @@ PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
   return v;
 }
 
-void PatchSimplifier::hold(const Entry& entry, double cost, double cost_with_ring) {
+void PatchSimplifier::hold(const Entry& entry, double cost, const Placed& placed) {
+  const bool waits = placed.cost <= steering_.cost_limit;
+  const float cost_with_ring = static_cast<float>(placed.cost);
   if (blamed_ == kNone || entry.tries >= kTries) {
-    if (cost_with_ring <= steering_.cost_limit) {
-      heap_.push({static_cast<float>(cost_with_ring), entry.pair(), kNone, entry.tries});
-    }
+    if (waits) heap_.push({cost_with_ring, entry.pair(), kNone, entry.tries});
     return;
   }
   const Index id = static_cast<Index>(held_.size());
-  held_.push_back(
-      {entry.pair(), held_of_triangle_[blamed_], static_cast<float>(cost), entry.tries + 1, true});
+  Held& held = held_.emplace_back();
+  held.pair = entry.pair();
+  held.next = held_of_triangle_[blamed_];
+  held.cost = static_cast<float>(cost);
+  held.tries = static_cast<std::uint16_t>(entry.tries + 1);
+  held.waiting = true;
+  held.lasts = placed.lasts;
+  held.looked_at = static_cast<Index>(result_.contractions.size());
+  held.position = whole(placed.position);
+  held.cost_with_ring = placed.cost;
   held_of_triangle_[blamed_] = id;
-  if (!(cost_with_ring <= steering_.cost_limit)) return;
-  heap_.push({static_cast<float>(cost_with_ring), entry.pair(), id, entry.tries + 1});
+  if (waits) heap_.push({cost_with_ring, entry.pair(), id, entry.tries + 1});
 }
 
 void PatchSimplifier::release(Index triangle) {
@@ -138,19 +145,28 @@ bool PatchSimplifier::claim(Index pair, Index a, Index b) {
 PatchResult PatchSimplifier::run() {
   result_.new_values.resize(layer_count());
   held_of_triangle_.assign(global_triangle_.size(), kNone);
+  changed_around_.assign(vertices_.size(), 0);
   order_pairs();
   owners_.assign(std::bit_ceil(2 * candidates_.size() + 64), kNone);
   owner_count_ = 0;
   for (Entry entry; pop(entry);) {
+    const Held* waited = nullptr;
     if (entry.held != kNone) {
       if (!held_[entry.held].waiting) continue;
       held_[entry.held].waiting = false;
+      waited = &held_[entry.held];
     }
     Candidate& pair = candidates_[entry.pair()];
     Index a = survivor(pair.a), b = survivor(pair.b);
     if (a == b) continue;
     if (a > b) std::swap(a, b);
     if (!claim(entry.pair(), a, b)) continue;
+    if (waited != nullptr && waited->lasts &&
+        std::max(changed_around_[a], changed_around_[b]) <= waited->looked_at) {
+      find_ring(a, b);
+      contract(a, b, to_double(waited->position), waited->cost_with_ring);
+      continue;
+    }
     const float next = next_cost();
 
     if (std::max(vertices_[a].changed_at, vertices_[b].changed_at) > pair.placed_at) {
@@ -168,7 +184,7 @@ PatchResult PatchSimplifier::run() {
     const Placed placed = make_legal(pair, bound);
     if (!(placed.cost <= steering_.cost_limit) || (static_cast<float>(placed.cost) > entry.cost() &&
                                                    static_cast<float>(placed.cost) > next)) {
-      hold(entry, cost, placed.cost);
+      hold(entry, cost, placed);
       continue;
     }
     contract(a, b, placed.position, placed.cost);
@@ -259,11 +275,17 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
       static_cast<Index>(result_.derived.size()) - contraction.first_derived;
   last_key_ = std::max(last_key_, cost);
   result_.contractions.push_back({last_key_, contraction});
-  q.changed_at = static_cast<Index>(result_.contractions.size());
+  const Index now = static_cast<Index>(result_.contractions.size());
+  q.changed_at = now;
+  changed_around_[kept] = now;
+  for (const RingTriangle& ring : ring_) {
+    changed_around_[ring.next] = changed_around_[ring.previous] = now;
+  }
+  for (const Vanishing& vanishing : vanishing_) changed_around_[vanishing.third] = now;
   for (Index t : triangles_of(kept)) release(t);
 }
 
-void PatchSimplifier::find_ring(Index kept, Index removed) {
+CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {
   const std::span<const Index> around_kept = triangles_of(kept);
   const std::span<const Index> around_removed = triangles_of(removed);
   // What does not belong to a list is written over by what comes next: no branches.
@@ -360,8 +382,8 @@ PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
   return away2 <= same * same ? inherit() : kNone;
 }
 
-void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index removed,
-                                     const Vec3d& target, LevelError& error) {
+CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index removed,
+                                                 const Vec3d& target, LevelError& error) {
   const WorkLayer& work = work_->layers[layer];
   join_wedges(layer, kept, removed);
   std::vector<Wedge>& wedges = wedges_[layer];

@@ -103,7 +103,7 @@ PatchSimplifier::Index PatchSimplifier::heir_of(const Vanishing& vanishing) {
 }
 
 // What it costs that a flat triangle vanishes.
-double PatchSimplifier::vanishing_error(const Vanishing& vanishing) {
+CREASE_WIDE double PatchSimplifier::vanishing_error(const Vanishing& vanishing) {
   const Index t = vanishing.triangle;
   if (!flat_[t] && !derived_[t]) return 0;
   const Index heir = heir_of(vanishing);
@@ -123,7 +123,7 @@ void PatchSimplifier::hand_over_represented() {
   }
 }
 
-void PatchSimplifier::derive_where_better(Index kept, LevelError& error) {
+CREASE_WIDE void PatchSimplifier::derive_where_better(Index kept, LevelError& error) {
   double worst_square = 0;  // of the chords between what is shown and the input
   for (Index t : triangles_of(kept)) {
     if (!flat_[t] && !derived_[t]) continue;

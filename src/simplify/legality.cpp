@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace crease::simplification {
@@ -33,16 +34,19 @@ constexpr double kCategoryShare = 1;
 // What the area of a part that disappears counts: quadrics count it at each of its three corners.
 constexpr double kPartWeight = 3;
 
+using Lane = long long;
+constexpr Lanes kLane = {0, 1, 2, 3};
+
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
 
 }  // namespace
 
-void PatchSimplifier::blame(Index t, double cost) {
-  if (!(cost > blamed_cost_)) return;
-  blamed_ = t;
-  blamed_cost_ = cost;
+inline void PatchSimplifier::blame(Index t, double cost) {
+  const bool dearest = cost > blamed_cost_;  // no branch: nobody could foretell it
+  blamed_ = dearest ? t : blamed_;
+  blamed_cost_ = std::max(blamed_cost_, cost);
 }
 
 // The ring's triangles from `first` on, of which the last one fills up the block.
@@ -51,33 +55,25 @@ inline void PatchSimplifier::gather(std::size_t first, RingBlock& block) const {
   for (std::size_t k = 0; k < RingBlock::kTriangles; ++k) {
     ring[k] = &ring_[std::min(first + k, ring_.size() - 1)];
   }
-  const auto fill = [&](Row& row, const double* x0, const double* x1, const double* x2,
-                        const double* x3) {
-    row = Row{*x0, *x1, *x2, *x3};
-  };
-  const auto fill_axes = [&](Row* rows, const Vec3d& v0, const Vec3d& v1, const Vec3d& v2,
-                             const Vec3d& v3) {
-    fill(rows[0], &v0.x, &v1.x, &v2.x, &v3.x);
-    fill(rows[1], &v0.y, &v1.y, &v2.y, &v3.y);
-    fill(rows[2], &v0.z, &v1.z, &v2.z, &v3.z);
-  };
   const Vec3d* at = positions_.data();
-  fill_axes(block.next, at[ring[0]->next], at[ring[1]->next], at[ring[2]->next], at[ring[3]->next]);
-  fill_axes(block.previous, at[ring[0]->previous], at[ring[1]->previous], at[ring[2]->previous],
-            at[ring[3]->previous]);
+  take_axes(at[ring[0]->next], at[ring[1]->next], at[ring[2]->next], at[ring[3]->next], block.next);
+  take_axes(at[ring[0]->previous], at[ring[1]->previous], at[ring[2]->previous],
+            at[ring[3]->previous], block.previous);
   const Facing &f0 = facing_[ring[0]->triangle], &f1 = facing_[ring[1]->triangle],
                &f2 = facing_[ring[2]->triangle], &f3 = facing_[ring[3]->triangle];
-  fill_axes(block.normal, f0.normal, f1.normal, f2.normal, f3.normal);
-  fill(block.area, &f0.area, &f1.area, &f2.area, &f3.area);
+  static_assert(offsetof(Facing, area) == 3 * sizeof(double));
+  take_pairs(&f0.normal.x, &f1.normal.x, &f2.normal.x, &f3.normal.x, block.normal[0],
+             block.normal[1]);
+  take_pairs(&f0.normal.z, &f1.normal.z, &f2.normal.z, &f3.normal.z, block.normal[2], block.area);
   block.shows = block.right = Lanes{};
   block.has_shading = false;
   if (shading_.empty()) return;
   const auto shows = [&](int k) {
     const Index t = ring[k]->triangle;
-    return -static_cast<long long>(flat_[t] | derived_[t]);
+    return (flat_[t] | derived_[t]) != 0;
   };
+  take_lanes(shows(0), shows(1), shows(2), shows(3), block.shows);
   const auto counts = [&](int k) { return shading_[ring[k]->triangle].counts; };
-  block.shows = Lanes{shows(0), shows(1), shows(2), shows(3)};
   block.right = Row{counts(0), counts(1), counts(2), counts(3)} <= kRight * block.area;
 }
 
@@ -86,23 +82,20 @@ inline void PatchSimplifier::gather_shading(std::size_t first, RingBlock& block)
     return shading_[ring_[std::min(first + k, ring_.size() - 1)].triangle];
   };
   const FlatShading &s0 = at(0), &s1 = at(1), &s2 = at(2), &s3 = at(3);
-  const auto fill = [](Row& row, double x0, double x1, double x2, double x3) {
-    row = Row{x0, x1, x2, x3};
-  };
-  const auto fill_axes = [&](Row* rows, const Vec3f& v0, const Vec3f& v1, const Vec3f& v2,
-                             const Vec3f& v3) {
-    fill(rows[0], v0.x, v1.x, v2.x, v3.x);
-    fill(rows[1], v0.y, v1.y, v2.y, v3.y);
-    fill(rows[2], v0.z, v1.z, v2.z, v3.z);
-  };
   ShadingBlock& to = block.shading;
-  fill_axes(to.input_sum, s0.input.sum, s1.input.sum, s2.input.sum, s3.input.sum);
-  fill(to.input_area, s0.input.area, s1.input.area, s2.input.area, s3.input.area);
-  fill_axes(to.stored, s0.stored, s1.stored, s2.stored, s3.stored);
-  fill(to.stored_error, s0.stored_error, s1.stored_error, s2.stored_error, s3.stored_error);
-  fill(to.stored_counts, s0.stored_counts, s1.stored_counts, s2.stored_counts, s3.stored_counts);
-  fill(to.counts, s0.counts, s1.counts, s2.counts, s3.counts);
-  to.derived = Lanes{-s0.derived, -s1.derived, -s2.derived, -s3.derived};
+  static_assert(offsetof(Represented, area) == 3 * sizeof(float));
+  take_floats(&s0.input.sum.x, &s1.input.sum.x, &s2.input.sum.x, &s3.input.sum.x, to.input_sum,
+              &to.input_area);
+  take_floats(&s0.stored.x, &s1.stored.x, &s2.stored.x, &s3.stored.x, to.stored);
+  static_assert(offsetof(FlatShading, counts) ==
+                offsetof(FlatShading, stored_counts) + sizeof(double));
+  static_assert(offsetof(FlatShading, stored_counts) ==
+                offsetof(FlatShading, stored_error) + sizeof(double));
+  take_pairs(&s0.stored_error, &s1.stored_error, &s2.stored_error, &s3.stored_error,
+             to.stored_error, to.stored_counts);
+  take_pairs(&s0.stored_counts, &s1.stored_counts, &s2.stored_counts, &s3.stored_counts,
+             to.stored_counts, to.counts);
+  take_lanes(s0.derived, s1.derived, s2.derived, s3.derived, to.derived);
   block.has_shading = true;
 }
 
@@ -128,10 +121,10 @@ CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& tar
     if (step2 == 0) folds = Lanes{};
     const Lanes turns = block.shows & (moved.length2 > 0) &
                         (folds | ~block.right | (cosine2 < kCoplanarCosine2 * moved.length2));
-    unsigned left = bits_of(folds | turns);
-    if (first < begin) left &= ~0u << (begin - first);
-    if (end - first < RingBlock::kTriangles) left &= (1u << (end - first)) - 1;
-    if (left == 0) continue;
+    const Lanes of_moved = (kLane >= Lanes{} + (begin > first ? Lane(begin - first) : 0)) &
+                           (kLane < Lanes{} + Lane(end - first));
+    const Lanes counts = of_moved & (folds | turns);
+    if (bits_of(counts) == 0) continue;
     Row twice_after, own;
     take_root(moved.length2, twice_after);
     own = folds ? step2 * (block.area + 0.5 * twice_after) : Row{};
@@ -144,9 +137,17 @@ CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& tar
       block.shading.more_with(normal, 0.5 * twice_after, more);
       own += turns ? normal_scale2 * more : Row{};
     }
-    for (; left != 0 && cost <= bound; left &= left - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      if (!(own[k] > 0)) continue;
+    own = (counts & (own > 0)) ? own : Row{};
+    // One by one, until they are too many: which these are is asked only then.
+    const double with_all = (((cost + own[0]) + own[1]) + own[2]) + own[3];
+    if (with_all <= bound) {
+      const double most = std::max(std::max(own[0], own[1]), std::max(own[2], own[3]));
+      const int at = std::countr_zero(bits_of(own == most));
+      blame(ring_[first + static_cast<std::size_t>(at)].triangle, most);
+      cost = with_all;
+      continue;
+    }
+    for (std::size_t k = 0; cost <= bound; ++k) {
       blame(ring_[first + k].triangle, own[k]);
       cost += own[k];
     }
@@ -207,7 +208,7 @@ double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
 }
 
 // What does not depend on where the vertex goes.
-double PatchSimplifier::vanishing_cost(Index a, Index b) {
+CREASE_WIDE double PatchSimplifier::vanishing_cost(Index a, Index b) {
   double cost = coincidence_cost(a, b);
   if (ring_.empty()) {
     // A part disappears. Its own planes may not mind; whoever looks at it does.
@@ -232,7 +233,7 @@ double PatchSimplifier::ring_cost(Index a, Index b, const Vec3d& target, double 
 
 // The place with the triangles around it included: where the optimum would fold one, an end of the
 // pair or its middle may not. A cost above `bound` is a lower one.
-PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double bound) {
+CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double bound) {
   const Index a = pair.a, b = pair.b;
   blamed_ = kNone;
   blamed_cost_ = 0;
@@ -240,7 +241,7 @@ PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double boun
   ++ring_count_;
   blocks_.resize(std::max(blocks_.size(), ring_.size() / RingBlock::kTriangles + 1));
   const double free_cost = pair.free_cost;
-  const Vec3d position{double(pair.position.x), double(pair.position.y), double(pair.position.z)};
+  const Vec3d position = to_double(pair.position);
   const double fold = ring_cost(a, b, position, bound - free_cost);
   Placed best{free_cost + fold, free_cost, position};
   const double noise = kGridNoise * kGridNoise * (surface_[a].weight + surface_[b].weight);
@@ -257,7 +258,10 @@ PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double boun
       if (total < best.cost) best = {total, cost, others[i]};
     }
   }
-  if (best.cost <= bound) best.cost += vanishing_cost(a, b);
+  if (best.cost <= bound) {
+    best.cost += vanishing_cost(a, b);
+    best.lasts = !ring_.empty();
+  }
   return best;
 }
 

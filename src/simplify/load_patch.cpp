@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace crease::simplification {
 
@@ -18,6 +19,17 @@ constexpr double kFlatLineCosine = 0.866;  // 30 degrees
 // Two triangles on the same side of their edge, folded onto each other or doubled: the planes
 // agree, so only a line can hold the edge.
 constexpr double kFoldCosine = 0.5;
+
+// The ways along a triangle's sides, each followed by its opposite.
+struct EndsOfWay {
+  std::uint32_t corner, other_corner;
+};
+constexpr EndsOfWay kEndsOfWay[] = {{0, 1}, {1, 0}, {0, 2}, {2, 0}, {1, 2}, {2, 1}};
+
+// 1 if a < b, else 0: a number, of which no compiler makes a branch that nobody could foretell.
+inline std::uint32_t less(std::uint32_t a, std::uint32_t b) {
+  return static_cast<std::uint32_t>((std::uint64_t(a) - std::uint64_t(b)) >> 63);
+}
 
 }  // namespace
 
@@ -313,42 +325,60 @@ inline void PatchSimplifier::add_lines(Index v, const Edge& edge) {
   }
 }
 
+// The sides of the triangles by the end that comes first, there in the order of the triangles.
+void PatchSimplifier::gather_edge_sides() {
+  const Index triangle_count = static_cast<Index>(global_triangle_.size());
+  const auto for_sides = [&](auto visit) {
+    for (Index t = 0; t < triangle_count; ++t) {
+      const Index* v = &vertex_of_corner_[3 * t];
+      for (Index way = 0; way < 6; way += 2) {
+        const Index first = v[kEndsOfWay[way].corner], second = v[kEndsOfWay[way].other_corner];
+        visit(std::min(first, second), 8 * t + way + less(second, first));
+      }
+    }
+  };
+  end_of_sides_.assign(vertices_.size(), 0);
+  for_sides([&](Index lower, Index) { ++end_of_sides_[lower]; });
+  Index next = 0;
+  for (Index& end : end_of_sides_) next += std::exchange(end, next);  // begins, until all are there
+  edge_sides_.resize(next);
+  for_sides([&](Index lower, Index side) { edge_sides_[end_of_sides_[lower]++] = side; });
+}
+
 CREASE_WIDE void PatchSimplifier::load_edges() {
   line_of_vertex_.assign(vertices_.size(), kNone);
   line_.clear();
-  clear_for(pairs_, global_triangle_.size());
+  clear_for(pairs_, global_triangle_.size() * 3 / 2);
   several_wedges_.assign(vertices_.size(), 0);
   for (std::size_t l = 0; l < layer_count(); ++l) {
     for (Index v = 0; v < vertices_.size(); ++v) several_wedges_[v] |= wedges_of(l, v).count > 1;
   }
-  slot_.resize(vertices_.size());
+  gather_edge_sides();
+  edge_at_.assign(vertices_.size(), 0);
+  Index first_edge = 1;  // of the vertex; the edges of all vertices are numbered
   for (Index v = 0; v < vertices_.size(); ++v) {
-    ++mark_now_;
-    const std::span<const Index> around = triangles_of(v);
-    Edge* const edges = edges_.start(2 * around.size() + 1);
+    const Index begin = v == 0 ? 0 : end_of_sides_[v - 1], end = end_of_sides_[v];
+    Edge* const edges = edges_.start(end - begin + 1);
     Index edge_count = 0;
-    // No branches: which vertices come later, and which were met before, nobody could foretell.
-    // What is written for an earlier one is written over by what comes next.
-    const auto meet = [&](Index w, Index corner, Index other_corner) {
-      const bool later = w > v, known = mark_[w] == mark_now_;
-      const Index slot = known ? slot_[w] : edge_count;
-      mark_[w] = later ? mark_now_ : mark_[w];
-      slot_[w] = slot;
-      edge_count += later & !known;
-      Edge& edge = edges[slot];
-      const Index before = known ? edge.triangle_count : 0;
-      edge.other = w;
-      edge.corner[before > 0] = corner;
-      edge.other_corner[before > 0] = other_corner;
+    for (Index i = begin; i != end; ++i) {
+      const Index corners = 3 * (edge_sides_[i] / 8);
+      const EndsOfWay& ends = kEndsOfWay[edge_sides_[i] % 8];
+      const Index other_corner = corners + ends.other_corner;
+      const Index other = vertex_of_corner_[other_corner];
+      const Index met = edge_at_[other] - first_edge;
+      const Index known = less(met, edge_count);
+      const Index place = edge_count ^ ((edge_count ^ met) & -known);
+      edge_at_[other] = first_edge + place;
+      edge_count += 1 - known;
+      Edge& edge = edges[place];
+      const Index before = edge.triangle_count & -known;
+      const Index which = less(0, before);
+      edge.other = other;
+      edge.corner[which] = corners + ends.corner;
+      edge.other_corner[which] = other_corner;
       edge.triangle_count = before + 1;
-    };
-    for (Index t : around) {
-      const Index* w = &vertex_of_corner_[3 * t];
-      const Index c = corner_at(t, v);
-      const Index first = c == 0, second = 2 - Index(c == 2);
-      meet(w[first], 3 * t + c, 3 * t + first);
-      meet(w[second], 3 * t + c, 3 * t + second);
     }
+    first_edge += edge_count;
     edges_.finish(edges + edge_count);
     for (const Edge& edge : edges_) {
       const Index w = edge.other;

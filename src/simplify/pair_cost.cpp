@@ -3,7 +3,9 @@
 #include "simplify/place_between.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
@@ -20,6 +22,25 @@ constexpr double kLeavesPlanes = 0.3;
 
 // The optimum stays within this many pair lengths of the pair's middle.
 constexpr double kReach = 1.0;
+
+// Sets of at most eight: a byte for each member, with a bit for each member of its set.
+class SmallSets {
+ public:
+  static constexpr std::uint32_t kMost = 8;
+
+  std::uint32_t of(std::uint32_t i) const {
+    return static_cast<std::uint32_t>(sets_ >> (8 * i)) & 0xff;
+  }
+  void unite(std::uint32_t i, std::uint32_t j) {
+    const std::uint64_t everywhere = (of(i) | of(j)) * kEach;
+    const std::uint64_t members = ((((everywhere & kAlone) + 0x7f * kEach) >> 7) & kEach) * 0xff;
+    sets_ = (sets_ & ~members) | (everywhere & members);
+  }
+
+ private:
+  static constexpr std::uint64_t kEach = 0x0101010101010101u, kAlone = 0x8040201008040201u;
+  std::uint64_t sets_ = kAlone;
+};
 
 }  // namespace
 
@@ -90,7 +111,7 @@ void PatchSimplifier::unite_equal(std::size_t layer, Slice wa, Slice wb, Unite u
 // Which wedges at a and b become one: those that a vanishing triangle has at its two corners, and
 // those that are the same attribute (DESIGN 6.3; equal index, same attribute). Members are indices
 // into wedges_[layer].
-void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
+CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
   const Slice wa = wedges_of(layer, a), wb = wedges_of(layer, b);
   const Wedge* wedges = wedges_[layer].data();
   const Index n = wa.count + wb.count;
@@ -111,19 +132,6 @@ void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
     return;
   }
 
-  // Union-find, where every set's root is the first of it.
-  Index* parent = parent_.start(n);
-  std::iota(parent, parent + n, 0u);
-  const auto root = [&](Index i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  const auto unite = [&](Index i, Index j) {
-    i = root(i);
-    j = root(j);
-    parent[std::max(i, j)] = std::min(i, j);
-  };
-  unite_equal(layer, wa, wb, unite);
   const Index* wedge_of_corner = wedge_of_corner_[layer].data();
   const std::span<const Index> around = triangles_of(a);
   Index* common = common_.start(around.size() + 1);
@@ -132,13 +140,60 @@ void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
     common += has_corner_at(t, b);
   }
   common_.finish(common);
-  for (Index t : common_) {
-    const Index at_a = wedge_of_corner[3 * t + corner_at(t, a)];
-    const Index at_b = wedge_of_corner[3 * t + corner_at(t, b)];
-    unite(at_a - wa.first, wa.count + (at_b - wb.first));
+  const auto unite_all = [&](auto unite) {
+    unite_equal(layer, wa, wb, unite);
+    for (Index t : common_) {
+      const Index at_a = wedge_of_corner[3 * t + corner_at(t, a)];
+      const Index at_b = wedge_of_corner[3 * t + corner_at(t, b)];
+      unite(at_a - wa.first, wa.count + (at_b - wb.first));
+    }
+  };
+  const auto wedge_at = [&](Index i) {
+    return i < wa.count ? wa.first + i : wb.first + (i - wa.count);
+  };
+
+  // Set by set, in the order of their first members.
+  if (n <= SmallSets::kMost) {
+    SmallSets sets;
+    unite_all([&](Index i, Index j) { sets.unite(i, j); });
+    Index wedge[SmallSets::kMost];
+    std::uint32_t pinned = 0;
+    for (Index i = 0; i < n; ++i) {
+      wedge[i] = wedge_at(i);
+      pinned |= std::uint32_t(wedges[wedge[i]].pinned) << i;
+    }
+    Index first = 0;
+    for (std::uint32_t rest = (1u << n) - 1; rest != 0;) {
+      const std::uint32_t set = sets.of(static_cast<std::uint32_t>(std::countr_zero(rest)));
+      rest &= ~set;
+      Index end = first;
+      for (std::uint32_t left = set; left != 0; left &= left - 1) {
+        members[end++] = wedge[std::countr_zero(left)];
+      }
+      const std::uint32_t fixed = pinned & set;
+      if ((fixed & (fixed - 1)) == 0) {
+        *joined++ = {first, end - first, fixed != 0 ? wedge[std::countr_zero(fixed)] : kNone};
+      } else {
+        joined = join_pinned(layer, first, end, joined);
+      }
+      first = end;
+    }
+    joined_.finish(joined);
+    return;
   }
 
-  // Set by set, in the order of the roots.
+  // Union-find, where every set's root is the first of it.
+  Index* parent = parent_.start(n);
+  std::iota(parent, parent + n, 0u);
+  const auto root = [&](Index i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  unite_all([&](Index i, Index j) {
+    i = root(i);
+    j = root(j);
+    parent[std::max(i, j)] = std::min(i, j);
+  });
   Index* place =
       place_of_set_.start(n);  // of a root: how many it has, then where the next one goes
   std::fill_n(place, n, 0u);
@@ -150,39 +205,44 @@ void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
   for (Index i = 0; i < n; ++i) {
     if (parent[i] == i) next += std::exchange(place[i], next);
   }
-  for (Index i = 0; i < n; ++i) {
-    members[place[parent[i]]++] = i < wa.count ? wa.first + i : wb.first + (i - wa.count);
-  }
-
+  for (Index i = 0; i < n; ++i) members[place[parent[i]]++] = wedge_at(i);
   for (Index first = 0, i = 0; first < n; ++i) {
     if (parent[i] != i) continue;
-    const Index end = place[i];
-    Index fixed = kNone;
-    bool several_fixed = false;
-    for (Index k = first; k < end; ++k) {
-      const Index w = members[k];
-      if (!wedges[w].pinned) continue;
-      if (fixed == kNone) fixed = w;
-      several_fixed = several_fixed || wedges[fixed].id != wedges[w].id;
-    }
-    if (!several_fixed) {
-      *joined++ = {first, end - first, fixed};
-      first = end;
-      continue;
-    }
-    // Two face normals would become one: neither may change (DB03 rule b), so each stays as it is.
-    // Equal attributes are still one wedge.
-    std::sort(members + first, members + end, [&](Index x, Index y) {
-      return wedges[x].id != wedges[y].id ? wedges[x].id < wedges[y].id : x < y;
-    });
-    while (first < end) {
-      Index after = first + 1;
-      while (after < end && wedges[members[after]].id == wedges[members[first]].id) ++after;
-      *joined++ = {first, after - first, members[first]};
-      first = after;
-    }
+    joined = join_pinned(layer, first, place[i], joined);
+    first = place[i];
   }
   joined_.finish(joined);
+}
+
+// Writes what becomes of a set of members_, of which any number are pinned; returns the end.
+PatchSimplifier::Joined* PatchSimplifier::join_pinned(std::size_t layer, Index first, Index end,
+                                                      Joined* joined) {
+  const Wedge* wedges = wedges_[layer].data();
+  Index* members = members_.begin();
+  Index fixed = kNone;
+  bool several_fixed = false;
+  for (Index k = first; k < end; ++k) {
+    const Index w = members[k];
+    if (!wedges[w].pinned) continue;
+    if (fixed == kNone) fixed = w;
+    several_fixed = several_fixed || wedges[fixed].id != wedges[w].id;
+  }
+  if (!several_fixed) {
+    *joined++ = {first, end - first, fixed};
+    return joined;
+  }
+  // Two face normals would become one: neither may change (DB03 rule b), so each stays as it is.
+  // Equal attributes are still one wedge.
+  std::sort(members + first, members + end, [&](Index x, Index y) {
+    return wedges[x].id != wedges[y].id ? wedges[x].id < wedges[y].id : x < y;
+  });
+  while (first < end) {
+    Index after = first + 1;
+    while (after < end && wedges[members[after]].id == wedges[members[first]].id) ++after;
+    *joined++ = {first, after - first, members[first]};
+    first = after;
+  }
+  return joined;
 }
 
 CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
@@ -340,9 +400,7 @@ CREASE_WIDE void PatchSimplifier::find_costs_of_others(Candidate& pair) {
 }
 
 void PatchSimplifier::keep_placed(const Placed& placed, Candidate& pair) {
-  pair.position = {static_cast<std::int32_t>(placed.position.x),
-                   static_cast<std::int32_t>(placed.position.y),
-                   static_cast<std::int32_t>(placed.position.z)};
+  pair.position = whole(placed.position);
   pair.cost = placed.cost;
   pair.free_cost = placed.free_cost;
   pair.cost_of_other[0] = Candidate::kUnknown;

@@ -40,6 +40,10 @@ struct Steering {
 // What rounding to the grid is worth: less than this is no reason to leave an end, grid units.
 inline constexpr double kGridNoise = 0.5;
 
+inline Vec3d to_double(const Vec3i& v) {
+  return {double(v.x), double(v.y), double(v.z)};
+}
+
 class PatchSimplifier {
  public:
   using Index = std::uint32_t;
@@ -87,6 +91,7 @@ class PatchSimplifier {
     double cost = 0;
     double free_cost = 0;  // without what flat triangles cost: make_legal() knows that better
     Vec3d position;
+    bool lasts = false;  // of make_legal(): it says the same until something around has changed
   };
   // A pair, and what is known of it as long as its ends do not change.
   struct Candidate {
@@ -135,6 +140,7 @@ class PatchSimplifier {
   void load(std::span<const std::uint32_t> triangles, std::uint32_t patch_id);
   void load_wedges();
   void load_quadrics();
+  void gather_edge_sides();
   void load_edges();
   bool is_line(Index v, const Edge& edge) const;
   void add_lines(Index v, const Edge& edge);
@@ -152,6 +158,7 @@ class PatchSimplifier {
   bool meet(Index a, Index b) const;
   // Into joined_.
   void join_wedges(std::size_t layer, Index a, Index b);
+  Joined* join_pinned(std::size_t layer, Index first, Index end, Joined* joined);
   template <typename Unite>
   void unite_equal(std::size_t layer, Slice wa, Slice wb, Unite unite);
   void add_attribute_costs(Index a, Index b, Quadric& sum);
@@ -194,14 +201,15 @@ class PatchSimplifier {
   float next_cost() const;
   Index survivor(Index v);
   bool claim(Index pair, Index a, Index b);
-  void hold(const Entry& entry, double cost, double cost_with_ring);
+  void hold(const Entry& entry, double cost, const Placed& placed);
   void release(Index triangle);
 
   // Of a place on the grid, less center_.
-  Vec3i on_grid(const Vec3d& p) const {
-    return center_grid_ + Vec3i{static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
-                                static_cast<std::int32_t>(p.z)};
+  static Vec3i whole(const Vec3d& p) {
+    return {static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
+            static_cast<std::int32_t>(p.z)};
   }
+  Vec3i on_grid(const Vec3d& p) const { return center_grid_ + whole(p); }
   Facing facing_of(Index t) const {
     const Index* v = &vertex_of_corner_[3 * t];
     const Vec3d& p0 = positions_[v[0]];
@@ -246,6 +254,8 @@ class PatchSimplifier {
   std::vector<Vertex> vertices_;
   std::vector<Vec3d> positions_;       // per vertex, grid units less center_
   std::vector<Errors> errors_;         // per vertex
+  std::vector<Index> changed_around_;  // per vertex: so many contractions had been made when it or
+                                       // one of its triangles last changed
   std::vector<Quadric> surface_;       // per vertex
   std::vector<Quadric> turn_;          // per vertex, what its flat triangles' turning costs about;
                                        // empty: none is flat
@@ -291,8 +301,12 @@ class PatchSimplifier {
     Index pair;
     Index next;  // in the list of the same triangle
     float cost;  // without the fold
-    Index tries;
+    std::uint16_t tries;
     bool waiting;
+    bool lasts;       // and so do the place and the cost below; see Placed
+    Index looked_at;  // so many contractions had been made
+    Vec3i position;   // less center_
+    double cost_with_ring;
   };
   std::vector<Held> held_;
   std::vector<Index> held_of_triangle_;  // head of a list in held_, or kNone
@@ -301,8 +315,10 @@ class PatchSimplifier {
 
   // Scratch of load_edges().
   std::vector<char> several_wedges_;
+  std::vector<Index> edge_sides_;    // 8 * triangle + way along it
+  std::vector<Index> end_of_sides_;  // by vertex
   ScratchList<Edge> edges_;
-  std::vector<Index> slot_;
+  std::vector<Index> edge_at_;  // the last that a vertex was met at
 
   // Scratch of one contraction.
   ScratchList<Joined> joined_;

@@ -3,8 +3,6 @@
 #include "hierarchy/between.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 
 namespace crease::simplification {
@@ -15,55 +13,54 @@ namespace {
 // axis that is nearest to the normal: then it must be cheaper by this.
 constexpr double kOffMiddle = 0.9, kOffAxis = 0.9;
 
-Vec3d half_gradient(const Quadric& q, const Vec3d& x) {
-  const Row t = x.x * q.row[0] + x.y * q.row[1] + x.z * q.row[2];
-  return {t[0] + q.row[0][3], t[1] + q.row[1][3], t[2] + q.row[2][3]};
+using Bits = decltype(Row{} < Row{});
+
+inline void take_absolute(const Row& x, Row& absolute) {
+  absolute = reinterpret_cast<Row>(reinterpret_cast<Bits>(x) & INT64_MAX);
 }
 
-// between_step() of whole numbers, and its inverse.
-struct Step {
-  double size = 1, inverse = 1;
-};
-Step step_of(double apart_first, double apart_second) {
-  const double apart = std::max(std::abs(apart_first), std::abs(apart_second));
-  const int width = static_cast<int>(std::bit_cast<std::uint64_t>(apart) >> 52) - 1022;
-  if (width <= kBetweenBits) return {};
-  const auto power = [](int n) {
-    return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + n) << 52);
-  };
-  return {power(width - kBetweenBits), power(kBetweenBits - width)};
+// As rounded(double).
+inline void round_all(Row& x) {
+  constexpr double kShift = 6755399441055744.0;
+  x = (x + kShift) - kShift;
 }
 
-// A place that the search considers: how far along the way, and from there along an axis.
-struct Considered {
-  int eighths = 4;
-  int axis = 0;
-  double away = 0;  // along the axis: whole steps
-  double cost = 0;  // but for what rounding to the grid changes
-};
-
-// The quadric along the way from a to b and, from there, along an axis.
+// The quadric along the way from a to b and, from there, along an axis. Rows are of the axes; what
+// stands in their last lane means nothing.
 struct Way {
-  Vec3d along, slope_at_a, slope_grows;  // half the gradient
-  double cost_at_a, first, second;       // the cost is cost_at_a + 2 first s + second s s
-  Vec3d stiff;                           // along each axis
-  double farthest2;                      // along an axis, squared
+  Row slope_at_a, slope_grows;      // half the gradient
+  double cost_at_a, first, second;  // the cost is cost_at_a + 2 first s + second s s
+  Row stiff;                        // along each axis
+  Row step_size, step_inverse;      // between_step() along each axis
+  double farthest2;                 // along an axis, squared
 
   Way(const Quadric& sum, const Vec3d& a, const Vec3d& b, double cost, double pull)
-      : along(b - a),
-        slope_at_a(half_gradient(sum, a)),
-        slope_grows(half_gradient(sum, b) - slope_at_a),
-        cost_at_a(cost),
-        first(dot(slope_at_a, along)),
-        second(dot(slope_grows, along)),
-        farthest2(dot(along, along)) {
+      : cost_at_a(cost) {
+    const Row* q = sum.row;
+    const Row linear = {q[0][3], q[1][3], q[2][3], q[2][3]};
+    slope_at_a = (a.x * q[0] + a.y * q[1] + a.z * q[2]) + linear;
+    slope_grows = ((b.x * q[0] + b.y * q[1] + b.z * q[2]) + linear) - slope_at_a;
+    const Vec3d along = b - a;
+    const auto dot_along = [&](const Row& x) { return dot(Vec3d{x[0], x[1], x[2]}, along); };
+    first = dot_along(slope_at_a);
+    second = dot_along(slope_grows);
+    farthest2 = dot(along, along);
     const double mu = pull * sum.trace();
-    stiff = {sum.row[0][0] + mu, sum.row[1][1] + mu, sum.row[2][2] + mu};
+    stiff = Row{q[0][0], q[1][1], q[2][2], q[2][2]} + mu;
+
+    Row one, other;
+    take_absolute(Row{along.y, along.z, along.x, along.x}, one);
+    take_absolute(Row{along.z, along.x, along.y, along.y}, other);
+    const Row apart = one < other ? other : one;
+    Bits shift = (reinterpret_cast<Bits>(apart) >> 52) - (1022 + kBetweenBits);
+    shift = shift > 0 ? shift : Bits{};
+    step_size = reinterpret_cast<Row>((1023 + shift) << 52);
+    step_inverse = reinterpret_cast<Row>((1023 - shift) << 52);
   }
 
   int steepest() const {
-    const int axis = stiff.x >= stiff.y ? 0 : 1;
-    return stiff[axis] >= stiff.z ? axis : 2;
+    const int axis = stiff[0] >= stiff[1] ? 0 : 1;
+    return stiff[axis] >= stiff[2] ? axis : 2;
   }
 
   // The best eighth when every place goes along `axis` as far as it likes.
@@ -75,17 +72,21 @@ struct Way {
     return static_cast<int>(rounded(std::clamp(8 * where, 1.0, 7.0)));
   }
 
-  Considered consider(int eighths, int axis) const {
+  // The best places along each axis: how far, in whole steps, and the cost but for what rounding to
+  // the grid changes.
+  void consider(int eighths, Row& away, Row& cost) const {
     const double s = eighths / 8.0;
-    const double slope = slope_at_a[axis] + slope_grows[axis] * s;
+    const Row slope = slope_at_a + slope_grows * s;
     const double still = cost_at_a + s * (2 * first + second * s);
-    const Step step = step_of(along[(axis + 1) % 3], along[(axis + 2) % 3]);
-    const double steps = rounded(-slope / stiff[axis] * step.inverse), away = steps * step.size;
+    Row steps = -slope / stiff * step_inverse, step_count;
+    round_all(steps);
+    take_absolute(steps, step_count);
+    away = steps * step_size;
     // Or one that is too far off, or not a number.
-    if (!(std::abs(steps) <= kMostSteps && away * away <= farthest2)) {
-      return {eighths, axis, 0, still};
-    }
-    return {eighths, axis, away, still + away * (2 * slope + away * stiff[axis])};
+    const Bits near = (step_count <= double(kMostSteps)) & (away * away <= farthest2);
+    const Row moved = still + away * (2 * slope + away * stiff);
+    away = near ? away : Row{};
+    cost = near ? moved : Row{} + still;
   }
 };
 
@@ -95,29 +96,38 @@ CREASE_WIDE PlaceBetween place_between(const Quadric& sum, const Vec3d& a, const
                                        double cost_at_a, double pull) {
   const Way way(sum, a, b, cost_at_a, pull);
   const int steepest = way.steepest();
-  Considered best{4, steepest, 0, 0};
+  int eighths = 4, axis = steepest;
+  double away_on_axis = 0;
   if (way.stiff[steepest] > 0) {
-    best = way.consider(4, steepest);
-    double least = best.cost;
+    Row away, cost;
+    way.consider(4, away, cost);
+    double least = cost[steepest];
     if (const int other = way.best_eighths(steepest); other != 4) {
-      const Considered there = way.consider(other, steepest);
-      if (there.cost < kOffMiddle * least) best = there, least = there.cost / kOffMiddle;
+      Row away_there, cost_there;
+      way.consider(other, away_there, cost_there);
+      if (cost_there[steepest] < kOffMiddle * least) {
+        eighths = other;
+        least = cost_there[steepest] / kOffMiddle;
+        away = away_there;
+        cost = cost_there;
+      }
     }
-    const double share = kOffAxis * (best.eighths == 4 ? 1 : kOffMiddle);
+    const double share = kOffAxis * (eighths == 4 ? 1 : kOffMiddle);
     for (const int turn : {1, 2}) {
-      const int axis = (steepest + turn) % 3;
-      if (!(way.stiff[axis] > 0)) continue;
-      const Considered there = way.consider(best.eighths, axis);
-      if (there.cost < share * least) best = there, least = there.cost / share;
+      const int turned = (steepest + turn) % 3;
+      if (!(way.stiff[turned] > 0)) continue;
+      if (cost[turned] < share * least) axis = turned, least = cost[turned] / share;
     }
+    away_on_axis = away[axis];
   }
-  Vec3d place;
-  for (int i = 0; i < 3; ++i) {
-    place[i] = static_cast<double>(between_ends(static_cast<std::int64_t>(a[i]),
-                                                static_cast<std::int64_t>(b[i]), best.eighths));
-  }
-  place[best.axis] += best.away;
-  return {place, sum.at(place)};
+  // between_ends() of all axes: eighths are whole numbers of them, and rounded down.
+  const double of_a = 8 - eighths, of_b = eighths;
+  Row place =
+      (Row{a.x, a.y, a.z, a.z} * of_a + Row{b.x, b.y, b.z, b.z} * of_b + 4) * 0.125 - 0.4375;
+  round_all(place);
+  Vec3d position{place[0], place[1], place[2]};
+  position[axis] += away_on_axis;
+  return {position, sum.at(position)};
 }
 
 }  // namespace crease::simplification

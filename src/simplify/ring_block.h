@@ -2,16 +2,44 @@
 // that they have moves.
 #pragma once
 
+#include "base/four_floats.h"
 #include "hierarchy/quadric.h"
 #include "simplify/flat_shading.h"
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace crease::simplification {
 
 using Lanes = decltype(Row{} < Row{});  // of each triangle: all bits, or none
+
+// Two numbers that lie together at each of four places, side by side. Put together out of
+// registers: a row of which the numbers are stored one by one cannot be loaded at once until they
+// have reached the cache.
+inline void take_pairs(const double* p0, const double* p1, const double* p2, const double* p3,
+                       Row& first, Row& second) {
+  using Pair [[gnu::vector_size(16)]] = double;
+  const auto load = [](const double* p, Pair& pair) { std::memcpy(&pair, p, sizeof pair); };
+  Pair at0, at1, at2, at3;
+  load(p0, at0);
+  load(p1, at1);
+  load(p2, at2);
+  load(p3, at3);
+  const Row even = __builtin_shufflevector(at0, at2, 0, 1, 2, 3);
+  const Row odd = __builtin_shufflevector(at1, at3, 0, 1, 2, 3);
+  first = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+  second = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+}
+
+inline void take_axes(const Vec3d& v0, const Vec3d& v1, const Vec3d& v2, const Vec3d& v3,
+                      Row* axes) {
+  Row y;
+  take_pairs(&v0.x, &v1.x, &v2.x, &v3.x, axes[0], axes[1]);
+  take_pairs(&v0.y, &v1.y, &v2.y, &v3.y, y, axes[2]);
+}
 
 inline void take_root(const Row& square, Row& root) {
   root =
@@ -80,6 +108,33 @@ struct RingBlock {
     return m;
   }
 };
+
+// All bits where it is so.
+inline void take_lanes(bool b0, bool b1, bool b2, bool b3, Lanes& lanes) {
+  using Bytes [[gnu::vector_size(4)]] = std::int8_t;
+  const std::uint32_t bytes = std::uint32_t(b0) | std::uint32_t(b1) << 8 | std::uint32_t(b2) << 16 |
+                              std::uint32_t(b3) << 24;
+  lanes = -__builtin_convertvector(std::bit_cast<Bytes>(bytes), Lanes);
+}
+
+// Of four floats at each of four places the first three, or all, side by side.
+inline void take_floats(const float* p0, const float* p1, const float* p2, const float* p3,
+                        Row* first_three, Row* fourth = nullptr) {
+  FourFloats f0, f1, f2, f3;
+  std::memcpy(&f0, p0, sizeof f0);
+  std::memcpy(&f1, p1, sizeof f1);
+  std::memcpy(&f2, p2, sizeof f2);
+  std::memcpy(&f3, p3, sizeof f3);
+  const FourFloats low01 = __builtin_shufflevector(f0, f1, 0, 4, 1, 5);
+  const FourFloats low23 = __builtin_shufflevector(f2, f3, 0, 4, 1, 5);
+  const FourFloats high01 = __builtin_shufflevector(f0, f1, 2, 6, 3, 7);
+  const FourFloats high23 = __builtin_shufflevector(f2, f3, 2, 6, 3, 7);
+  const auto widen = [](const FourFloats& x, Row& row) { row = __builtin_convertvector(x, Row); };
+  widen(__builtin_shufflevector(low01, low23, 0, 1, 4, 5), first_three[0]);
+  widen(__builtin_shufflevector(low01, low23, 2, 3, 6, 7), first_three[1]);
+  widen(__builtin_shufflevector(high01, high23, 0, 1, 4, 5), first_three[2]);
+  if (fourth != nullptr) widen(__builtin_shufflevector(high01, high23, 2, 3, 6, 7), *fourth);
+}
 
 // The lanes as bits, the first triangle's the lowest.
 inline unsigned bits_of(const Lanes& lanes) {

@@ -19,6 +19,7 @@ class ScratchList {
 
   bool empty() const { return count_ == 0; }
   std::size_t size() const { return count_; }
+  T* begin() { return values_.data(); }
   const T* begin() const { return values_.data(); }
   const T* end() const { return values_.data() + count_; }
   const T& operator[](std::size_t i) const { return values_[i]; }

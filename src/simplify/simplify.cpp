@@ -156,7 +156,6 @@ class Simplifier {
     find_parts(work_);
     sequence_.grid = grid;
     sequence_.placement = options.placement;
-    sequence_.contractions.reserve(mesh.vertex_count());
   }
 
   Result<ContractionSequence> run(SimplifyStatistics* statistics) {
@@ -208,9 +207,10 @@ class Simplifier {
       if (last) break;
       ++band;
     }
-    scale_errors();
     for (WorkLayer& layer : work_.layers)
       sequence_.new_values.push_back(std::move(layer.new_values));
+    work_ = {};  // the whole sequence takes its place
+    gather_contractions();
     return std::move(sequence_);
   }
 
@@ -363,6 +363,8 @@ class Simplifier {
       sequence_.bands.back().contraction_count = contractions_in_band_;
       for (const At& at : order) sequence_.patch_of_contraction.push_back(at.patch);
     }
+    std::vector<Contraction>& contractions = contractions_of_pass_.emplace_back();
+    contractions.reserve(contraction_count);
     for (const At& at : order) {
       const PatchResult& from = results_[at.patch];
       Contraction contraction = from.contractions[at.index].contraction;
@@ -375,7 +377,7 @@ class Simplifier {
       sequence_.changes.insert(sequence_.changes.end(), changes.begin(), changes.end());
       sequence_.derived.insert(sequence_.derived.end(), derived.begin(), derived.end());
       worst_surface_ = std::max(worst_surface_, contraction.error.surface);
-      sequence_.contractions.push_back(contraction);
+      contractions.push_back(contraction);
       if (work_.part_count > 1) {
         join_parts(work_, static_cast<std::uint32_t>(contraction.removed),
                    static_cast<std::uint32_t>(contraction.kept));
@@ -390,12 +392,19 @@ class Simplifier {
             static_cast<float>(double(worst_surface_) * sequence_.grid.step)};
   }
 
-  // From grid units to model units.
-  void scale_errors() {
-    for (Contraction& contraction : sequence_.contractions) {
-      LevelError& error = contraction.error;
-      error.surface = static_cast<float>(double(error.surface) * sequence_.grid.step);
-      error.line = static_cast<float>(double(error.line) * sequence_.grid.step);
+  // Errors from grid units to model units.
+  void gather_contractions() {
+    std::size_t count = 0;
+    for (const auto& of_pass : contractions_of_pass_) count += of_pass.size();
+    sequence_.contractions.reserve(count);
+    for (auto& of_pass : contractions_of_pass_) {
+      for (Contraction& contraction : of_pass) {
+        LevelError& error = contraction.error;
+        error.surface = static_cast<float>(double(error.surface) * sequence_.grid.step);
+        error.line = static_cast<float>(double(error.line) * sequence_.grid.step);
+        sequence_.contractions.push_back(contraction);
+      }
+      of_pass = {};
     }
   }
 
@@ -408,7 +417,8 @@ class Simplifier {
   int stalled_ = 0;
   std::uint32_t contractions_in_band_ = 0;
   float worst_surface_ = 0;
-  ContractionSequence sequence_;
+  std::vector<std::vector<Contraction>> contractions_of_pass_;  // errors in grid units
+  ContractionSequence sequence_;  // contractions and new values at the end
 };
 
 }  // namespace
