@@ -100,10 +100,12 @@ class PieceMaker {
     if (own_count_ > 0 && own_count_ < order_.size()) {
       facts_.pieces.push_back(sphere_of(0, order_.size()));
       add_piece(0, own_count_, kMostHalvings);
+      facts_.first_inner = static_cast<std::uint32_t>(facts_.pieces.size());
       add_piece(own_count_, order_.size(), kMostHalvings - 1);
       facts_.pieces[0].next = static_cast<std::uint16_t>(facts_.pieces.size());
     } else if (!order_.empty()) {
       add_piece(0, order_.size(), kMostHalvings);
+      facts_.first_inner = own_count_ > 0 ? static_cast<std::uint32_t>(facts_.pieces.size()) : 0;
     }
     facts_.left_in_piece = LevelsLeft(facts_.pieces.size());
     for (int k = 0; k < kFullLevel; ++k) find_left(k);

@@ -60,6 +60,8 @@ struct LevelFacts {
   // A tree: all of the block, then its first half with the parts of that, and so on. A level is
   // right where it is in all that have no parts.
   std::vector<LevelSphere> pieces;
+  std::uint32_t first_inner =
+      0;  // of those that are of inner splits alone, which are the last ones
   LevelsLeft left_in_piece;
 };
 

@@ -114,6 +114,7 @@ void LevelChoice::look_at(std::uint32_t block, const LevelFacts& facts) {
   std::copy(left.off.begin(), left.off.end(), looked.off.begin());
   std::copy(left.degrees.begin(), left.degrees.end(), looked.degrees.begin());
   looked.pieces = facts.pieces;
+  looked.first_inner = facts.first_inner;
   looked.left = {facts.left_in_piece.off.data(), facts.left_in_piece.degrees.data(),
                  facts.left_in_piece.count};
 }
@@ -146,34 +147,37 @@ bool LevelChoice::drop_lists(std::uint32_t age) {
 }
 
 // The level of the last choice stays while it is right and the next coarser one is not. Mostly that
-// is told by the pieces that were wrong the last time. The coarse end is asked first: it may be
-// right where levels above it are not, in which inner splits are undone.
+// is told by the piece that was wrong the last time. The coarse end comes first: it may be right
+// where levels above it are not, in which inner splits are undone.
 int LevelChoice::wanted_level(std::uint32_t block, const View& view) {
   const State& state = states_[block];
   if (!state.can_choose) return kFullLevel;
   Looked& looked = looked_[block];
   const LeftAtLevels left{looked.off.data(), looked.degrees.data(), 1};
   const Seen whole(looked.whole, left, 0, view.error);
-  const auto is_still_wrong = [&](std::uint32_t piece, int level,
-                                  const ViewError::Reaches& reaches) {
+  const auto is_still_wrong = [&](std::uint32_t piece, int level, const auto& reaches) {
     return piece != kNone && whole.is_wrong(level, reaches) &&
            Seen(looked.pieces[piece], looked.left, piece, view.error).is_wrong(level, reaches);
   };
+  const auto coarsest = [&](std::uint32_t& wrong, const auto& reaches, int level, int end) {
+    return coarsest_right(looked, wrong, view.error, reaches, level,
+                          whole.right_from(level, end, reaches));
+  };
   const int before = state.wanted;
-  const ViewError::Reaches& of_coarse_end = before > 0 ? view.keep : view.at_all;
-  if (!is_still_wrong(looked.wrong_at_coarse_end, 0, of_coarse_end) &&
-      coarsest_right(looked, looked.wrong_at_coarse_end, view.error, of_coarse_end, 0,
-                     whole.right_from(0, 1, of_coarse_end)) == 0) {
-    return 0;
+  const bool is_needed = before > 0 && is_still_wrong(looked.wrong_piece, before - 1, view.keep);
+  // What is wrong at a level is so at the coarse end as well, unless it is inner.
+  const bool is_above =
+      is_needed && looked.wrong_piece < looked.first_inner && whole.is_wrong(0, view.keep);
+  if (!is_above) {
+    const ViewError::Reaches& reaches = before > 0 ? view.keep : view.at_all;
+    std::uint32_t& wrong = looked.wrong_at_coarse_end;
+    if (!is_still_wrong(wrong, 0, reaches) && coarsest(wrong, reaches, 0, 1) == 0) return 0;
   }
-  if (before > 1 && !is_still_wrong(looked.wrong_piece, before - 1, view.keep)) {
-    const int coarsest = coarsest_right(looked, looked.wrong_piece, view.error, view.keep, 1,
-                                        whole.right_from(1, before, view.keep));
-    if (coarsest < before) return coarsest;
+  if (before > 1 && !is_needed) {
+    const int level = coarsest(looked.wrong_piece, view.keep, 1, before);
+    if (level < before) return level;
   }
-  const int from = std::max(before, 1);
-  return coarsest_right(looked, looked.wrong_piece, view.error, view.at_all, from,
-                        whole.right_from(from, kFullLevel, view.at_all));
+  return coarsest(looked.wrong_piece, view.at_all, std::max(before, 1), kFullLevel);
 }
 
 // The coarsest one from `level` to `end` at which no piece is wrong, or else the end. Finer levels

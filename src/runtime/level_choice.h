@@ -96,6 +96,7 @@ class LevelChoice {
     std::array<RoundedUp, kFullLevel> off{}, degrees{};  // of the whole block
     // Without parts, one that is wrong at the coarse end, and the one that needed the finest level.
     std::uint32_t wrong_at_coarse_end = kNone, wrong_piece = kNone;
+    std::uint32_t first_inner = 0;        // as in LevelFacts
     std::span<const LevelSphere> pieces;  // as in LevelFacts
     LeftAtLevels left{};
   };
