@@ -11,8 +11,10 @@
 // waits near it, so that many small ranges become few requests (AsyncOptions). Answers come in any
 // order, each ticket's exactly once, unless it was cancelled.
 //
-// Threads: every call from any thread. No call but wait() ever waits for bytes; the others take a
-// lock under which nobody does more than move records and copy bytes that are in memory.
+// Threads: every call from any thread. No call but wait() ever waits for bytes. request(),
+// cancel(), prioritize() and a poll() that follows no wait() do not wait for other threads either;
+// so poll() may have nothing yet of what has just arrived. The others take a lock under which
+// nobody does more than move records and copy bytes that are in memory.
 #pragma once
 
 #include "crease/byte_source.h"

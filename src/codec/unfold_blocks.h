@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace crease::codec {
@@ -44,6 +45,8 @@ class BlockUnfolder {
     std::vector<TriangleSource> sources;
   };
   void add(const BlockEntry& entry, DecodedBlock decoded, const Start& start);
+  // What coarser blocks do inside of the one that add_alone() will add, by its slots and numbers.
+  void add_part(UnfoldedBlock part) { blocks_.push_back(std::move(part)); }
   // One block and no other: slots and numbers are those of its fine end. `start`: what it started
   // from, with all values.
   void add_alone(const BlockFacts& facts, PatchMesh end, std::vector<Split> splits,

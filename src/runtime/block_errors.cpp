@@ -45,7 +45,8 @@ BlockErrors::Change BlockErrors::settle() {
   if (!is_new_) return {};
   is_new_ = false;
   const VertexHierarchy& h = data_.hierarchy.vertices;
-  std::vector<RoundedError> base(h.node_count()), error(h.node_count());  // at the fine end, here
+  // At the fine end of the block that the node's split is of, here.
+  std::vector<RoundedError> base(h.node_count()), error(h.node_count());
   for (std::size_t v = 0; v < of_vertex_.size(); ++v) {
     const std::size_t leaf = index_of(data_.leaf_of_vertex[v]);
     base[leaf] = error[leaf] = of_vertex_[v];
@@ -55,9 +56,14 @@ BlockErrors::Change BlockErrors::settle() {
     const SplitId s{static_cast<std::uint32_t>(i)};
     const std::size_t node = index_of(h.node_of_split[i]);
     const std::size_t first = index_of(h.first_child(s)), second = index_of(h.second_child(s));
-    base[node] = worse(base[first], base[second]);
-    const LevelError added =
-        codec::added_error(base[node].value(), data_.own_errors[i].value(), data_.coarse);
+    const bool is_inner = data_.is_inner_split(s);
+    const auto base_at = [&](NodeId child) {
+      const bool is_at_end = is_inner && !data_.is_inner_split(h.split_of(child));
+      return is_at_end ? error[index_of(child)] : base[index_of(child)];
+    };
+    base[node] = worse(base_at(h.first_child(s)), base_at(h.second_child(s)));
+    const LevelError added = codec::added_error(base[node].value(), data_.own_errors[i].value(),
+                                                is_inner ? data_.coarser : data_.coarse);
     error[node] = worse(worse(error[first], error[second]), RoundedError::from(added));
     SplitBounds& bounds = bounds_[i];
     const RoundedError before = error_of(bounds);

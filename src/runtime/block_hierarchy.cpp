@@ -5,6 +5,7 @@
 #include "crease/build_hierarchy.h"
 #include "crease/decode_model.h"
 #include "hierarchy/hierarchy_walk.h"
+#include "runtime/inner_splits.h"
 #include "runtime/resident_block.h"
 
 #include <algorithm>
@@ -24,16 +25,27 @@ void one_by_one(std::size_t count, const std::function<void(std::size_t)>& body)
 struct ModelOfOne {
   DecodedModel model;
   std::vector<LevelError> own_errors;  // per contraction
+  LevelError coarser;                  // as of BlockHierarchy::Data
 };
 
-// The finest mesh of the block alone, and the contractions that lead to its coarse end.
-ModelOfOne model_of(const ResidentBlock::Data& block, std::span<const ResidentBlockPtr> needed) {
+enum class Height { Block, WithInner };
+
+// The finest mesh of the block alone, and the contractions that lead to its coarse end, then those
+// that undo its inner splits.
+ModelOfOne model_of(const ResidentBlock::Data& block, std::span<const ResidentBlockPtr> needed,
+                    Height height) {
+  const BlockFacts& facts = block.entry.facts;
+  const codec::CoarseEnd start = coarse_end_of(needed, facts);
   codec::BlockUnfolder unfolder;
-  unfolder.add_alone(block.entry.facts, block.end.unpacked().mesh, block.splits.unpacked(),
-                     coarse_end_of(needed, block.entry.facts));
   ModelOfOne result;
+  if (height == Height::WithInner) {
+    codec::UnfoldedBlock inner = inner_splits_of(facts, needed, start);
+    result.coarser = inner.coarse;
+    if (!inner.splits.empty()) unfolder.add_part(std::move(inner));
+  }
+  unfolder.add_alone(facts, block.end.unpacked().mesh, block.splits.unpacked(), start);
   codec::ModelOfBlocks blocks(*block.schema, unfolder);
-  blocks.fill(result.model, 1, one_by_one);
+  blocks.fill(result.model, unfolder.blocks().size(), one_by_one);
   result.own_errors.assign(blocks.own_errors().begin(), blocks.own_errors().end());
   return result;
 }
@@ -61,7 +73,7 @@ void find_nodes(const ResidentBlock::Data& block, const HierarchyMaps& maps,
     data.wedge_of_vertex.push_back(range.begin < range.end ? range.begin : kNone);
     if (v >= block.root_names.size()) continue;
     NodeId root = data.leaf_of_vertex[v];
-    while (!h.is_root(root)) root = h.parent(root);
+    while (!h.is_root(root) && !data.is_inner_split(h.split_above(root))) root = h.parent(root);
     data.node_of_root.push_back(root);
   }
   data.id_of_triangle = maps.new_of_triangle;
@@ -140,6 +152,15 @@ void sort_triangles_by_patch(const ResidentBlock::Data& block, BlockHierarchy::D
                    [&](std::uint32_t a, std::uint32_t b) { return labels[a] < labels[b]; });
 }
 
+void find_inner(const ResidentBlock::Data& block, const ModelOfOne& of_one,
+                const HierarchyMaps& maps, BlockHierarchy::Data& data) {
+  data.coarser = of_one.coarser;
+  const std::size_t own = block.splits.size(), all = maps.split_of_contraction.size();
+  if (own == all) return;
+  data.is_inner.assign(all, 0);
+  for (std::size_t i = own; i < all; ++i) data.is_inner[index_of(maps.split_of_contraction[i])] = 1;
+}
+
 void find_own_errors(const ModelOfOne& of_one, const HierarchyMaps& maps,
                      BlockHierarchy::Data& data) {
   data.own_errors.resize(data.hierarchy.vertices.split_count());
@@ -185,13 +206,16 @@ std::size_t BlockHierarchy::bytes() const {
 BlockHierarchyJob::BlockHierarchyJob(ResidentBlockPtr block, std::vector<ResidentBlockPtr> needed)
     : block_(std::move(block)), needed_(std::move(needed)) {}
 
-BlockHierarchyPtr BlockHierarchyJob::run() const {
-  const ResidentBlock::Data& block = block_->data();
+namespace {
+
+BlockHierarchyPtr make_hierarchy(const ResidentBlock& of, std::span<const ResidentBlockPtr> needed,
+                                 Height height) {
+  const ResidentBlock::Data& block = of.data();
   auto data = std::make_unique<BlockHierarchy::Data>();
-  data->id = block_->id();
+  data->id = of.id();
   data->coarse = block.entry.facts.coarse;
   data->fine = block.entry.facts.fine;
-  const ModelOfOne of_one = model_of(block, needed_);
+  const ModelOfOne of_one = model_of(block, needed, height);
   const DecodedModel& model = of_one.model;
   HierarchyMaps maps;
   data->is_empty = true;
@@ -201,15 +225,29 @@ BlockHierarchyPtr BlockHierarchyJob::run() const {
     if (hierarchy.ok()) data->hierarchy = *std::move(hierarchy);
   }
   if (!data->is_empty) {
+    find_inner(block, of_one, maps, *data);
     find_nodes(block, maps, *data);
+    find_own_errors(of_one, maps, *data);
+  }
+  if (!data->is_empty && height == Height::Block) {
     find_rings(*data);
     find_root_splits(*data);
     count_requirable_splits(*data);
     sort_triangles_by_patch(block, *data);
-    find_own_errors(of_one, maps, *data);
   }
   data->bytes = bytes_of(*data);
   return std::make_shared<const BlockHierarchy>(std::move(data));
+}
+
+}  // namespace
+
+BlockHierarchyPtr BlockHierarchyJob::run() const {
+  return make_hierarchy(*block_, needed_, Height::Block);
+}
+
+BlockHierarchyPtr make_tall_hierarchy(const ResidentBlock& block,
+                                      std::span<const ResidentBlockPtr> needed) {
+  return make_hierarchy(block, needed, Height::WithInner);
 }
 
 }  // namespace crease

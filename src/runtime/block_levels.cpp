@@ -36,16 +36,19 @@ void tighten(const BlockLevelsJob::Data& job, BlockErrors& errors) {
   }
 }
 
-// A split is done from the first level on that leaves less than its error.
+// A split is done from the first level on that leaves less than its error; at the coarse end the
+// inner ones are.
 class Levels {
  public:
-  Levels(const BlockFacts& facts, std::span<const SplitBounds> bounds) : bounds_(bounds) {
+  Levels(const BlockHierarchy::Data& data, std::span<const SplitBounds> bounds)
+      : data_(data), bounds_(bounds) {
     for (int k = 0; k < kFullLevel; ++k) {
-      limit_[k] = largest(facts.coarse) * static_cast<float>(std::pow(kLevelRatio, k));
+      limit_[k] = largest(data.coarse) * static_cast<float>(std::pow(kLevelRatio, k));
     }
   }
   bool is_done(std::size_t split, int level) const {
-    return level > 0 && largest(bounds_[split].error()) > limit_[level];
+    if (level == 0) return data_.is_inner_split(SplitId{static_cast<std::uint32_t>(split)});
+    return largest(bounds_[split].error()) > limit_[level];
   }
   // As LevelList::done.
   std::vector<std::uint64_t> all_done(int level) const {
@@ -64,30 +67,46 @@ class Levels {
   }
 
  private:
+  const BlockHierarchy::Data& data_;
   std::span<const SplitBounds> bounds_;
   std::array<float, kFullLevel> limit_{};
 };
 
-// Halves the splits of roots a few times: an error in one corner of a block does not matter where
-// only another one is near, or in view.
+// Halves the block a few times: an error in one corner of it does not matter where only another one
+// is near, or in view. Inner splits, which most levels have done, are apart, since their spheres
+// are large.
 class PieceMaker {
  public:
   PieceMaker(const BlockHierarchy::Data& data, const Grid& grid, const Levels& levels,
              std::span<const SplitBounds> bounds, LevelFacts& facts)
       : h_(data.hierarchy.vertices), levels_(levels), bounds_(bounds), facts_(facts) {
-    for (std::uint32_t s = 0; s < data.root_of_split.size(); ++s) order_.push_back(s);
+    std::vector<std::uint32_t> inner;
     for (std::size_t s = 0; s < h_.split_count(); ++s) {
       const NodeId node = h_.node_of_split[s];
       const Vec3i& p = h_.position_of(node);
       place_.push_back({static_cast<float>(grid.step * p.x), static_cast<float>(grid.step * p.y),
                         static_cast<float>(grid.step * p.z)});
-      root_split_.push_back(h_.is_root(node) ? std::uint32_t(s)
-                                             : root_split_[index_of(h_.split_above(node))]);
+      const bool is_inner = data.is_inner_split(SplitId{static_cast<std::uint32_t>(s)});
+      const bool is_top = is_inner || h_.is_root(node) || data.is_inner_split(h_.split_above(node));
+      if (is_top) (is_inner ? inner : order_).push_back(static_cast<std::uint32_t>(s));
+      top_of_split_.push_back(is_top ? static_cast<std::uint32_t>(s)
+                                     : top_of_split_[index_of(h_.split_above(node))]);
     }
+    own_count_ = order_.size();
+    order_.insert(order_.end(), inner.begin(), inner.end());
   }
   void run() {
-    piece_of_root_.resize(order_.size());
-    if (!order_.empty()) add_piece(0, order_.size(), kMostHalvings);
+    piece_of_top_.resize(h_.split_count());
+    if (own_count_ > 0 && own_count_ < order_.size()) {
+      facts_.pieces.push_back(sphere_of(0, order_.size()));
+      add_piece(0, own_count_, kMostHalvings);
+      facts_.first_inner = static_cast<std::uint32_t>(facts_.pieces.size());
+      add_piece(own_count_, order_.size(), kMostHalvings - 1);
+      facts_.pieces[0].next = static_cast<std::uint16_t>(facts_.pieces.size());
+    } else if (!order_.empty()) {
+      add_piece(0, order_.size(), kMostHalvings);
+      facts_.first_inner = own_count_ > 0 ? static_cast<std::uint32_t>(facts_.pieces.size()) : 0;
+    }
     facts_.left_in_piece = LevelsLeft(facts_.pieces.size());
     for (int k = 0; k < kFullLevel; ++k) find_left(k);
   }
@@ -98,7 +117,7 @@ class PieceMaker {
     const auto piece = static_cast<std::uint16_t>(facts_.pieces.size());
     facts_.pieces.push_back(sphere_of(begin, end));
     if (halvings == 0 || end - begin < 2) {
-      for (std::size_t i = begin; i < end; ++i) piece_of_root_[order_[i]] = piece;
+      for (std::size_t i = begin; i < end; ++i) piece_of_top_[order_[i]] = piece;
     } else {
       const std::size_t middle = halve_by_place(order_, begin, end, [this](std::uint32_t s) {
         return std::array{place_[s].x, place_[s].y, place_[s].z};
@@ -109,7 +128,7 @@ class PieceMaker {
     facts_.pieces[piece].next = static_cast<std::uint16_t>(facts_.pieces.size());
   }
 
-  // The spheres of roots hold those below.
+  // The spheres of splits hold those below.
   LevelSphere sphere_of(std::size_t begin, std::size_t end) const {
     Vec3f low = place_[order_[begin]], high = low;
     for (std::size_t i = begin; i < end; ++i) {
@@ -130,7 +149,7 @@ class PieceMaker {
     LevelsLeft& left = facts_.left_in_piece;
     for (std::size_t s = 0; s < bounds_.size(); ++s) {
       if (levels_.is_done(s, level)) continue;
-      left.add(piece_of_root_[root_split_[s]], level, error_of(bounds_[s]));
+      left.add(piece_of_top_[top_of_split_[s]], level, error_of(bounds_[s]));
     }
     const std::size_t at = static_cast<std::size_t>(level) * left.count;
     for (std::size_t i = left.count; i-- > 0;) {
@@ -146,10 +165,12 @@ class PieceMaker {
   const Levels& levels_;
   std::span<const SplitBounds> bounds_;
   LevelFacts& facts_;
-  std::vector<std::uint32_t> order_;       // splits of roots, which are the first ones
-  std::vector<Vec3f> place_;               // per split
-  std::vector<std::uint32_t> root_split_;  // per split: the one of its root
-  std::vector<std::uint16_t> piece_of_root_;
+  // What has no other of the block above it, then the inner ones.
+  std::vector<std::uint32_t> order_;
+  std::size_t own_count_ = 0;                // of the block
+  std::vector<Vec3f> place_;                 // per split
+  std::vector<std::uint32_t> top_of_split_;  // per split: in order_
+  std::vector<std::uint16_t> piece_of_top_;  // per split that is in order_
 };
 
 }  // namespace
@@ -170,7 +191,7 @@ BlockId BlockLevelsJob::id() const {
 }
 
 BlockLevelsPtr BlockLevelsJob::run() const {
-  const BlockHierarchyPtr hierarchy = BlockHierarchyJob(data_->block, data_->needed).run();
+  const BlockHierarchyPtr hierarchy = make_tall_hierarchy(*data_->block, data_->needed);
   const BlockHierarchy::Data& data = hierarchy->data();
   auto result = std::make_unique<BlockLevels::Data>();
   auto facts = std::make_shared<LevelFacts>();
@@ -179,7 +200,7 @@ BlockLevelsPtr BlockLevelsJob::run() const {
     BlockErrors errors(data);
     tighten(*data_, errors);
     errors.settle();
-    const Levels levels(data_->block->facts(), errors.bounds());
+    const Levels levels(data, errors.bounds());
     for (int k = 0; k < kFullLevel; ++k) facts->left[k] = levels.left_by(k);
     for (std::uint32_t r = 0; r < data.node_of_root.size(); ++r) {
       facts->of_root.push_back(errors.of_root(r));

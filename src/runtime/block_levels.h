@@ -1,11 +1,14 @@
 // A block between its two ends, by block: some meshes of all of it that are coarser than the fine
 // end, each right within a share of what the coarse end is wrong by.
 //
-// A file's bands are a factor of three apart. Where a block is shown because its coarse end is seen
-// to be wrong by little more than is allowed, its fine end has three times the triangles that are
-// needed. Level k has those splits done whose errors are above kLevelRatio^k of the coarse end's,
-// the largest: a cut of the block's hierarchy as any, and so without a crack beside whatever is
-// shown around it. Level 0 is the coarse end and kFullLevel the fine one.
+// A file's bands are a factor of four in triangles apart. Where a block is shown because its coarse
+// end is seen to be wrong by little more than is allowed, its fine end has four times those that
+// are needed; and where only some of it is wrong, the rest of its coarse end is finer than need be.
+// Level k has those splits done whose errors are above kLevelRatio^k of the coarse end's, the
+// largest, of the block's own and of its inner ones (runtime/inner_splits.h): a cut of the block's
+// hierarchy as any, and so without a crack beside whatever is shown around it. Level 0 is the
+// coarse end, with all inner splits done, and kFullLevel the fine one. Errors get less from level
+// to level, but from 0 to 1.
 //
 // The hierarchy that this takes is made for the job and not kept. What is kept of it is what each
 // level leaves, how wrong the vertices of the coarse end are (for the blocks that made them, as in
@@ -27,9 +30,9 @@ namespace crease {
 
 inline constexpr int kFullLevel = 14;
 inline constexpr double kLevelRatio = 0.8;
-inline constexpr int kMostHalvings = 5;  // of a block into pieces
+inline constexpr int kMostHalvings = 5;  // of a block into pieces, and of its inner splits
 
-// Around some vertices of the coarse end of a block, and all that is below them.
+// Around some splits of a block, and all that is below them.
 struct LevelSphere {
   Vec3f center;  // from the grid's origin, model units
   RoundedUp radius;
@@ -57,6 +60,8 @@ struct LevelFacts {
   // A tree: all of the block, then its first half with the parts of that, and so on. A level is
   // right where it is in all that have no parts.
   std::vector<LevelSphere> pieces;
+  std::uint32_t first_inner =
+      0;  // of those that are of inner splits alone, which are the last ones
   LevelsLeft left_in_piece;
 };
 

@@ -68,7 +68,7 @@ NamedMesh extract_piece_of(const BlockMesh::Impl& mesh, const ActiveCut& cut,
                            const BlockHierarchy::Data& data, const ResidentBlock::Data& block) {
   CutPiece piece = extract_piece(cut);
   NamedMesh result{std::move(piece.mesh), {}};
-  // A root that is not split is a vertex of the block that made it.
+  // A vertex of the coarse end that is not split is one of the block that made it.
   std::unordered_map<std::uint32_t, std::uint32_t> root_of_node;
   for (std::uint32_t r = 0; r < data.node_of_root.size(); ++r) {
     root_of_node[static_cast<std::uint32_t>(data.node_of_root[r])] = r;
@@ -92,8 +92,7 @@ NamedMesh extract_piece_of(const BlockMesh::Impl& mesh, const ActiveCut& cut,
 NamedMesh extract_level(const BlockMesh::Impl& mesh, std::uint32_t block, const LevelList& list) {
   std::vector<ResidentBlockPtr> needed;
   for (const std::uint32_t n : mesh.graph.dependencies(block)) needed.push_back(mesh.resident[n]);
-  const BlockHierarchyPtr hierarchy =
-      BlockHierarchyJob(mesh.resident[block], std::move(needed)).run();
+  const BlockHierarchyPtr hierarchy = make_tall_hierarchy(*mesh.resident[block], needed);
   ActiveCut cut(hierarchy->data().hierarchy);
   split_as(list, cut);
   return extract_piece_of(mesh, cut, hierarchy->data(), mesh.resident[block]->data());

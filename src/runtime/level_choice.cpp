@@ -114,6 +114,7 @@ void LevelChoice::look_at(std::uint32_t block, const LevelFacts& facts) {
   std::copy(left.off.begin(), left.off.end(), looked.off.begin());
   std::copy(left.degrees.begin(), left.degrees.end(), looked.degrees.begin());
   looked.pieces = facts.pieces;
+  looked.first_inner = facts.first_inner;
   looked.left = {facts.left_in_piece.off.data(), facts.left_in_piece.degrees.data(),
                  facts.left_in_piece.count};
 }
@@ -146,38 +147,50 @@ bool LevelChoice::drop_lists(std::uint32_t age) {
 }
 
 // The level of the last choice stays while it is right and the next coarser one is not. Mostly that
-// is told by the piece that was wrong the last time.
+// is told by the piece that was wrong the last time. The coarse end comes first: it may be right
+// where levels above it are not, in which inner splits are undone.
 int LevelChoice::wanted_level(std::uint32_t block, const View& view) {
   const State& state = states_[block];
   if (!state.can_choose) return kFullLevel;
-  const Looked& looked = looked_[block];
+  Looked& looked = looked_[block];
   const LeftAtLevels left{looked.off.data(), looked.degrees.data(), 1};
   const Seen whole(looked.whole, left, 0, view.error);
+  const auto is_still_wrong = [&](std::uint32_t piece, int level, const auto& reaches) {
+    return piece != kNone && whole.is_wrong(level, reaches) &&
+           Seen(looked.pieces[piece], looked.left, piece, view.error).is_wrong(level, reaches);
+  };
+  const auto coarsest = [&](std::uint32_t& wrong, const auto& reaches, int level, int end) {
+    return coarsest_right(looked, wrong, view.error, reaches, level,
+                          whole.right_from(level, end, reaches));
+  };
   const int before = state.wanted;
-  if (before > 0) {
-    const std::size_t last = looked.wrong_piece;
-    const bool is_needed =
-        looked.wrong_piece != kNone && whole.is_wrong(before - 1, view.keep) &&
-        Seen(looked.pieces[last], looked.left, last, view.error).is_wrong(before - 1, view.keep);
-    const int coarsest = is_needed ? before
-                                   : coarsest_right(looked_[block], view.error, view.keep, 0,
-                                                    whole.right_from(0, before, view.keep));
-    if (coarsest < before) return coarsest;
+  const bool is_needed = before > 0 && is_still_wrong(looked.wrong_piece, before - 1, view.keep);
+  // What is wrong at a level is so at the coarse end as well, unless it is inner.
+  const bool is_above =
+      is_needed && looked.wrong_piece < looked.first_inner && whole.is_wrong(0, view.keep);
+  if (!is_above) {
+    const ViewError::Reaches& reaches = before > 0 ? view.keep : view.at_all;
+    std::uint32_t& wrong = looked.wrong_at_coarse_end;
+    if (!is_still_wrong(wrong, 0, reaches) && coarsest(wrong, reaches, 0, 1) == 0) return 0;
   }
-  return coarsest_right(looked_[block], view.error, view.at_all, before,
-                        whole.right_from(before, kFullLevel, view.at_all));
+  if (before > 1 && !is_needed) {
+    const int level = coarsest(looked.wrong_piece, view.keep, 1, before);
+    if (level < before) return level;
+  }
+  return coarsest(looked.wrong_piece, view.at_all, std::max(before, 1), kFullLevel);
 }
 
 // The coarsest one from `level` to `end` at which no piece is wrong, or else the end. Finer levels
-// are right where coarser ones are.
-int LevelChoice::coarsest_right(Looked& looked, const ViewError& error,
-                                const ViewError::Reaches& reaches, int level, int end) {
+// are right where coarser ones are, but for the coarse end.
+int LevelChoice::coarsest_right(const Looked& looked, std::uint32_t& wrong_piece,
+                                const ViewError& error, const ViewError::Reaches& reaches,
+                                int level, int end) {
   // What holds the piece that is looked at: where it ends, and the level that is right for it.
   struct Outer {
     std::size_t next;
     int level;
   };
-  std::array<Outer, kMostHalvings + 1> outer{Outer{looked.pieces.size(), end}};
+  std::array<Outer, kMostHalvings + 2> outer{Outer{looked.pieces.size(), end}};
   std::size_t depth = 0;
   for (std::size_t i = 0; i < looked.pieces.size() && level < end;) {
     while (i >= outer[depth].next) --depth;
@@ -190,7 +203,7 @@ int LevelChoice::coarsest_right(Looked& looked, const ViewError& error,
       ++i;
       continue;
     }
-    if (right > level) looked.wrong_piece = static_cast<std::uint32_t>(i);
+    if (right > level) wrong_piece = static_cast<std::uint32_t>(i);
     level = right;
     i = piece.next;
   }
@@ -205,6 +218,7 @@ void LevelChoice::fetch(std::uint32_t block) const {
   const std::size_t at = state.wanted * looked.left.count;
   __builtin_prefetch(looked.pieces.data());
   if (looked.wrong_piece != kNone) __builtin_prefetch(&looked.pieces[looked.wrong_piece]);
+  __builtin_prefetch(looked.left.off);
   __builtin_prefetch(looked.left.off + at);
   if (state.wanted > 0) __builtin_prefetch(looked.left.off + at - looked.left.count);
 }

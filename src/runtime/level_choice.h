@@ -94,7 +94,9 @@ class LevelChoice {
   struct Looked {
     LevelSphere whole;                                   // as the file tells it
     std::array<RoundedUp, kFullLevel> off{}, degrees{};  // of the whole block
-    std::uint32_t wrong_piece = kNone;    // without parts, the one that needed the finest level
+    // Without parts, one that is wrong at the coarse end, and the one that needed the finest level.
+    std::uint32_t wrong_at_coarse_end = kNone, wrong_piece = kNone;
+    std::uint32_t first_inner = 0;        // as in LevelFacts
     std::span<const LevelSphere> pieces;  // as in LevelFacts
     LeftAtLevels left{};
   };
@@ -110,8 +112,9 @@ class LevelChoice {
   }
   void discard_lists(Entry& entry);
   int wanted_level(std::uint32_t block, const View& view);
-  static int coarsest_right(Looked& looked, const ViewError& error,
-                            const ViewError::Reaches& reaches, int level, int end);
+  static int coarsest_right(const Looked& looked, std::uint32_t& wrong_piece,
+                            const ViewError& error, const ViewError::Reaches& reaches, int level,
+                            int end);
   void fetch(std::uint32_t block) const;
   void look_at(std::uint32_t block, const LevelFacts& facts);
   static void set_list(State& state, const LevelList* list);

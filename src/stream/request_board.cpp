@@ -44,68 +44,105 @@ std::optional<std::uint64_t> RequestBoard::size() const {
 }
 
 Ticket RequestBoard::add(std::span<const RangeRequest> ranges) {
-  const Clock::time_point now = Clock::now();
-  Ticket first{};
-  bool has_work = false;
-  {
-    const std::lock_guard guard(lock_);
-    first = static_cast<Ticket>(next_ticket_);
-    next_ticket_ += ranges.size();
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const Ticket ticket = ticket_after(first, i);
-      const Waiting waiting{ranges[i].range, ranges[i].priority, now};
-      ++statistics_.asked;
-      statistics_.bytes_asked += waiting.range.bytes;
-      if (answer_at_once(ticket, waiting)) continue;
-      waiting_.emplace(Key{waiting.range.offset, ticket}, waiting);
-      offset_of_waiting_.emplace(number(ticket), waiting.range.offset);
-      has_work = true;
-    }
-  }
-  if (has_work) {
-    has_work_.ring();
-    if (wake_) wake_();
-  }
+  const auto first = static_cast<Ticket>(next_ticket_.fetch_add(ranges.size()));
+  put({Order::Kind::Add, first, {ranges.begin(), ranges.end()}, 0, Clock::now()});
   return first;
 }
 
 void RequestBoard::cancel(Ticket ticket) {
-  bool was_in_flight = false;
-  {
-    const std::lock_guard guard(lock_);
-    if (const auto found = offset_of_waiting_.find(number(ticket));
-        found != offset_of_waiting_.end()) {
-      waiting_.erase(Key{found->second, ticket});
-      offset_of_waiting_.erase(found);
-      ++statistics_.cancelled;
-    } else if (in_flight_.erase(number(ticket)) > 0) {
-      ++statistics_.cancelled;
-      was_in_flight = true;
-    } else {
-      std::erase_if(answers_, [ticket](const AsyncAnswer& a) { return a.ticket == ticket; });
-    }
-    if (waiting_.empty() && in_flight_.empty()) has_answer_.notify_all();
-  }
-  if (was_in_flight && wake_) wake_();
+  put({Order::Kind::Cancel, ticket, {}, 0, {}});
 }
 
 void RequestBoard::prioritize(Ticket ticket, float priority) {
-  const std::lock_guard guard(lock_);
+  put({Order::Kind::Prioritize, ticket, {}, priority, {}});
+}
+
+// A worker that has the lock may have looked for orders before; so it is told that there are some.
+void RequestBoard::put(Order order) {
+  orders_.put(std::move(order));
+  bool has_work = true;
+  if (const std::unique_lock lock(lock_, std::try_to_lock); lock) has_work = carry_out_orders();
+  if (!has_work) return;
+  has_work_.ring();
+  if (wake_) wake_();
+}
+
+bool RequestBoard::carry_out_orders() {
+  bool any = false, has_work = false;
+  orders_.read([&](const Order& order) {
+    any = true;
+    switch (order.kind) {
+      case Order::Kind::Add:
+        has_work |= add(order);
+        break;
+      case Order::Kind::Cancel:
+        has_work |= cancel_now(order.ticket);
+        break;
+      case Order::Kind::Prioritize:
+        prioritize_now(order.ticket, order.priority);
+        break;
+    }
+  });
+  return has_work || !any;
+}
+
+bool RequestBoard::add(const Order& order) {
+  bool has_work = false;
+  for (std::size_t i = 0; i < order.ranges.size(); ++i) {
+    const Ticket ticket = ticket_after(order.ticket, i);
+    const Waiting waiting{order.ranges[i].range, order.ranges[i].priority, order.at};
+    ++statistics_.asked;
+    statistics_.bytes_asked += waiting.range.bytes;
+    if (answer_at_once(ticket, waiting)) continue;
+    waiting_.emplace(Key{waiting.range.offset, ticket}, waiting);
+    offset_of_waiting_.emplace(number(ticket), waiting.range.offset);
+    has_work = true;
+  }
+  return has_work;
+}
+
+bool RequestBoard::cancel_now(Ticket ticket) {
+  bool was_in_flight = false;
+  if (const auto found = offset_of_waiting_.find(number(ticket));
+      found != offset_of_waiting_.end()) {
+    waiting_.erase(Key{found->second, ticket});
+    offset_of_waiting_.erase(found);
+    ++statistics_.cancelled;
+  } else if (in_flight_.erase(number(ticket)) > 0) {
+    ++statistics_.cancelled;
+    was_in_flight = true;
+  } else {
+    std::erase_if(answers_, [ticket](const AsyncAnswer& a) { return a.ticket == ticket; });
+  }
+  if (waiting_.empty() && in_flight_.empty()) has_answer_.notify_all();
+  return was_in_flight;
+}
+
+void RequestBoard::prioritize_now(Ticket ticket, float priority) {
   const auto found = offset_of_waiting_.find(number(ticket));
   if (found == offset_of_waiting_.end()) return;
   waiting_.find(Key{found->second, ticket})->second.priority = priority;
 }
 
+// Who has waited for answers may wait a little more for the lock.
 std::vector<AsyncAnswer> RequestBoard::poll() {
-  const std::lock_guard guard(lock_);
+  std::unique_lock lock(lock_, std::defer_lock);
+  if (has_waited_.exchange(false)) {
+    lock.lock();
+  } else if (!lock.try_lock()) {
+    return {};
+  }
+  carry_out_orders();
   return std::exchange(answers_, {});
 }
 
 bool RequestBoard::wait(std::chrono::milliseconds timeout) {
   std::unique_lock guard(lock_);
+  carry_out_orders();
   has_answer_.wait_for(guard, timeout, [this] {
     return !answers_.empty() || (waiting_.empty() && in_flight_.empty());
   });
+  if (!answers_.empty()) has_waited_ = true;
   return !answers_.empty();
 }
 
@@ -143,8 +180,9 @@ std::uint64_t RequestBoard::prefix_bytes() const {
   return prefix_.size();
 }
 
-bool RequestBoard::has_waiting() const {
+bool RequestBoard::has_waiting() {
   const std::lock_guard guard(lock_);
+  carry_out_orders();
   return !waiting_.empty();
 }
 
@@ -198,6 +236,7 @@ RequestBoard::Shelf::const_iterator RequestBoard::most_urgent() const {
 
 std::optional<Batch> RequestBoard::take() {
   const std::lock_guard guard(lock_);
+  carry_out_orders();
   return take_under_lock();
 }
 
@@ -207,6 +246,7 @@ std::optional<Batch> RequestBoard::take_or_wait() {
     {
       const std::lock_guard guard(lock_);
       if (closed_) return std::nullopt;
+      carry_out_orders();
       if (!waiting_.empty()) return take_under_lock();
     }
     has_work_.wait(heard);
@@ -277,8 +317,9 @@ void RequestBoard::close() {
   has_work_.ring();
 }
 
-bool RequestBoard::is_abandoned(const Batch& batch) const {
+bool RequestBoard::is_abandoned(const Batch& batch) {
   const std::lock_guard guard(lock_);
+  carry_out_orders();
   return std::none_of(
       batch.parts.begin() + static_cast<std::ptrdiff_t>(batch.answered), batch.parts.end(),
       [this](const BatchPart& part) { return in_flight_.contains(number(part.ticket)); });
@@ -309,6 +350,7 @@ void RequestBoard::answer(const BatchPart& part, Result<std::vector<std::byte>> 
 
 bool RequestBoard::fail_waiting(const Failure& failure) {
   const std::lock_guard guard(lock_);
+  carry_out_orders();
   const Shelf failed = std::exchange(waiting_, {});
   for (const auto& [key, waiting] : failed) put_answer(key.second, waiting.asked_at, failure);
   offset_of_waiting_.clear();

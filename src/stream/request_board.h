@@ -12,11 +12,18 @@
 //
 // A ticket is in one of three places: waiting, in flight with a batch, or among the answers.
 // Threads: every call from any; a batch belongs to the worker that took it.
+//
+// Askers never wait for workers, but in wait(): what they want is an order in a mailbox, which
+// whoever has the lock next carries out, and where a worker has it just now, poll() has nothing. So
+// a frame may hear a little later, but not stand still because a thread was stopped that had the
+// lock.
 #pragma once
 
 #include "base/bell.h"
+#include "base/mailbox.h"
 #include "crease/async_source.h"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -67,7 +74,7 @@ class RequestBoard {
   void prioritize(Ticket ticket, float priority);
   std::vector<AsyncAnswer> poll();
   bool wait(std::chrono::milliseconds timeout);
-  AsyncStatistics statistics() const;
+  AsyncStatistics statistics() const;  // without orders that nobody has carried out yet
 
   // The worker's side. Ranges beyond a known size fail without a request.
   void set_size(std::uint64_t size);
@@ -77,7 +84,7 @@ class RequestBoard {
   void set_prefix(std::span<const std::byte> prefix);
   void append_prefix(std::span<const std::byte> bytes, std::uint64_t expected);
   std::uint64_t prefix_bytes() const;
-  bool has_waiting() const;
+  bool has_waiting();
 
   // The most urgent range and what goes with it.
   std::optional<Batch> take();
@@ -85,7 +92,7 @@ class RequestBoard {
   std::optional<Batch> take_or_wait();
   void close();
   // All tickets of it were cancelled.
-  bool is_abandoned(const Batch& batch) const;
+  bool is_abandoned(const Batch& batch);
 
   // `bytes` are the first ones of batch.span: parts that end within them are answered.
   void deliver(Batch& batch, std::span<const std::byte> bytes);
@@ -108,8 +115,22 @@ class RequestBoard {
   };
   using Key = std::pair<std::uint64_t, Ticket>;  // offset
   using Shelf = std::map<Key, Waiting>;
+  struct Order {
+    enum class Kind { Add, Cancel, Prioritize } kind = Kind::Add;
+    Ticket ticket{};                   // of the first range
+    std::vector<RangeRequest> ranges;  // Add
+    float priority = 0;                // Prioritize
+    Clock::time_point at;
+  };
 
-  // Under the lock.
+  void put(Order order);
+
+  // Under the lock. True if there is something to do for workers.
+  bool add(const Order& order);
+  bool cancel_now(Ticket ticket);
+  void prioritize_now(Ticket ticket, float priority);
+  // The same of all orders, or true if there are none: others have carried them out.
+  bool carry_out_orders();
   bool answer_at_once(Ticket ticket, const Waiting& waiting);
   void answer_what_can_be();
   void put_answer(Ticket ticket, Clock::time_point asked_at, Result<std::vector<std::byte>> bytes);
@@ -128,7 +149,9 @@ class RequestBoard {
   std::optional<std::uint64_t> size_;
   std::span<const std::byte> prefix_;
   std::vector<std::byte> kept_;  // where prefix_ lies, if it was appended
-  std::uint64_t next_ticket_ = 1;
+  std::atomic<std::uint64_t> next_ticket_{1};
+  Mailbox<Order> orders_;
+  std::atomic<bool> has_waited_{false};  // since the last poll(), until there were answers
   Shelf waiting_;
   std::unordered_map<std::uint64_t, std::uint64_t> offset_of_waiting_;  // by ticket
   std::unordered_set<std::uint64_t> in_flight_;                         // tickets not cancelled

@@ -5,12 +5,14 @@
 #include "runtime/block_mesh_impl.h"
 #include "runtime/block_mesh_oracle.h"
 #include "runtime/block_vertices_oracle.h"
+#include "runtime/shown_surface.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <span>
 #include <vector>
@@ -119,6 +121,55 @@ TEST_CASE(
   CHECK(in_levels < whole);
 }
 
+// Closed and flat, with small spikes here and there.
+Mesh spiked_cube() {
+  Mesh mesh = smooth_sphere(60, 90);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    Vec3d& p = mesh.positions[v];
+    const double spike = v % 97 == 0 ? 1 + 0.0002 * double(v % 50) : 1;
+    p = p * (spike / std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}));
+  }
+  return mesh;
+}
+
+// Inner splits that are undone in what is shown.
+std::size_t undone_inner_splits(const BlockMesh& mesh) {
+  const BlockMesh::Impl& impl = mesh.impl();
+  std::size_t count = 0;
+  for (const std::uint32_t block : impl.cut) {
+    const LevelList* const list = impl.levels.list(block);
+    if (list == nullptr) continue;
+    std::vector<ResidentBlockPtr> needed;
+    for (const std::uint32_t n : impl.graph.dependencies(block)) {
+      needed.push_back(impl.resident[n]);
+    }
+    const BlockHierarchyPtr hierarchy = make_tall_hierarchy(*impl.resident[block], needed);
+    const std::vector<char>& is_inner = hierarchy->data().is_inner;
+    for (std::size_t s = 0; s < is_inner.size(); ++s) {
+      count += is_inner[s] && (list->done[s / 64] >> (s % 64) & 1) == 0;
+    }
+  }
+  return count;
+}
+
+TEST_CASE(
+    "where little of a block is wrong, a level may be coarser than its coarse end elsewhere") {
+  const EncodedCase c = simplified_case(spiked_cube(), 1500, 14, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  BlockMesh mesh = mesh_of(file);
+  std::mt19937_64 random(3);
+  std::size_t undone = 0;
+  for (int trial = 0; trial < (kSanitized ? 4 : 20); ++trial) {
+    const BlockViewParameters parameters = random_level_view(c.mesh, random);
+    load_all(file, mesh, parameters);
+    check_by_vertex(mesh);
+    check_levels_are_right(mesh, parameters.view);
+    CHECK(open_edges(mesh) == 0);
+    undone += undone_inner_splits(mesh);
+  }
+  CHECK(undone > 0);
+}
+
 TEST_CASE("groups of a level's list are all of it, and those beside a view are left out") {
   const EncodedCase c = simplified_case(smooth_sphere(60, 90), 800, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
@@ -153,7 +204,8 @@ class LevelByDefinition {
         error_(view, mesh.facts().grid),
         keep_(static_cast<float>(1 / std::max(view.hysteresis, 1.0))) {}
 
-  // Coarser than before where nothing there is wrong by what is kept, finer where something is.
+  // Coarser than before where nothing there is wrong by what is kept, finer where something is. The
+  // coarse end comes first: inner splits are done there.
   int level(std::uint32_t block, int before) const {
     const std::span<const std::uint32_t> finer = impl_.graph.dependents(block);
     if (std::any_of(finer.begin(), finer.end(),
@@ -162,8 +214,9 @@ class LevelByDefinition {
     }
     const LevelFactsPtr facts = impl_.levels.facts(block);
     if (!facts || facts->of_root.empty() || impl_.graph.is_base(block)) return kFullLevel;
-    int level = before;
-    while (level > 0 && !is_wrong(block, *facts, level - 1, keep_)) --level;
+    if (!is_wrong(block, *facts, 0, before > 0 ? keep_ : 1)) return 0;
+    int level = std::max(before, 1);
+    while (level > 1 && !is_wrong(block, *facts, level - 1, keep_)) --level;
     if (level < before) return level;
     while (level < kFullLevel && is_wrong(block, *facts, level, 1)) ++level;
     return level;

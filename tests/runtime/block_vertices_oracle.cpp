@@ -110,7 +110,7 @@ class BlocksOracle {
       for (const std::uint32_t n : mesh_.graph.dependencies(block)) {
         needed.push_back(mesh_.resident[n]);
       }
-      cut.hierarchy = BlockHierarchyJob(mesh_.resident[block], std::move(needed)).run();
+      cut.hierarchy = make_tall_hierarchy(*mesh_.resident[block], needed);
     }
     cuts_.emplace(block, std::move(cut));
   }
@@ -140,13 +140,25 @@ class BlocksOracle {
     const BlockHierarchy::Data& d = cut->data();
     const NodeId leaf = d.leaf_of_vertex[name.vertex];
     const NodeId node = d.wedge_of_vertex[name.vertex] == kNone ? leaf : active_above(*cut, leaf);
-    if (d.hierarchy.vertices.is_root(node)) {
-      const auto root = std::find(d.node_of_root.begin(), d.node_of_root.end(), node);
+    return of_node(name.block, d, node);
+  }
+  Active of_node(std::uint32_t block, const BlockHierarchy::Data& d, NodeId node) const {
+    const auto root = std::find(d.node_of_root.begin(), d.node_of_root.end(), node);
+    if (root != d.node_of_root.end()) {
       const codec::VertexName made =
-          data(name.block).root_names[std::size_t(root - d.node_of_root.begin())];
-      if (made.block != name.block) return active(made);
+          data(block).root_names[std::size_t(root - d.node_of_root.begin())];
+      if (made.block != block) return active(made);
     }
-    return {name.block, static_cast<std::uint32_t>(node), d.hierarchy.vertices.position_of(node)};
+    return {block, static_cast<std::uint32_t>(node), d.hierarchy.vertices.position_of(node)};
+  }
+  // At a level, inner splits of the block's are done as it says, whoever made the vertices.
+  Active corner_of(const Place& finest, std::size_t k) const {
+    const KeptEnd& end = data(finest.block).end;
+    const std::uint32_t v = end.triangle(finest.triangle)[k];
+    const OneCut* const cut = cut_of(finest.block);
+    if (cut == nullptr || cut->list == nullptr) return active(end.name(v));
+    const BlockHierarchy::Data& d = cut->data();
+    return of_node(finest.block, d, active_above(*cut, d.leaf_of_vertex[v]));
   }
 
   static bool is_split(const OneCut& cut, std::uint32_t root) {
@@ -155,7 +167,7 @@ class BlocksOracle {
   }
   bool has_split_root(const Place& at) const {
     const OneCut* const cut = cut_of(at.block);
-    if (cut == nullptr) return true;
+    if (cut == nullptr || cut->list != nullptr) return true;
     for (const std::uint32_t root : cut->data().roots_of_triangle[at.triangle]) {
       if (is_split(*cut, root)) return true;
     }
@@ -165,9 +177,7 @@ class BlocksOracle {
   void add(const Place& finest) {
     const KeptEnd& end = data(finest.block).end;
     std::array<Active, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = active(end.name(end.triangle(finest.triangle)[k]));
-    }
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = corner_of(finest, k);
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
     Place at = finest;
     while (!has_split_root(at) && at.triangle < sources_[at.block].size()) {
@@ -281,8 +291,7 @@ std::size_t check_levels_are_right(const BlockMesh& mesh, const ViewParameters& 
     for (const std::uint32_t n : impl.graph.dependencies(block)) {
       needed.push_back(impl.resident[n]);
     }
-    const BlockHierarchyPtr hierarchy =
-        BlockHierarchyJob(impl.resident[block], std::move(needed)).run();
+    const BlockHierarchyPtr hierarchy = make_tall_hierarchy(*impl.resident[block], needed);
     const BlockHierarchy::Data& data = hierarchy->data();
     BlockErrors errors(data);
     const ResidentBlock::Data& resident = impl.resident[block]->data();
@@ -303,7 +312,10 @@ std::size_t check_levels_are_right(const BlockMesh& mesh, const ViewParameters& 
     between += list != nullptr;
     const VertexHierarchy& h = data.hierarchy.vertices;
     for (std::size_t s = 0; s < h.split_count(); ++s) {
-      if (list != nullptr && (list->done[s / 64] >> (s % 64) & 1) != 0) continue;
+      if (list != nullptr ? (list->done[s / 64] >> (s % 64) & 1) != 0
+                          : data.is_inner_split(SplitId{static_cast<std::uint32_t>(s)})) {
+        continue;
+      }
       const Vec3f position = error.position(h.position_of(h.node_of_split[s]));
       // It is inside its own sphere, and inside the block's.
       SplitBounds in_block = impl.graph.own(block).bounds;

@@ -1,7 +1,13 @@
 // How ranges become batches.
 #include "stream/request_board.h"
 
+#include "base/mailbox.h"
 #include "stream/stream_files.h"
+
+#include <array>
+#include <set>
+#include <thread>
+#include <utility>
 
 namespace crease {
 namespace {
@@ -115,6 +121,57 @@ TEST_CASE("the first bytes and the size answer without a request") {
   REQUIRE(rest.size() == 1);
   CHECK(*rest[0].bytes == part_of(file, {30, 20}));
   CHECK(board.statistics().requests == 0);
+}
+
+TEST_CASE("letters are read once each, those of a thread in its order") {
+  constexpr int kThreads = 3, kLetters = 2000;
+  Mailbox<std::pair<int, int>> box;  // who, which
+  std::vector<std::jthread> writers;
+  for (int who = 0; who < kThreads; ++who) {
+    writers.emplace_back([&box, who] {
+      for (int i = 0; i < kLetters; ++i) box.put({who, i});
+    });
+  }
+  std::array<int, kThreads> next{};
+  int read = 0, wrong = 0;
+  while (read < kThreads * kLetters) {
+    box.read([&](const std::pair<int, int>& letter) {
+      wrong += next[std::size_t(letter.first)]++ != letter.second;
+      ++read;
+    });
+  }
+  CHECK(wrong == 0);
+  box.put({0, 0});  // what nobody reads is freed with the box
+}
+
+TEST_CASE("askers and workers meet at a board from several threads, and nothing is lost") {
+  const std::vector<std::byte> file = some_bytes(1000);
+  RequestBoard board("", kSmall);
+  std::vector<std::jthread> workers;
+  for (int i = 0; i < 3; ++i) {
+    workers.emplace_back([&] {
+      while (std::optional<Batch> batch = board.take_or_wait()) {
+        board.deliver(*batch, std::span(file).subspan(batch->span.offset, batch->span.bytes));
+      }
+    });
+  }
+  std::set<Ticket> open;
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    const std::vector<RangeRequest> asked = {{{i * 7 % 900, 20}, float(i % 5)},
+                                             {{i * 13 % 900, 30}, float(i % 3)}};
+    const Ticket first = board.add(asked);
+    open.insert({first, ticket_after(first, 1)});
+    if (i % 4 == 0) {
+      board.cancel(first);
+      open.erase(first);
+    }
+    for (const AsyncAnswer& answer : board.poll()) CHECK(open.erase(answer.ticket) == 1);
+  }
+  while (board.wait(std::chrono::minutes(1))) {
+    for (const AsyncAnswer& answer : board.poll()) CHECK(open.erase(answer.ticket) == 1);
+  }
+  CHECK(open.empty());
+  board.close();
 }
 
 }  // namespace
