@@ -32,6 +32,7 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
     look_from(cut, view);
     turn_back(cut);
   }
+  at_once_ = !is_ordered_ && !view.consistent && !has_geomorphs();
   const bool requires_anew = std::exchange(requires_anew_, false);
   if (looks_anew || requires_anew) {
     splits_.clear();
@@ -42,7 +43,6 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
   stop_at_ = view.clock == nullptr ? std::numeric_limits<double>::infinity()
                                    : view.clock(view.clock_context) + view.max_seconds;
   moves_until_clock_ = 0;
-  at_once_ = !is_ordered_ && !view.consistent && !has_geomorphs();
   merge_arrived(cut);
   if (cut.triangle_count() > view_.max_triangles) {
     keep_to_budget(cut, {std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot}, 0);
