@@ -131,12 +131,19 @@ class ActiveCut {
   std::uint32_t color_layer() const { return color_layer_; }
   std::uint32_t texcoord_layer() const { return texcoord_layer_; }  // kNone: no textures
 
-  // By DB03, of what the corners have now, which sorted_normal() tells from then on.
+  // By DB03, of what the corners have now, which sorted_normals() tells from then on.
   Part sort(ActiveTriangles& part, std::uint32_t triangle) const;
-  std::uint32_t sorted_normal(const ActiveTriangles& part, std::size_t corner_index) const {
+  std::array<std::uint32_t, 3> sorted_normals(const ActiveTriangles& part,
+                                              std::uint32_t triangle) const {
+    const std::size_t corner = 3 * std::size_t(triangle);
     const std::uint32_t place = place_of_layer_[normal_layer_];
-    return place == kNone ? vertices_[part.slots[corner_index]].normal
-                          : part.values[tracked_.size() * corner_index + place];
+    if (place == kNone) {
+      const std::uint32_t* const slots = &part.slots[corner];
+      return {vertices_[slots[0]].normal, vertices_[slots[1]].normal, vertices_[slots[2]].normal};
+    }
+    const std::size_t each = tracked_.size();
+    const std::uint32_t* const values = &part.values[each * corner + place];
+    return {values[0], values[each], values[2 * each]};
   }
   // The value that a corner shows, if its triangle shows stored ones: its index in the layer.
   std::size_t value_index(const ActiveTriangles& part, std::uint32_t corner_index,
