@@ -113,7 +113,8 @@ class ActiveCut {
   void prefetch_split_further(SplitId s) const;
   void prefetch_merge(std::uint32_t slot, SplitId s) const;
   void prefetch_merge_further(SplitId s) const;
-  void prefetch_children(SplitId s) const;
+  void prefetch_begins(SplitId s) const;
+  Children prefetch_children(SplitId s) const;  // or who stands where they would
   // The slot that will be taken when `count` others were.
   std::uint32_t slot_to_come(std::size_t count) const {
     return count < free_slots_.size() ? free_slots_[free_slots_.size() - 1 - count] : kNoSlot;
@@ -247,6 +248,7 @@ class ActiveCut {
   }
   void prefetch_corners(std::uint32_t slot) const;
   void prefetch_normals(NodeId node) const;
+  void prefetch_normals_further(NodeId node) const;
   void prefetch_normal(std::uint32_t attribute) const;
   void prefetch_values(WedgeId wedge) const {  // of corners that arrive
     for (const PackedIndices<>* constants : constants_) constants->prefetch(index_of(wedge));
@@ -265,6 +267,7 @@ class ActiveCut {
   const MeshHierarchy& hierarchy_;
   const VertexHierarchy& h_;
   const char* const is_hidden_;
+  const bool is_large_;  // what there is per wedge, or per node, does not fit the nearer caches
   std::uint32_t normal_layer_ = kNone, color_layer_ = kNone, texcoord_layer_ = kNone;
   std::vector<std::uint32_t> tracked_;             // layers that have nodes of several attributes
   std::vector<std::uint32_t> place_of_layer_;      // in tracked_, or kNone
@@ -286,7 +289,7 @@ class ActiveCut {
   std::vector<SplitId> moves_;                    // that corners have not followed
   struct Born {
     TriangleId triangle;
-    std::array<WedgeId, 3> wedges;
+    std::array<WedgeId, 3> wedges, begins;  // of the vertices where they are
     std::array<std::uint32_t, 3> slots;
   };
   std::vector<Born> born_;  // scratch

@@ -127,7 +127,12 @@ void Refiner::fetch_merges(const ActiveCut& cut) const {
     wrong_.prefetch(slot);
     if (pair_of_slot_[slot] != kNone) merged_.prefetch(pair_of_slot_[slot]);
   }
-  if (i + 4 < count) cut.prefetch_children(wishes[i + 4].split);
+  if (i + 6 < count) cut.prefetch_begins(wishes[i + 6].split);
+  if (i + 4 < count) {
+    const ActiveCut::Children children = cut.prefetch_children(wishes[i + 4].split);
+    if (children.first != kNoSlot) __builtin_prefetch(pair_of_slot_.data() + children.first);
+    if (children.second != kNoSlot) __builtin_prefetch(pair_of_slot_.data() + children.second);
+  }
 }
 
 void Refiner::fetch_splits(const ActiveCut& cut) const {
@@ -137,8 +142,10 @@ void Refiner::fetch_splits(const ActiveCut& cut) const {
     const std::uint32_t slot = wishes[i + 8].slot, other = cut.slot_to_come(8);
     cut.prefetch_split(slot, wishes[i + 8].split);
     wrong_.prefetch(slot);
+    __builtin_prefetch(pair_of_slot_.data() + slot);
     if (other != kNoSlot) {
       wrong_.prefetch(other);
+      __builtin_prefetch(pair_of_slot_.data() + other);
       __builtin_prefetch(&cut.vertices()[other]);
     }
   }
