@@ -33,9 +33,7 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
   odometer_.turn += motion.turn;
   late_.travel = kOfBefore * late_.travel + motion.travel;
   late_.turn = kOfBefore * late_.turn + motion.turn;
-  odometer_.turn_per_travel = late_.turn < Odometer::kMostTurn * late_.travel
-                                  ? static_cast<float>(late_.turn / late_.travel)
-                                  : Odometer::kMostTurn;
+  odometer_.turn_per_travel = Odometer::ratio(late_.turn, late_.travel);
   odometer_.slop = 1e-6f * error_.eye_length();
   if (!only_moved || ++frames_on_odometer_ > kFramesOnOdometer) {
     odometer_.travel = odometer_.turn = 0;

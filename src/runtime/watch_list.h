@@ -36,9 +36,12 @@ namespace crease {
 struct Odometer {
   double travel = 0, turn = 0;
   float slop = 0;             // what floats may be wrong by, at the least
-  float turn_per_travel = 1;  // of late: a guess of what is to come, at most kMostTurn
+  float turn_per_travel = 0;  // until now, a guess of what is to come
 
-  static constexpr float kMostTurn = 1e20f;
+  static float ratio(double turn, double travel) {
+    constexpr float kMost = 1e20f;
+    return turn < double(kMost) * travel ? static_cast<float>(turn / travel) : kMost;
+  }
 };
 
 class WatchList {

@@ -27,9 +27,7 @@ struct Flight {
     const ViewError::Motion motion = error.motion_from(before);
     odometer.travel += motion.travel;
     odometer.turn += motion.turn;
-    const bool only_turned = motion.turn >= Odometer::kMostTurn * motion.travel;
-    odometer.turn_per_travel =
-        only_turned ? Odometer::kMostTurn : static_cast<float>(motion.turn / motion.travel);
+    odometer.turn_per_travel = Odometer::ratio(motion.turn, motion.travel);
   }
 };
 
