@@ -122,6 +122,10 @@ class CompactRanges {
     return static_cast<std::uint32_t>(size()) * usual_ + excess_.back();
   }
   void prefetch(std::size_t key) const { is_unusual_.prefetch(key); }
+  // What is left to be read then.
+  void prefetch_further(std::size_t key) const {
+    __builtin_prefetch(&excess_[is_unusual_.rank(key)]);
+  }
   std::size_t size() const { return is_unusual_.size(); }
   std::size_t bytes() const { return is_unusual_.bytes() + 4 * excess_.size(); }
 

@@ -48,6 +48,8 @@ class StoredValues {
 
   StoredValue operator[](std::size_t i) const;
   Vec3f direction(std::size_t i) const;  // dimension() 3
+  // The same of several.
+  void directions(std::span<const std::uint32_t> which, std::span<Vec3f> found) const;
   // Those values, in this order.
   StoredValues chosen(std::span<const std::uint32_t> which) const;
 

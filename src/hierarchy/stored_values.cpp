@@ -28,6 +28,17 @@ Vec3f StoredValues::direction(std::size_t i) const {
   return {n[0], n[1], n[2]};
 }
 
+void StoredValues::directions(std::span<const std::uint32_t> which, std::span<Vec3f> found) const {
+  if (!is_packed()) {
+    for (std::size_t i = 0; i < which.size(); ++i) found[i] = direction(which[i]);
+    return;
+  }
+  const std::uint32_t max_component = max_component_;
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    found[i] = octahedral_direction(max_component, unpacked(codes_[which[i]]));
+  }
+}
+
 StoredValue StoredValues::operator[](std::size_t i) const {
   StoredValue value;
   value.dimension = dimension_;

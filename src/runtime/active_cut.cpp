@@ -13,6 +13,8 @@ namespace crease {
 
 namespace {
 
+constexpr std::size_t kManyWedges = std::size_t(1) << 17;
+
 bool has_choices(const AttributeHierarchy& layer) {
   return !layer.leaf_attribute.empty() || layer.parents_of_split.list_count() > 0;
 }
@@ -23,6 +25,7 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy, const char* is_hidden)
     : hierarchy_(hierarchy),
       h_(hierarchy.vertices),
       is_hidden_(is_hidden),
+      is_large_(h_.wedge_count() > kManyWedges),
       place_of_layer_(hierarchy.layers.size(), kNone),
       done_((h_.split_count() + 63) / 64, 0),
       map_(h_.wedge_count()) {

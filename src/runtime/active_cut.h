@@ -113,7 +113,8 @@ class ActiveCut {
   void prefetch_split_further(SplitId s) const;
   void prefetch_merge(std::uint32_t slot, SplitId s) const;
   void prefetch_merge_further(SplitId s) const;
-  void prefetch_children(SplitId s) const;
+  void prefetch_begins(SplitId s) const;
+  Children prefetch_children(SplitId s) const;  // or who stands where they would
   // The slot that will be taken when `count` others were.
   std::uint32_t slot_to_come(std::size_t count) const {
     return count < free_slots_.size() ? free_slots_[free_slots_.size() - 1 - count] : kNoSlot;
@@ -131,12 +132,19 @@ class ActiveCut {
   std::uint32_t color_layer() const { return color_layer_; }
   std::uint32_t texcoord_layer() const { return texcoord_layer_; }  // kNone: no textures
 
-  // By DB03, of what the corners have now, which sorted_normal() tells from then on.
+  // By DB03, of what the corners have now, which sorted_normals() tells from then on.
   Part sort(ActiveTriangles& part, std::uint32_t triangle) const;
-  std::uint32_t sorted_normal(const ActiveTriangles& part, std::size_t corner_index) const {
+  std::array<std::uint32_t, 3> sorted_normals(const ActiveTriangles& part,
+                                              std::uint32_t triangle) const {
+    const std::size_t corner = 3 * std::size_t(triangle);
     const std::uint32_t place = place_of_layer_[normal_layer_];
-    return place == kNone ? vertices_[part.slots[corner_index]].normal
-                          : part.values[tracked_.size() * corner_index + place];
+    if (place == kNone) {
+      const std::uint32_t* const slots = &part.slots[corner];
+      return {vertices_[slots[0]].normal, vertices_[slots[1]].normal, vertices_[slots[2]].normal};
+    }
+    const std::size_t each = tracked_.size();
+    const std::uint32_t* const values = &part.values[each * corner + place];
+    return {values[0], values[each], values[2 * each]};
   }
   // The value that a corner shows, if its triangle shows stored ones: its index in the layer.
   std::size_t value_index(const ActiveTriangles& part, std::uint32_t corner_index,
@@ -240,6 +248,7 @@ class ActiveCut {
   }
   void prefetch_corners(std::uint32_t slot) const;
   void prefetch_normals(NodeId node) const;
+  void prefetch_normals_further(NodeId node) const;
   void prefetch_normal(std::uint32_t attribute) const;
   void prefetch_values(WedgeId wedge) const {  // of corners that arrive
     for (const PackedIndices<>* constants : constants_) constants->prefetch(index_of(wedge));
@@ -258,6 +267,7 @@ class ActiveCut {
   const MeshHierarchy& hierarchy_;
   const VertexHierarchy& h_;
   const char* const is_hidden_;
+  const bool is_large_;  // what there is per wedge, or per node, does not fit the nearer caches
   std::uint32_t normal_layer_ = kNone, color_layer_ = kNone, texcoord_layer_ = kNone;
   std::vector<std::uint32_t> tracked_;             // layers that have nodes of several attributes
   std::vector<std::uint32_t> place_of_layer_;      // in tracked_, or kNone
@@ -279,7 +289,7 @@ class ActiveCut {
   std::vector<SplitId> moves_;                    // that corners have not followed
   struct Born {
     TriangleId triangle;
-    std::array<WedgeId, 3> wedges;
+    std::array<WedgeId, 3> wedges, begins;  // of the vertices where they are
     std::array<std::uint32_t, 3> slots;
   };
   std::vector<Born> born_;  // scratch

@@ -37,8 +37,9 @@ void ActiveCut::show_following() {
   };
   std::array<CompactRanges::Range, kAhead> normals{};  // of the next ones
   for (std::size_t i = 0; i < count + kAhead; ++i) {
-    if (i + 16 < count) __builtin_prefetch(&vertices_[following_[i + 16].slot]);
-    if (i + 8 < count) prefetch_normals(vertices_[following_[i + 8].slot].node);
+    if (i + 20 < count) __builtin_prefetch(&vertices_[following_[i + 20].slot]);
+    if (i + 12 < count) prefetch_normals(vertices_[following_[i + 12].slot].node);
+    if (i + 8 < count) prefetch_normals_further(vertices_[following_[i + 8].slot].node);
     CompactRanges::Range& range = normals[i % kAhead];
     if (i >= kAhead) {
       const std::uint32_t slot = following_[i - kAhead].slot;
@@ -88,14 +89,17 @@ void ActiveCut::activate_born() {
     const std::size_t end = std::min(moves_.size(), first + kAtOnce);
     born_.clear();
     for (std::size_t i = first; i < end; ++i) {
-      if (i + kAtOnce < moves_.size()) {
-        h_.triangle_ranges.prefetch(index_of(moves_[i + kAtOnce]) + 1);
+      if (i + 2 * kAtOnce < moves_.size()) {
+        h_.triangle_ranges.prefetch(index_of(moves_[i + 2 * kAtOnce]) + 1);
+      }
+      if (is_large_ && i + kAtOnce < moves_.size()) {
+        h_.triangle_ranges.prefetch_further(index_of(moves_[i + kAtOnce]) + 1);
       }
       const TriangleRange range = h_.triangles_of(moves_[i]);
       for (std::uint32_t t = range.begin; t < range.end; ++t) {
         if (is_hidden(TriangleId{t})) continue;
         h_.triangles.of_corner.prefetch(3 * std::size_t(t));
-        born_.push_back({TriangleId{t}, {}, {}});
+        born_.push_back({TriangleId{t}, {}, {}, {}});
       }
     }
     for (Born& b : born_) {
@@ -107,7 +111,13 @@ void ActiveCut::activate_born() {
     }
     for (Born& b : born_) {
       for (std::size_t k = 0; k < 3; ++k) {
-        b.slots[k] = map_.slot_at(b.wedges[k]);
+        b.begins[k] = map_.begin_before(b.wedges[k]);
+        map_.prefetch_slot(b.begins[k]);
+      }
+    }
+    for (Born& b : born_) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        b.slots[k] = map_.slot_from(b.begins[k]);
         prefetch_vertex(b.slots[k]);
       }
     }

@@ -16,6 +16,11 @@ void ActiveCut::prefetch_split(std::uint32_t slot, SplitId s) const {
 void ActiveCut::prefetch_split_further(SplitId s) const {
   const std::size_t first = index_of(h_.first_child(s));
   __builtin_prefetch(&h_.bounds[index_of(s)]);
+  const WedgeId middle = h_.second_wedge[index_of(s)];
+  if (is_large_ && index_of(middle) < h_.wedge_count()) {
+    map_.prefetch(middle);
+    map_.prefetch_slot(middle);
+  }
   const std::size_t below = h_.is_split.rank(first);
   if (below < h_.bounds.size()) __builtin_prefetch(&h_.bounds[below]);
 }
@@ -29,7 +34,10 @@ void ActiveCut::prefetch_merge(std::uint32_t slot, SplitId s) const {
 
 void ActiveCut::prefetch_merge_further(SplitId s) const {
   const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
-  if (middle < h_.wedge_count()) map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle)});
+  if (middle < h_.wedge_count()) {
+    map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle)});
+    map_.prefetch_slot(WedgeId{static_cast<std::uint32_t>(middle)});  // if it is one
+  }
   if (middle > 0) map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle - 1)});
   const NodeId node = h_.node_of_split[index_of(s)];
   h_.is_split.prefetch(index_of(node));
@@ -40,19 +48,33 @@ void ActiveCut::prefetch_merge_further(SplitId s) const {
   h_.deltas.prefetch(3 * (index_of(node) - h_.root_count));
 }
 
-void ActiveCut::prefetch_children(SplitId s) const {
+void ActiveCut::prefetch_begins(SplitId s) const {
+  if (!is_large_) return;
   const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
-  if (middle == 0 || middle >= h_.wedge_count()) return;
-  for (const std::size_t wedge : {middle - 1, middle}) {
-    const std::uint32_t slot = map_.slot_at(WedgeId{static_cast<std::uint32_t>(wedge)});
+  if (middle == 0) return;
+  map_.prefetch_slot(map_.begin_before(WedgeId{static_cast<std::uint32_t>(middle - 1)}));
+}
+
+ActiveCut::Children ActiveCut::prefetch_children(SplitId s) const {
+  const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
+  if (middle == 0 || middle >= h_.wedge_count()) return {};
+  const Children found{map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle - 1)}),
+                       map_.slot_at(WedgeId{static_cast<std::uint32_t>(middle)})};
+  for (const std::uint32_t slot : {found.first, found.second}) {
     __builtin_prefetch(&vertices_[slot]);
     __builtin_prefetch(&following_of_slot_[slot]);
   }
+  return found;
 }
 
 void ActiveCut::prefetch_normals(NodeId node) const {
   if (normal_layer_ == kNone || node == kNoNode) return;
   hierarchy_.layers[normal_layer_].attribute_ranges.prefetch(index_of(node));
+}
+
+void ActiveCut::prefetch_normals_further(NodeId node) const {
+  if (!is_large_ || normal_layer_ == kNone || node == kNoNode) return;
+  hierarchy_.layers[normal_layer_].attribute_ranges.prefetch_further(index_of(node));
 }
 
 void ActiveCut::prefetch_normal(std::uint32_t attribute) const {

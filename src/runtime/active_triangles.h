@@ -51,6 +51,7 @@ struct ActiveTriangles {
     while (hole_count > 0) {
       const std::uint32_t hole = holes.back();
       holes.pop_back();
+      prefetch_hole();
       if (hole >= ids.size() || ids[hole] != kNoTriangle) continue;
       --hole_count;
       ids[hole] = id;
@@ -69,6 +70,15 @@ struct ActiveTriangles {
     values.resize(values_per_triangle * size);
     is_derived.resize(size);
     for (ChangeSet* set : {&moved, &touched, &shaded}) set->grow(size);
+  }
+
+  // Of those that the next ones fill.
+  void prefetch_hole() const {
+    constexpr std::size_t kAhead = 8;
+    if (holes.size() < kAhead) return;
+    const std::uint32_t hole = holes[holes.size() - kAhead];
+    __builtin_prefetch(ids.data() + hole);
+    __builtin_prefetch(slots.data() + 3 * std::size_t(hole));
   }
 
   void remove(std::uint32_t triangle) {

@@ -93,7 +93,7 @@ bool BlockCut::finds_wrong_root(const ViewNow& now, UpdateReport& report) {
     looks_ = 0;
   }
   const Odometer odometer{now.travel - watched_from_travel_, now.turn - watched_from_turn_,
-                          1e-6f * now.error.eye_length()};
+                          1e-6f * now.error.eye_length(), Odometer::ratio(now.turn, now.travel)};
   bool any = false;
   report.evaluated +=
       watched_roots_.find<true>(now.error, odometer, [&any](std::uint32_t) { any = true; });

@@ -4,6 +4,7 @@
 #include "runtime/draw_values.h"
 
 #include <algorithm>
+#include <array>
 
 namespace crease {
 
@@ -52,8 +53,13 @@ void CutDrawing::show_normals(const ActiveCut& cut, const Geomorphs& geomorphs,
     std::fill(shown.begin(), shown.end(), n);
     if (is_plain) return;
   }
+  const std::array<std::uint32_t, 3> values = cut.sorted_normals(part, triangle);
+  if (geomorphs.moving_count() == 0) {
+    const StoredValues& directions = cut.hierarchy().layers[cut.normal_layer()].values;
+    return directions.directions({values.data(), shown.size()}, shown);
+  }
   for (std::size_t k = 0; k < shown.size(); ++k) {
-    shown[k] = geomorphs.normal(slots[k], cut.sorted_normal(part, 3 * std::size_t(triangle) + k));
+    shown[k] = geomorphs.normal(slots[k], values[k]);
   }
 }
 

@@ -32,6 +32,7 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
     look_from(cut, view);
     turn_back(cut);
   }
+  at_once_ = !is_ordered_ && !view.consistent && !has_geomorphs();
   const bool requires_anew = std::exchange(requires_anew_, false);
   if (looks_anew || requires_anew) {
     splits_.clear();
@@ -42,7 +43,6 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
   stop_at_ = view.clock == nullptr ? std::numeric_limits<double>::infinity()
                                    : view.clock(view.clock_context) + view.max_seconds;
   moves_until_clock_ = 0;
-  at_once_ = !is_ordered_ && !view.consistent && !has_geomorphs();
   merge_arrived(cut);
   if (cut.triangle_count() > view_.max_triangles) {
     keep_to_budget(cut, {std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot}, 0);
@@ -127,7 +127,12 @@ void Refiner::fetch_merges(const ActiveCut& cut) const {
     wrong_.prefetch(slot);
     if (pair_of_slot_[slot] != kNone) merged_.prefetch(pair_of_slot_[slot]);
   }
-  if (i + 4 < count) cut.prefetch_children(wishes[i + 4].split);
+  if (i + 6 < count) cut.prefetch_begins(wishes[i + 6].split);
+  if (i + 4 < count) {
+    const ActiveCut::Children children = cut.prefetch_children(wishes[i + 4].split);
+    if (children.first != kNoSlot) __builtin_prefetch(pair_of_slot_.data() + children.first);
+    if (children.second != kNoSlot) __builtin_prefetch(pair_of_slot_.data() + children.second);
+  }
 }
 
 void Refiner::fetch_splits(const ActiveCut& cut) const {
@@ -137,8 +142,10 @@ void Refiner::fetch_splits(const ActiveCut& cut) const {
     const std::uint32_t slot = wishes[i + 8].slot, other = cut.slot_to_come(8);
     cut.prefetch_split(slot, wishes[i + 8].split);
     wrong_.prefetch(slot);
+    __builtin_prefetch(pair_of_slot_.data() + slot);
     if (other != kNoSlot) {
       wrong_.prefetch(other);
+      __builtin_prefetch(pair_of_slot_.data() + other);
       __builtin_prefetch(&cut.vertices()[other]);
     }
   }

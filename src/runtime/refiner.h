@@ -142,6 +142,7 @@ class Refiner {
   bool at_once_ = false;  // all that is found to be due is done by this update()
   float merge_below_ = 1;
   Odometer odometer_;
+  ViewError::Motion late_{};  // of the last frames, each less than the one after it
   int frames_on_odometer_ = 0;
   WatchList wrong_;                          // per slot
   WatchList merged_;                         // per pair

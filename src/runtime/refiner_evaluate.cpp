@@ -10,6 +10,7 @@ namespace crease {
 namespace {
 
 constexpr int kFramesOnOdometer = 4096;  // so that floats can tell what a frame adds
+constexpr double kOfBefore = 0.75;       // what a frame before this one tells of those to come
 
 }  // namespace
 
@@ -30,6 +31,9 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
   const ViewError::Motion motion = error_.motion_from(before);
   odometer_.travel += motion.travel;
   odometer_.turn += motion.turn;
+  late_.travel = kOfBefore * late_.travel + motion.travel;
+  late_.turn = kOfBefore * late_.turn + motion.turn;
+  odometer_.turn_per_travel = Odometer::ratio(late_.turn, late_.travel);
   odometer_.slop = 1e-6f * error_.eye_length();
   if (!only_moved || ++frames_on_odometer_ > kFramesOnOdometer) {
     odometer_.travel = odometer_.turn = 0;
@@ -89,7 +93,7 @@ void Refiner::drop_pair(std::uint32_t slot) {
   pair_of_slot_[slot] = kNone;
   const std::size_t last = pairs_.size() - 1;
   if (pair != last) {
-    merged_.set(pair, merged_.get(last));
+    merged_.set_as(pair, last);
     pairs_[pair] = pairs_[last];
     pair_of_slot_[pairs_[pair].slot] = pair;
   }
@@ -112,15 +116,16 @@ float Refiner::excess_above(const ActiveCut& cut, const ActiveVertex& v, SplitId
 }
 
 void Refiner::find_merges(const ActiveCut& cut) {
-  report_.evaluated += merged_.find<false>(error_, odometer_, [&](std::uint32_t pair) {
-    wish_merge(cut, pairs_[pair].split, pairs_[pair].slot);
-  });
+  report_.evaluated += merged_.find<false>(
+      error_, odometer_,
+      [&](std::uint32_t pair) { wish_merge(cut, pairs_[pair].split, pairs_[pair].slot); },
+      at_once_);
   if (!is_ordered_) sort_by_place(cut, merges_.wishes);
 }
 
 void Refiner::find_splits(const ActiveCut& cut) {
-  report_.evaluated +=
-      wrong_.find<true>(error_, odometer_, [&](std::uint32_t slot) { wish_split(cut, slot); });
+  report_.evaluated += wrong_.find<true>(
+      error_, odometer_, [&](std::uint32_t slot) { wish_split(cut, slot); }, at_once_);
   if (!is_ordered_) sort_by_place(cut, splits_.wishes);
 }
 

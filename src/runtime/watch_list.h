@@ -35,7 +35,13 @@ namespace crease {
 // How far the camera has come.
 struct Odometer {
   double travel = 0, turn = 0;
-  float slop = 0;  // what floats may be wrong by, at the least
+  float slop = 0;             // what floats may be wrong by, at the least
+  float turn_per_travel = 0;  // until now, a guess of what is to come
+
+  static float ratio(double turn, double travel) {
+    constexpr float kMost = 1e20f;
+    return turn < double(kMost) * travel ? static_cast<float>(turn / travel) : kMost;
+  }
 };
 
 class WatchList {
@@ -70,14 +76,7 @@ class WatchList {
   void set(std::size_t i, const Watch& watch, const ViewError& error, const Odometer& now) {
     if (!facings_.empty()) return set(i, watch);
     put(i, watch);
-    const Date due = due_of<kWrong>(error, from(now), watch);
-    Dates& four = due_[i / kLanes / kLanes];
-    const std::size_t lane = i / kLanes % kLanes;
-    four.travel[lane] = lesser(due.travel, four.travel[lane]);
-    four.turn[lane] = lesser(due.turn, four.turn[lane]);
-    Group& group = groups_[i / kGroup];
-    group.due = {lesser(due.travel, group.due.travel), lesser(due.turn, group.due.turn)};
-    if (kWrong && group.has_bound()) widen(group, watch);
+    bring_date(i, due_of<kWrong>(error, from(now), now.turn_per_travel, watch), watch);
   }
   Watch get(std::size_t i) const {
     const std::size_t lane = i % kLanes;
@@ -92,6 +91,15 @@ class WatchList {
     watch.reach_aside = f.reach_aside[lane];
     return watch;
   }
+  // It is what another one was, and not to be found any sooner.
+  void set_as(std::size_t i, std::size_t from) {
+    const Watch watch = get(from);
+    if (!facings_.empty()) return set(i, watch);
+    put(i, watch);
+    const Dates& dates = due_[from / kLanes / kLanes];
+    const std::size_t lane = from / kLanes % kLanes;
+    bring_date(i, {dates.travel[lane], dates.turn[lane]}, watch);
+  }
   void prefetch(std::size_t i) const {
     const char* const spheres = reinterpret_cast<const char*>(&spheres_[i / kLanes]);
     __builtin_prefetch(spheres);
@@ -105,11 +113,14 @@ class WatchList {
   }
 
   // Calls found(i), ascending, for each that is seen to be wrong, or for each other one. Returns
-  // how many it looked at.
+  // how many it looked at. `all_move`: each that is found will be set, turned off or dropped before
+  // the next find(), so it need not be looked at again as it is.
   template <bool kWrong, typename Found>
-  std::size_t find(const ViewError& error, const Odometer& now, Found found) {
+  std::size_t find(const ViewError& error, const Odometer& now, Found found,
+                   bool all_move = false) {
     const auto travel = static_cast<float>(now.travel), turn = static_cast<float>(now.turn);
     const Date from = WatchList::from(now);
+    const float again = all_move && facings_.empty() ? kNever : -kNever;
     std::size_t looked_at = 0;
     const std::size_t block_count = (size_ + kLanes - 1) / kLanes;
     for (std::size_t g = 0; g * kGroup < size_; ++g) {
@@ -118,25 +129,35 @@ class WatchList {
         ++looked_at;
         if (is_far(error, from, groups_[g])) continue;
       }
-      const std::size_t end = std::min(block_count, (g + 1) * kGroup / kLanes);
-      for (std::size_t first = g * kGroup / kLanes; first < end; first += kLanes) {
-        const Dates& due = due_[first / kLanes];
-        std::uint32_t left = negative_lanes((due.travel <= travel) | (due.turn <= turn));
-        for (; left != 0; left &= left - 1) {
-          const std::size_t b = first + static_cast<std::size_t>(std::countr_zero(left));
-          if (b >= end) {  // until it is set
-            set_due(b, kNever, kNever);
-            continue;
-          }
-          looked_at += kLanes;
-          std::uint32_t hit = negative_lanes(look<kWrong>(error, from, b));
-          for (; hit != 0; hit &= hit - 1) {
-            const std::size_t i = kLanes * b + static_cast<std::size_t>(std::countr_zero(hit));
-            if (i < size_) found(static_cast<std::uint32_t>(i));
-          }
+      // Where the next due one is nobody can foretell: their bits first, then one loop.
+      constexpr std::size_t kBlocks = kGroup / kLanes;
+      const std::size_t first = g * kBlocks;
+      Dates later{FourFloats{} + kNever, FourFloats{} + kNever};  // of those that are not due
+      std::uint32_t left = 0;
+      const std::size_t end = std::min(due_.size(), (first + kBlocks) / kLanes);
+      for (std::size_t i = first / kLanes; i < end; ++i) {
+        const Dates& due = due_[i];
+        const FourInts is_due = (due.travel <= travel) | (due.turn <= turn);
+        left |= negative_lanes(is_due) << (kLanes * i - first);
+        later.travel = lesser(or_nan(due.travel, is_due), later.travel);
+        later.turn = lesser(or_nan(due.turn, is_due), later.turn);
+      }
+      if (block_count < first + kBlocks) left &= (1u << (block_count - first)) - 1;
+      Date next{least(later.travel), least(later.turn)};
+      for (; left != 0; left &= left - 1) {
+        const std::size_t b = first + static_cast<std::size_t>(std::countr_zero(left));
+        looked_at += kLanes;
+        Date due;
+        std::uint32_t hit = look<kWrong>(error, from, now.turn_per_travel, again, b, due);
+        set_due(b, due.travel, due.turn);
+        next = {lesser(due.travel, next.travel), lesser(due.turn, next.turn)};
+        for (; hit != 0; hit &= hit - 1) {
+          const std::size_t i = kLanes * b + static_cast<std::size_t>(std::countr_zero(hit));
+          if (i < size_) found(static_cast<std::uint32_t>(i));
         }
       }
-      date_group<kWrong>(g);
+      groups_[g].due = next;
+      if (kWrong && facings_.empty()) keep_bound(g);
     }
     return looked_at;
   }
@@ -183,7 +204,7 @@ class WatchList {
     bool has_bound() const { return finds > kFindsToBound; }
   };
   static constexpr std::uint32_t kFindsToBound = 1, kMostWidened = kGroup;
-  static constexpr float kRounding = 1e-6f, kSafe = 0.999f;
+  static constexpr float kRounding = 1e-6f, kSafe = 0.999f, kFar = 1e15f;
   static constexpr Dates kNow{{-kNever, -kNever, -kNever, -kNever},
                               {-kNever, -kNever, -kNever, -kNever}};
   static constexpr Spheres kOff{{}, {}, {}, {-kNever, -kNever, -kNever, -kNever}, {}};
@@ -200,14 +221,32 @@ class WatchList {
     f.sine[lane] = watch.sine, f.cosine[lane] = watch.cosine;
     f.reach_aside[lane] = watch.reach_aside;
   }
+  void bring_date(std::size_t i, const Date& due, const Watch& watch) {
+    Dates& four = due_[i / kLanes / kLanes];
+    const std::size_t lane = i / kLanes % kLanes;
+    four.travel[lane] = lesser(due.travel, four.travel[lane]);
+    four.turn[lane] = lesser(due.turn, four.turn[lane]);
+    Group& group = groups_[i / kGroup];
+    group.due = {lesser(due.travel, group.due.travel), lesser(due.turn, group.due.turn)};
+    if (group.has_bound()) widen(group, watch);
+  }
   // So much sooner that no rounding makes a date late.
   static Date from(const Odometer& now) {
     return {static_cast<float>(now.travel * (1 - 1e-6)) - now.slop,
             static_cast<float>(now.turn * (1 - 1e-6)) - kRounding};
   }
-  // As date() of four.
+  // How far the camera may travel, and turn so much with it, until a plane comes to what is `aside`
+  // of it. A plane moves by what the eye travels, and by what it turns times the distance; each may
+  // use up a share, and for a camera that goes on as it came both are used up at once.
+  template <typename Real>
+  static Real until_planes(float turn_per_travel, const Real& distance, const Real& aside) {
+    const Real near_aside = lesser(aside, Real{} + kFar);
+    return near_aside / (1 + turn_per_travel * (distance + near_aside));
+  }
+  // As look() of four.
   template <bool kWrong>
-  static Date due_of(const ViewError& error, const Date& from, const Watch& w) {
+  static Date due_of(const ViewError& error, const Date& from, float turn_per_travel,
+                     const Watch& w) {
     if (w.reach == -kNever) return kWrong ? Date{kNever, kNever} : Date{-kNever, -kNever};
     const float distance = error.distance(w.center.x, w.center.y, w.center.z);
     const float gap = magnitude(w.reach - distance);
@@ -216,11 +255,9 @@ class WatchList {
     }
     const float inside = error.inside(w.center.x, w.center.y, w.center.z) + w.radius;
     if ((inside >= 0) == kWrong || !(distance < w.reach)) return {-kNever, -kNever};
-    constexpr float kFar = 1e30f;
-    const float half = lesser(0.5f * magnitude(inside), kFar);
-    const float turn = half / (distance + half);
-    const float travel = (kWrong ? half : lesser(gap, half)) - kRounding * distance;
-    return {from.travel + kSafe * travel, turn < 1 ? from.turn + kSafe * turn : kNever};
+    const float by_planes = until_planes(turn_per_travel, distance, magnitude(inside));
+    const float travel = (kWrong ? by_planes : lesser(gap, by_planes)) - kRounding * distance;
+    return {from.travel + kSafe * travel, from.turn + kSafe * turn_per_travel * by_planes};
   }
   static void widen(Group& group, const Watch& w) {
     constexpr float kMore = 1 + 1e-5f;
@@ -249,16 +286,7 @@ class WatchList {
   }
 
   // The group was looked at.
-  template <bool kWrong>
-  void date_group(std::size_t g) {
-    Dates first = due_[kLanes * g];
-    const std::size_t end = std::min(due_.size(), kLanes * (g + 1));
-    for (std::size_t i = kLanes * g + 1; i < end; ++i) {
-      first.travel = lesser(first.travel, due_[i].travel);
-      first.turn = lesser(first.turn, due_[i].turn);
-    }
-    groups_[g].due = {least(first.travel), least(first.turn)};
-    if (!kWrong || !facings_.empty()) return;
+  void keep_bound(std::size_t g) {
     Group& group = groups_[g];
     if (group.has_bound() ? group.widened > kMostWidened : ++group.finds > kFindsToBound) {
       bound(g);
@@ -302,47 +330,38 @@ class WatchList {
     group.radius = (1 + kMore) * -least(-radius) + slack;
   }
 
-  // The lanes to be found. Dates what has none.
+  // The lanes to be found, and the date of all four; `again` of those that are found.
+  //
+  // Without branches: whether something is near, but out of view, nobody can foretell.
   template <bool kWrong>
-  FourInts look(const ViewError& error, const Date& from, std::size_t b) {
+  std::uint32_t look(const ViewError& error, const Date& from, float turn_per_travel, float again,
+                     std::size_t b, Date& due) const {
     const Spheres& s = spheres_[b];
+    const FourFloats never = FourFloats{} + kNever;
     const FourFloats distance = error.distance(s.x, s.y, s.z);
     const FourInts is_near = distance < reach_of(error, b);
-    const FourFloats gap = magnitude(s.reach - distance);
-    // Hardly any of what is not split is near, unless it is out of view.
-    if (kWrong && !any(is_near)) {
-      if (facings_.empty()) {
-        set_due(b, from.travel + kSafe * least(gap - kRounding * distance), kNever);
-      }
-      return is_near;
-    }
-    const FourFloats never = FourFloats{} + kNever;
     const FourFloats inside = error.inside(s.x, s.y, s.z) + s.radius;
     const FourInts is_wrong = is_near & (inside >= 0);
     const FourInts hit = kWrong ? is_wrong : ~is_wrong;
-    if (any(hit)) {
-      set_due(b, -kNever, -kNever);
-    } else if (kWrong) {  // either far or out of view
-      date(from, b, distance, is_near ? never : gap, is_near ? magnitude(inside) : never);
-    } else {  // near and in view
-      date(from, b, distance, gap, inside);
+    if (!facings_.empty()) {  // what faces where changes sooner
+      due = {-kNever, -kNever};
+      return negative_lanes(hit);
     }
-    return hit;
+    const FourFloats gap = magnitude(s.reach - distance);
+    const FourFloats by_planes = until_planes(turn_per_travel, distance, magnitude(inside));
+    const FourFloats travel =
+        (kWrong ? (is_near ? by_planes : gap) : lesser(gap, by_planes)) - kRounding * distance;
+    const FourFloats by_turn = turn_per_travel * by_planes;
+    const FourFloats turn = kWrong ? (is_near ? by_turn : never) : by_turn;
+    const FourFloats hits = FourFloats{} + again;
+    due = {from.travel + kSafe * least(hit ? hits : travel),
+           from.turn + kSafe * least(hit ? hits : turn)};
+    return negative_lanes(hit);
   }
 
-  // None of four may change sides before the eye has come so much nearer or farther, or the planes
-  // so much. A plane moves by what the eye travels, and by what it turns times the distance; each
-  // of them may use up half.
-  void date(const Date& from, std::size_t b, const FourFloats& distance, const FourFloats& gap,
-            const FourFloats& inside) {
-    if (!facings_.empty()) return;  // what faces where changes sooner
-    constexpr float kFar = 1e30f;
-    const FourFloats half = lesser(0.5f * inside, FourFloats{} + kFar);
-    const FourFloats turn = half / (distance + half);  // 1 and more is never: all around
-    const FourFloats travel = lesser(gap, half) - kRounding * distance;
-    const float least_turn = least(turn);
-    set_due(b, from.travel + kSafe * least(travel),
-            least_turn < 1 ? from.turn + kSafe * least_turn : kNever);
+  // Which lesser(x, y) passes over, if it is x.
+  static FourFloats or_nan(const FourFloats& x, const FourInts& is_nan) {
+    return std::bit_cast<FourFloats>(std::bit_cast<FourInts>(x) | is_nan);
   }
   void set_due(std::size_t b, float travel, float turn) {
     due_[b / kLanes].travel[b % kLanes] = travel;

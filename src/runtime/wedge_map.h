@@ -56,22 +56,11 @@ class WedgeMap {
     }
   }
 
-  std::uint32_t slot_at(WedgeId wedge) const { return slot_of_begin_[begin_before(wedge)]; }
+  std::uint32_t slot_at(WedgeId wedge) const { return slot_from(begin_before(wedge)); }
 
-  void prefetch(WedgeId wedge) const {
-    __builtin_prefetch(&levels_[0][index_of(wedge) / 64]);
-    __builtin_prefetch(&slot_of_begin_[index_of(wedge)]);
-  }
-
-  std::size_t bytes() const {
-    std::size_t sum = 4 * wedge_count_;
-    for (const std::vector<std::uint64_t>& level : levels_) sum += 8 * level.size();
-    return sum;
-  }
-
- private:
-  // The last begin at or before the wedge; there is one.
-  std::size_t begin_before(WedgeId wedge) const {
+  // The same in two steps: the last begin at or before the wedge; there is one. And what stands
+  // from there on.
+  WedgeId begin_before(WedgeId wedge) const {
     std::size_t i = index_of(wedge);
     std::size_t l = 0;
     std::uint64_t found = levels_[0][i / 64] & (~std::uint64_t(0) >> (63 - i % 64));
@@ -82,8 +71,19 @@ class WedgeMap {
     }
     i = (i & ~std::size_t(63)) | last_bit(found);
     while (l > 0) i = 64 * i + last_bit(levels_[--l][i]);
-    return i;
+    return WedgeId{static_cast<std::uint32_t>(i)};
   }
+  std::uint32_t slot_from(WedgeId begin) const { return slot_of_begin_[index_of(begin)]; }
+  void prefetch(WedgeId wedge) const { __builtin_prefetch(&levels_[0][index_of(wedge) / 64]); }
+  void prefetch_slot(WedgeId begin) const { __builtin_prefetch(&slot_of_begin_[index_of(begin)]); }
+
+  std::size_t bytes() const {
+    std::size_t sum = 4 * wedge_count_;
+    for (const std::vector<std::uint64_t>& level : levels_) sum += 8 * level.size();
+    return sum;
+  }
+
+ private:
   static std::size_t last_bit(std::uint64_t word) {
     return static_cast<std::size_t>(std::countl_zero(word)) ^ 63;  // one instruction
   }

@@ -27,6 +27,7 @@ struct Flight {
     const ViewError::Motion motion = error.motion_from(before);
     odometer.travel += motion.travel;
     odometer.turn += motion.turn;
+    odometer.turn_per_travel = Odometer::ratio(motion.turn, motion.travel);
   }
 };
 
@@ -49,7 +50,7 @@ std::vector<std::uint32_t> those_to_find(const WatchList& watches, const ViewErr
 }
 
 template <bool kWrong>
-void check_flight(bool coarse_outside, std::uint64_t seed) {
+void check_flight(bool coarse_outside, bool all_move, std::uint64_t seed) {
   constexpr std::size_t kCount = 1500;
   std::mt19937_64 random(seed);
   const auto share = [&random] { return float(random() % 1000) / 1000; };
@@ -66,20 +67,21 @@ void check_flight(bool coarse_outside, std::uint64_t seed) {
     const Vec3d eye{kCount * (0.5 + 0.6 * std::sin(a)), 8 * std::sin(3 * a), 5};
     flight.move_to(eye, eye + Vec3d{std::cos(7 * a), std::sin(7 * a), -0.3});
     std::vector<std::uint32_t> found;
-    watches.find<kWrong>(flight.error, flight.odometer,
-                         [&found](std::uint32_t i) { found.push_back(i); });
+    watches.find<kWrong>(
+        flight.error, flight.odometer, [&found](std::uint32_t i) { found.push_back(i); }, all_move);
     REQUIRE(found == those_to_find<kWrong>(watches, flight.error));
     const auto set = [&](std::size_t i, const Watch& watch) {
       if (random() % 2 == 0) return watches.set(i, watch);
       watches.set<kWrong>(i, watch, flight.error, flight.odometer);
     };
     for (const std::uint32_t i : found) {  // as after a split
-      if (random() % 2 == 0) set(i, house(i, 10 * share(), 3 * share()));
+      if (all_move || random() % 2 == 0) set(i, house(i, 10 * share(), 3 * share()));
     }
     for (std::uint64_t left = random() % 4; left > 0; --left) {
       const std::size_t i = random() % kCount;
       set(i, house(i, 200 * share(), 3 * share()));
       if (kWrong && random() % 4 == 0) watches.turn_off(i);
+      watches.set_as(random() % kCount, random() % kCount);
     }
     a += random() % 8 == 0 ? 0 : std::pow(10.0, -double(random() % 5)) * 0.1;
   }
@@ -90,10 +92,12 @@ TEST_CASE(
     "set") {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     CAPTURE(seed);
-    check_flight<true>(true, seed);
-    check_flight<true>(false, seed);
-    check_flight<false>(true, seed);
-    check_flight<false>(false, seed);
+    for (const bool coarse_outside : {true, false}) {
+      for (const bool all_move : {true, false}) {
+        check_flight<true>(coarse_outside, all_move, seed);
+        check_flight<false>(coarse_outside, all_move, seed);
+      }
+    }
   }
 }
 
