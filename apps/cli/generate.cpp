@@ -48,7 +48,7 @@ Command add_generate(CLI::App& app, const Common& common) {
       ->type_name("OUT");
   command->add_option("--triangles", options->city.triangles, "about how many")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t(1), std::size_t(500'000'000)))
+      ->check(CLI::Range(std::size_t(1), CityOptions::kMost))
       ->capture_default_str();
   command->add_option("--seed", options->city.seed, "another seed, another city")
       ->type_name("S")

@@ -16,7 +16,9 @@ namespace crease {
 // own, as are the trees of a garden, a block's pavement and the ground. All bodies are closed.
 struct CityOptions {
   std::uint32_t seed = 1;
-  std::size_t triangles = 1'000'000;  // about: buildings are added until it is reached
+  // About: buildings are added until it is reached. More than kMost are taken for so many.
+  static constexpr std::size_t kMost = 150'000'000;
+  std::size_t triangles = 1'000'000;
 };
 Mesh generate_city(const CityOptions& options);
 

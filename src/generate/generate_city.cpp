@@ -9,6 +9,7 @@
 #include "generate/street_grid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ constexpr double kKerb = 0.15;
 constexpr double kSlabDepth = 3;
 constexpr std::size_t kLandmarkFrom = 150'000;  // triangles: a small city has only a church
 constexpr double kRoad = 12;
+constexpr double kBlockTriangles = 1500;  // rather less than a block has where all is outskirts
 
 struct BlockAt {
   int i, j;
@@ -35,7 +37,9 @@ class City {
   explicit City(const CityOptions& options)
       : options_(options),
         has_landmark_(options.triangles >= kLandmarkFrom),
-        grid_(make_street_grid(options.seed)) {}
+        last_block_(last_block_for(options.triangles)),
+        grid_(make_street_grid(options.seed, last_block_)),
+        is_built_(side() * side()) {}
 
   Mesh build() {
     for (const BlockAt& block : blocks_from_the_middle()) {
@@ -55,21 +59,31 @@ class City {
   }
 
  private:
-  static constexpr int kSide = 2 * kLastBlock + 1;
-
-  static std::size_t block_index(int i, int j) {
-    return std::size_t((j + kLastBlock) * kSide + i + kLastBlock);
+  static int last_block_for(std::size_t triangles) {
+    const double blocks_along = std::sqrt(double(triangles) / kBlockTriangles);
+    return std::max(kLastInnerBlock, int(blocks_along / 2) + 4);
   }
-  // Random numbers of a block, so that no block moves another.
+  std::size_t side() const { return std::size_t(2 * last_block_ + 1); }
+  std::size_t block_index(int i, int j) const {
+    return std::size_t(j + last_block_) * side() + std::size_t(i + last_block_);
+  }
+
+  // Random numbers of a block, so that no block moves another, nor do those beyond the inner ones.
   Random stream(int i, int j, int lot = 0) const {
-    return Random(options_.seed, 100 + block_index(i, j) + std::uint64_t(lot) * kSide * kSide);
+    constexpr int kLast = kLastInnerBlock, kSide = 2 * kLast + 1;
+    constexpr std::uint64_t kOuter = std::uint64_t(1) << 40, kRow = 1 << 20;
+    const bool is_inner = std::max(std::abs(i), std::abs(j)) <= kLast;
+    const std::uint64_t number =
+        is_inner ? std::uint64_t((j + kLast) * kSide + i + kLast)
+                 : kOuter + std::uint64_t(j) * kRow + std::uint64_t(i);  // modulo 2^64
+    return Random(options_.seed, 100 + number + std::uint64_t(lot) * kSide * kSide);
   }
 
   // In rounded squares, in whole metres; a little out of order, so that the edge of the city frays.
   std::vector<BlockAt> blocks_from_the_middle() const {
     std::vector<BlockAt> blocks;
-    for (int j = -kLastBlock + 2; j <= kLastBlock - 2; ++j) {
-      for (int i = -kLastBlock + 2; i <= kLastBlock - 2; ++i) {
+    for (int j = -last_block_ + 2; j <= last_block_ - 2; ++j) {
+      for (int i = -last_block_ + 2; i <= last_block_ - 2; ++i) {
         const std::int64_t x = std::int64_t(grid_.x.at(i).middle());
         const std::int64_t y = std::int64_t(grid_.y.at(j).middle());
         const std::int64_t stretch = stream(i, j, 1).between(85, 118);
@@ -178,10 +192,11 @@ class City {
 
   CityOptions options_;
   bool has_landmark_;
+  int last_block_;
   StreetGrid grid_;
   ModelBuilder b_;
   BlockRange range_;
-  std::vector<bool> is_built_ = std::vector<bool>(std::size_t(kSide) * kSide);
+  std::vector<bool> is_built_;  // by block_index()
   int block_count_ = 0, building_count_ = 0;
   bool full_ = false;
 };
@@ -189,7 +204,7 @@ class City {
 }  // namespace
 
 Mesh generate_city(const CityOptions& options) {
-  return City(options).build();
+  return City({options.seed, std::min(options.triangles, CityOptions::kMost)}).build();
 }
 
 }  // namespace crease

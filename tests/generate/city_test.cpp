@@ -1,5 +1,6 @@
 #include "crease/generate.h"
 #include "crease/shading.h"
+#include "generate/street_grid.h"
 
 #include <doctest/doctest.h>
 
@@ -77,6 +78,21 @@ std::map<Edge, std::vector<Side>> sides_of_edges(const Mesh& mesh) {
 }
 
 }  // namespace
+
+TEST_CASE("a larger grid leaves the inner blocks where they are, and goes on beyond them") {
+  const StreetGrid small = make_street_grid(1, kLastInnerBlock), large = make_street_grid(1, 170);
+  CHECK(small.river_low == large.river_low);
+  for (StreetAxis StreetGrid::*axis : {&StreetGrid::x, &StreetGrid::y}) {
+    for (int i = -kLastInnerBlock; i <= kLastInnerBlock; ++i) {
+      CHECK((small.*axis).at(i).low == (large.*axis).at(i).low);
+      CHECK((small.*axis).at(i).high == (large.*axis).at(i).high);
+    }
+    REQUIRE((large.*axis).blocks.size() == 2 * 170 + 1);
+    for (int i = -170; i < 170; ++i) CHECK((large.*axis).street_after(i) >= 9);
+    // So that the order of blocks, by fourth powers of metres, does not overflow.
+    CHECK(std::max(-(large.*axis).at(-170).low, (large.*axis).at(170).high) < 13'900);
+  }
+}
 
 TEST_CASE("a city has the triangles that were asked for, within five percent") {
   for (std::size_t triangles : {10'000, 30'000, 100'000, 150'000, 300'000, 1'000'000}) {
