@@ -26,7 +26,7 @@ function(crease_module name)
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_compile_options(crease_${name}_objects PRIVATE -ffp-contract=off -fno-math-errno ${CREASE_FALSE_WARNINGS})
-  if(name MATCHES "^(hierarchy|runtime|simplify)$" AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  if(name MATCHES "^(hierarchy|runtime)$" AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # Else GCC inlines no function that another library might replace, not even within a file.
     target_compile_options(crease_${name}_objects PRIVATE -fno-semantic-interposition)
   endif()

@@ -1,5 +1,7 @@
 // CREASE_WIDE before a function: it is compiled twice, and the wider one is taken where the
-// processor has it. No products are fused, so both give the same to the bit.
+// processor has it. No products are fused, so both give the same to the bit. Not in a module with
+// -fno-semantic-interposition: GCC 12 then takes what chooses between the two for a function that
+// never throws, and a std::bad_alloc out of either ends the process.
 #pragma once
 
 // Sanitizers cannot start with the indirect functions that this needs.
