@@ -3,7 +3,7 @@
 serve`, and from nginx behind a line of 20 Mbit/s and 50 ms (shaped_line.py); their picture; and time
 and bytes until models have their first picture and are right, over that line.
 
-    crease generate city -o city20.glb --triangles 20000000 && crease build city20.glb -o city20.crease
+    crease generate city -o city20.glb --triangles 20200000 && crease build city20.glb -o city20.crease
     bench/flights.py city20.crease --picture docs/pictures/flight.png
     bench/flights.py city20.crease --frames 60 --check 30           # to see whether it all runs
     bench/flights.py city20.crease --frames 0 --still city20.crease dragon.crease lucy.crease
