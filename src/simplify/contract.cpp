@@ -1,9 +1,7 @@
-// The greedy loop of one patch, and what one contraction changes.
+// What one contraction changes: errors, wedges, triangles.
 #include "simplify/patch_simplifier.h"
-#include "simplify/sort_by_cost.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace crease::simplification {
@@ -14,13 +12,6 @@ namespace {
 constexpr double kSameValue = 1e-3;
 constexpr double kSameCopy = 2e-2;  // for a wedge that only moved along
 
-// A pair that would fold something is tried again at once so often; then it waits.
-constexpr std::uint32_t kTries = 2;
-
-// A contraction that costs more than this many times the next one is not chosen now; how much more
-// need not be known.
-constexpr double kDear = 8;
-
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
@@ -30,171 +21,6 @@ float raised(float base, double own) {
 }
 
 }  // namespace
-
-std::vector<double> PatchSimplifier::initial_costs() {
-  std::vector<double> costs;
-  costs.reserve(pairs_.size());
-  for (const auto& [a, b] : pairs_) costs.push_back(place(a, b, HUGE_VAL).cost);
-  return costs;
-}
-
-bool PatchSimplifier::pop(Entry& entry) {
-  const bool ordered = next_in_order_ != order_.size();
-  if (heap_.empty() && !ordered) return false;
-  if (heap_.empty() || (ordered && order_[next_in_order_].cost <= heap_.top().cost())) {
-    const Ordered& next = order_[next_in_order_++];
-    entry = {next.cost, next.pair, kNone, 0};
-    return true;
-  }
-  entry = heap_.top();
-  heap_.pop();
-  return true;
-}
-
-float PatchSimplifier::next_cost() const {
-  const float in_order = next_in_order_ == order_.size() ? HUGE_VALF : order_[next_in_order_].cost;
-  return heap_.empty() ? in_order : std::min(in_order, heap_.top().cost());
-}
-
-PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
-  while (!vertices_[v].alive) {
-    const Index into = vertices_[v].into;
-    if (!vertices_[into].alive) vertices_[v].into = vertices_[into].into;
-    v = into;
-  }
-  return v;
-}
-
-void PatchSimplifier::hold(const Entry& entry, double cost, const Placed& placed) {
-  const bool waits = placed.cost <= steering_.cost_limit;
-  const float cost_with_ring = static_cast<float>(placed.cost);
-  if (blamed_ == kNone || entry.tries >= kTries) {
-    if (waits) heap_.push({cost_with_ring, entry.pair(), kNone, entry.tries});
-    return;
-  }
-  const Index id = static_cast<Index>(held_.size());
-  Held& held = held_.emplace_back();
-  held.pair = entry.pair();
-  held.next = held_of_triangle_[blamed_];
-  held.cost = static_cast<float>(cost);
-  held.tries = static_cast<std::uint16_t>(entry.tries + 1);
-  held.waiting = true;
-  held.lasts = placed.lasts;
-  held.looked_at = static_cast<Index>(result_.contractions.size());
-  held.position = whole(placed.position);
-  held.cost_with_ring = placed.cost;
-  held_of_triangle_[blamed_] = id;
-  if (waits) heap_.push({cost_with_ring, entry.pair(), id, entry.tries + 1});
-}
-
-void PatchSimplifier::release(Index triangle) {
-  Index i = held_of_triangle_[triangle];
-  held_of_triangle_[triangle] = kNone;
-  for (; i != kNone; i = held_[i].next) {
-    if (!held_[i].waiting) continue;
-    held_[i].waiting = false;
-    heap_.push({held_[i].cost, held_[i].pair, kNone, held_[i].tries});
-  }
-}
-
-void PatchSimplifier::order_pairs() {
-  clear_for(order_, pairs_.size() / 2);
-  next_in_order_ = 0;
-  clear_for(candidates_, pairs_.size() / 2);
-  for (const auto& [a, b] : pairs_) {
-    const Placed placed = place(a, b, steering_.cost_limit);
-    if (!(placed.cost <= steering_.cost_limit)) continue;
-    order_.push_back({static_cast<float>(placed.cost), static_cast<Index>(candidates_.size())});
-    Candidate& pair = candidates_.emplace_back();
-    pair.a = a;
-    pair.b = b;
-    pair.placed_at = 0;
-    keep_placed(placed, pair);
-  }
-  sort_by_cost(order_, order_scratch_);
-}
-
-// Whether the pair is the first with these ends. One that is dropped keeps its old ones, of which
-// one is gone, so that it is not taken for the owner.
-bool PatchSimplifier::claim(Index pair, Index a, Index b) {
-  if (2 * owner_count_ >= owners_.size()) {
-    const std::vector<Index> old = std::move(owners_);
-    owners_.assign(2 * old.size(), kNone);
-    owner_count_ = 0;
-    for (Index owner : old) {
-      if (owner == kNone) continue;
-      const Candidate& old_pair = candidates_[owner];
-      if (vertices_[old_pair.a].alive && vertices_[old_pair.b].alive) {
-        claim(owner, old_pair.a, old_pair.b);
-      }
-    }
-  }
-  const std::size_t mask = owners_.size() - 1;
-  std::size_t slot = (a * 0x9e3779b1u ^ b * 0x85ebca77u) & mask;
-  for (; owners_[slot] != kNone; slot = (slot + 1) & mask) {
-    const Candidate& owner = candidates_[owners_[slot]];
-    if (owner.a == a && owner.b == b) return owners_[slot] == pair;
-  }
-  owners_[slot] = pair;
-  ++owner_count_;
-  candidates_[pair].a = a;
-  candidates_[pair].b = b;
-  return true;
-}
-
-PatchResult PatchSimplifier::run() {
-  result_.new_values.resize(layer_count());
-  held_of_triangle_.assign(global_triangle_.size(), kNone);
-  changed_around_.assign(vertices_.size(), 0);
-  order_pairs();
-  owners_.assign(std::bit_ceil(2 * candidates_.size() + 64), kNone);
-  owner_count_ = 0;
-  for (Entry entry; pop(entry);) {
-    const Held* waited = nullptr;
-    if (entry.held != kNone) {
-      if (!held_[entry.held].waiting) continue;
-      held_[entry.held].waiting = false;
-      waited = &held_[entry.held];
-    }
-    Candidate& pair = candidates_[entry.pair()];
-    Index a = survivor(pair.a), b = survivor(pair.b);
-    if (a == b) continue;
-    if (a > b) std::swap(a, b);
-    if (!claim(entry.pair(), a, b)) continue;
-    if (waited != nullptr && waited->lasts &&
-        std::max(changed_around_[a], changed_around_[b]) <= waited->looked_at) {
-      find_ring(a, b);
-      contract(a, b, to_double(waited->position), waited->cost_with_ring);
-      continue;
-    }
-    const float next = next_cost();
-
-    if (std::max(vertices_[a].changed_at, vertices_[b].changed_at) > pair.placed_at) {
-      pair.placed_at = static_cast<Index>(result_.contractions.size());
-      keep_placed(place(a, b, steering_.cost_limit), pair);
-    }
-    const double cost = pair.cost;
-    if (!(cost <= steering_.cost_limit)) continue;
-    if (static_cast<float>(cost) > entry.cost() && static_cast<float>(cost) > next) {
-      heap_.push({static_cast<float>(cost), entry.pair(), kNone, entry.tries});
-      continue;
-    }
-    const double bound =
-        std::min(steering_.cost_limit, kDear * double(std::max(next, static_cast<float>(cost))));
-    const Placed placed = make_legal(pair, bound);
-    if (!(placed.cost <= steering_.cost_limit) || (static_cast<float>(placed.cost) > entry.cost() &&
-                                                   static_cast<float>(placed.cost) > next)) {
-      hold(entry, cost, placed);
-      continue;
-    }
-    contract(a, b, placed.position, placed.cost);
-  }
-  write_back();
-  result_.triangles_left = live_triangles_;
-  result_.contractions.shrink_to_fit();  // all patches' results wait for the last one
-  result_.changes.shrink_to_fit();
-  return std::move(result_);
-}
 
 CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target, double cost) {
   // The nearer end stays, so that the stored step is short; with endpoints it is the target itself.
@@ -475,30 +301,6 @@ CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, 
     wedge = first + result_of_slot[slot_of(wedge)];
   }
   wedges_of(layer, kept) = {first, count};
-}
-
-void PatchSimplifier::write_back() {
-  for (Index t = 0; t < global_triangle_.size(); ++t) {
-    const Index global = global_triangle_[t];
-    if (!triangle_alive_[t]) {
-      work_->vertex_of_corner[3 * global] = kNone;
-      continue;
-    }
-    work_->derived[global] = derived_[t];
-    if (!shading_.empty()) work_->represented[global] = shading_[t].input;
-    for (Index c = 0; c < 3; ++c) {
-      work_->vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[3 * t + c]].global;
-      for (std::size_t l = 0; l < layer_count(); ++l) {
-        work_->layers[l].of_corner[3 * global + c] = wedges_[l][wedge_of_corner_[l][3 * t + c]].id;
-      }
-    }
-  }
-  for (Index v = 0; v < vertices_.size(); ++v) {
-    const Vertex& vertex = vertices_[v];
-    if (vertex.locked || !vertex.alive) continue;
-    work_->positions[vertex.global] = on_grid(positions_[v]);
-    work_->error_of_vertex[vertex.global] = errors_[v].now;
-  }
 }
 
 }  // namespace crease::simplification

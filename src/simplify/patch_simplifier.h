@@ -188,6 +188,15 @@ class PatchSimplifier {
   void hand_over_represented();
   void derive_where_better(Index kept, LevelError& error);
 
+  // run_patch.cpp
+  void order_pairs();
+  bool pop(Entry& entry);
+  float next_cost() const;
+  Index survivor(Index v);
+  bool claim(Index pair, Index a, Index b);
+  void hold(const Entry& entry, double cost, const Placed& placed);
+  void release(Index triangle);
+
   // contract.cpp
   void contract(Index a, Index b, const Vec3d& target, double cost);
   void find_ring(Index kept, Index removed);
@@ -196,13 +205,6 @@ class PatchSimplifier {
   void combine_quadrics(std::size_t layer, std::span<const Index> members, Wedge& result);
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
                      const Vec3d& target, Wedge& result);
-  void order_pairs();
-  bool pop(Entry& entry);
-  float next_cost() const;
-  Index survivor(Index v);
-  bool claim(Index pair, Index a, Index b);
-  void hold(const Entry& entry, double cost, const Placed& placed);
-  void release(Index triangle);
 
   // Of a place on the grid, less center_.
   static Vec3i whole(const Vec3d& p) {
