@@ -43,7 +43,7 @@ class Report {
   void add(const std::string& method, const std::string& step, std::size_t bytes,
            const Mesh& shown) {
     if (shown.triangle_count() == 0) return;
-    const Comparison c = compare_meshes(original_, shown, {.samples = samples_});
+    const Comparison c = *compare_meshes(original_, shown, {.samples = samples_});
     const double ppm = 0.5e6 * (c.distance.a_to_b.mean + c.distance.b_to_a.mean) / c.diagonal;
     std::printf("%-10s %-16s %-13s %9zu bytes %8zu triangles %10.2f ppm %8.3f degrees\n",
                 entry_.name.c_str(), method.c_str(), step.c_str(), bytes, shown.triangle_count(),

@@ -41,7 +41,7 @@ struct Row {
 };
 
 Row measure(const Mesh& original, const Mesh& simplified, std::size_t samples) {
-  const Comparison c = compare_meshes(original, simplified, {.samples = samples});
+  const Comparison c = *compare_meshes(original, simplified, {.samples = samples});
   const auto& [a_to_b, b_to_a] = c.distance;
   Row row;
   row.triangles = simplified.triangle_count();

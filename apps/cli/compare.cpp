@@ -42,8 +42,12 @@ Result<Report> run_compare(const CompareArguments& options, const Common& common
   }
   CompareOptions compare = options.compare;
   compare.threads = common.threads;
-  const Comparison c = compare_meshes(meshes[0], meshes[1], compare);
+  compare.progress = progress_bar(common);
+  const Result<Comparison> compared = compare_meshes(meshes[0], meshes[1], compare);
+  wipe_progress_bar();
   if (interrupted()) return interrupted_failure();
+  if (!compared.ok()) return compared.failure();
+  const Comparison& c = *compared;
 
   Report report;
   report.json = to_json(c);

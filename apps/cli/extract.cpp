@@ -77,12 +77,7 @@ Result<Comparison> measure(const ModelFile& file, const Mesh& level, const Level
                            const Common& common) {
   const Result<Model> all = file.load({.is_mesh_only = true});
   if (!all.ok()) return all.failure();
-  CompareOptions compare;
-  compare.samples = options.samples;
-  compare.threads = common.threads;
-  Comparison measured = compare_meshes(all->decoded.mesh, level, compare);
-  if (interrupted()) return interrupted_failure();
-  return measured;
+  return measure_level(all->decoded.mesh, level, options.samples, common);
 }
 
 struct ExtractedLevel {

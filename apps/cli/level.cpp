@@ -103,9 +103,9 @@ class ErrorSearch {
            (triangles_at(good) - triangles_at(bad)) * 100 > triangles_at(good)) {
       try_level(good + (bad - good) / 2);
     }
+    if (!interrupted() && !measured_.contains(good)) is_within(good);
     if (interrupted()) return interrupted_failure();
 
-    if (!measured_.contains(good)) is_within(good);
     mesh_.set_applied(good);
     Chosen chosen;
     chosen.measured = measured_.at(good);
@@ -126,11 +126,12 @@ class ErrorSearch {
   }
   bool is_within(std::size_t applied) {
     mesh_.set_applied(applied);
-    const Comparison measured = measure_level(mesh_, full_, samples_, common_);
-    measured_.insert_or_assign(applied, measured);
+    const Result<Comparison> measured = measure_level(full_, mesh_.extract(), samples_, common_);
+    if (!measured.ok()) return false;  // interrupted, which run() sees
+    measured_.insert_or_assign(applied, *measured);
     log(common_, "  " + std::to_string(mesh_.triangle_count()) + " triangles: measured " +
-                     std::to_string(hausdorff(measured)));
-    return meets_limit(measured);
+                     std::to_string(hausdorff(*measured)));
+    return meets_limit(*measured);
   }
   // A mesh is off from itself by the rounding of the measurement.
   bool meets_limit(const Comparison& measured) const {
@@ -164,12 +165,16 @@ Result<Chosen> choose_level(ProgressiveMesh& mesh, const Mesh& full, const Level
   return choose_by_count(mesh, mesh.full_triangle_count());
 }
 
-Comparison measure_level(const ProgressiveMesh& mesh, const Mesh& full, std::size_t samples,
-                         const Common& common) {
+Result<Comparison> measure_level(const Mesh& full, const Mesh& level, std::size_t samples,
+                                 const Common& common) {
   CompareOptions options;
   options.samples = samples;
   options.threads = common.threads;
-  return compare_meshes(full, mesh.extract(), options);
+  options.progress = progress_bar(common);
+  Result<Comparison> measured = compare_meshes(full, level, options);
+  wipe_progress_bar();
+  if (interrupted()) return interrupted_failure();
+  return measured;
 }
 
 }  // namespace crease::cli

@@ -43,8 +43,8 @@ struct Chosen {
 Result<Chosen> choose_level(ProgressiveMesh& mesh, const Mesh& full, const LevelOptions& asked,
                             const Common& common);
 
-// Of the level in force.
-Comparison measure_level(const ProgressiveMesh& mesh, const Mesh& full, std::size_t samples,
-                         const Common& common);
+// How far a level is from `full`.
+Result<Comparison> measure_level(const Mesh& full, const Mesh& level, std::size_t samples,
+                                 const Common& common);
 
 }  // namespace crease::cli

@@ -62,10 +62,9 @@ Result<ChainLevel> make_level(ProgressiveMesh& mesh, const std::vector<ImageFile
                {"vertices", level.vertex_count()},
                {"error", to_json(mesh.error())}};
   if (samples > 0) {
-    CompareOptions compare;
-    compare.samples = samples;
-    compare.threads = common.threads;
-    made.json["error_measured"] = measured_json(compare_meshes(full, level, compare));
+    const Result<Comparison> measured = measure_level(full, level, samples, common);
+    if (!measured.ok()) return measured.failure();
+    made.json["error_measured"] = measured_json(*measured);
   }
   if (options.one_glb) {
     made.mesh = std::move(level);

@@ -90,7 +90,10 @@ Result<ReportLevels> make_report_levels(const ModelFile& file, const Mesh& full,
     level.bytes_needed = (*bytes)[finest_band_for(facts, level.triangles)];
     log(common, "  " + level.name + ": " + grouped(level.triangles) + " triangles");
     if (mesh.applied() > 0 && options.samples > 0) {
-      level.measured = measure_level(mesh, full, options.samples, common);
+      const Result<Comparison> measured =
+          measure_level(full, mesh.extract(), options.samples, common);
+      if (!measured.ok()) return measured.failure();
+      level.measured = *measured;
     }
     if (made.no_pictures.empty()) {
       Result<std::vector<std::byte>> png = draw_level(mesh, *images, camera, options);

@@ -1,7 +1,7 @@
 // How far two meshes are apart: surface distance both ways and normal deviation.
 //
-//   Comparison c = compare_meshes(original, simplified, {});
-//   c.distance.a_to_b.mean / c.diagonal    relative to the bounding box of a
+//   Result<Comparison> c = compare_meshes(original, simplified, {});
+//   c->distance.a_to_b.mean / c->diagonal    relative to the bounding box of a
 //
 // Samples are drawn uniformly by area on each surface; each looks for the closest point on the
 // other through a bounding volume hierarchy (Embree), evaluated in doubles. Normals are
@@ -11,6 +11,8 @@
 #pragma once
 
 #include "crease/mesh.h"
+#include "crease/progress.h"
+#include "crease/result.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -37,12 +39,14 @@ struct Comparison {
 struct CompareOptions {
   std::size_t samples = 200'000;  // on each surface; all vertices count for distance max besides
   std::uint32_t seed = 1;
-  int threads = 0;  // 0: all
+  int threads = 0;                 // 0: all
+  ProgressCallback progress = {};  // stage "compare"
 };
 
 // Both meshes need triangles and normals. The result does not depend on the number of threads.
-// Time O(samples log triangles), memory about 150 bytes a triangle.
-Comparison compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options);
+// Fails only where `progress` asks it to stop. Time O(samples log triangles), memory about 150
+// bytes a triangle.
+Result<Comparison> compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options);
 
 // How far each point is from the surface, model units. `surface` needs triangles and normals.
 // threads: 0 is all.

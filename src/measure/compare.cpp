@@ -4,6 +4,7 @@
 #include "measure/sample.h"
 #include "measure/surface.h"
 #include "parallel/parallel.h"
+#include "parallel/shared_progress.h"
 
 #include <algorithm>
 #include <mutex>
@@ -18,6 +19,20 @@ namespace {
 constexpr double kTie = 1e-5;
 constexpr std::size_t kGrain = 512;
 
+// So many points are looked for at a time; in between a thread asks whether to go on.
+constexpr std::size_t kAtATime = 64;
+
+// Calls look(i) for points i of a range, until the work is to stop.
+template <typename Look>
+void look_for_each(std::size_t begin, std::size_t end, SharedProgress& progress, Look look) {
+  while (begin < end && !progress.stopped()) {
+    const std::size_t next = std::min(end, begin + kAtATime);
+    for (std::size_t i = begin; i < next; ++i) look(i);
+    progress.advance(next - begin);
+    begin = next;
+  }
+}
+
 struct OneWay {
   std::vector<double> distance;   // frame units, per sample
   std::vector<double> deviation;  // radians, per sample
@@ -26,14 +41,14 @@ struct OneWay {
 
 // Per sample into arrays of its own, so that sums do not depend on how threads share the work.
 OneWay measure_samples(const Surface& from, const Surface& to, const CompareOptions& options,
-                       double tie) {
+                       double tie, SharedProgress& progress) {
   OneWay result;
   result.distance.resize(options.samples);
   result.deviation.resize(options.samples);
   const Sampler sampler(from, options.samples, options.seed);
   parallel_ranges(options.samples, kGrain, [&](std::size_t begin, std::size_t end) {
     Surface::Scratch scratch;
-    for (std::size_t i = begin; i < end; ++i) {
+    look_for_each(begin, end, progress, [&](std::size_t i) {
       const SurfacePoint sample = sampler(i);
       Vec3d p;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -43,14 +58,15 @@ OneWay measure_samples(const Surface& from, const Surface& to, const CompareOpti
       const Nearest nearest = to.nearest(p, &normal, tie, scratch);
       result.distance[i] = nearest.distance;
       result.deviation[i] = nearest.deviation_rad;
-    }
+    });
   });
   for (double d : result.distance) result.max = std::max(result.max, d);
   return result;
 }
 
 // The largest distance of a vertex that a triangle uses.
-double max_over_vertices(const Mesh& mesh, const Frame& frame, const Surface& to) {
+double max_over_vertices(const Mesh& mesh, const Frame& frame, const Surface& to,
+                         SharedProgress& progress) {
   std::vector<bool> used(mesh.vertex_count());
   for (const Triangle& triangle : mesh.triangles) {
     for (VertexId v : triangle) used[index_of(v)] = true;
@@ -60,11 +76,11 @@ double max_over_vertices(const Mesh& mesh, const Frame& frame, const Surface& to
   parallel_ranges(mesh.vertex_count(), kGrain, [&](std::size_t begin, std::size_t end) {
     Surface::Scratch scratch;
     double own = 0;
-    for (std::size_t v = begin; v < end; ++v) {
-      if (!used[v]) continue;
+    look_for_each(begin, end, progress, [&](std::size_t v) {
+      if (!used[v]) return;
       const Vec3d p = frame.to_frame(mesh.positions[v]);
       own = std::max(own, to.nearest(p, nullptr, 0, scratch).distance);
-    }
+    });
     const std::lock_guard<std::mutex> lock(join);
     largest = std::max(largest, own);
   });
@@ -85,15 +101,18 @@ Spread spread_of(const OneWay& way, double scale) {
   return spread;
 }
 
-Comparison compare(const Mesh& a, const Mesh& b, const CompareOptions& options) {
+Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareOptions& options) {
   const Frame frame = common_frame(a, b);
   const double tie = kTie * frame.diagonal * frame.scale;
   const Surface surface_a(a, frame), surface_b(b, frame);
 
-  OneWay a_to_b = measure_samples(surface_a, surface_b, options, tie);
-  OneWay b_to_a = measure_samples(surface_b, surface_a, options, tie);
-  a_to_b.max = std::max(a_to_b.max, max_over_vertices(a, frame, surface_b));
-  b_to_a.max = std::max(b_to_a.max, max_over_vertices(b, frame, surface_a));
+  SharedProgress progress(options.progress, "compare",
+                          2 * options.samples + a.vertex_count() + b.vertex_count());
+  OneWay a_to_b = measure_samples(surface_a, surface_b, options, tie, progress);
+  OneWay b_to_a = measure_samples(surface_b, surface_a, options, tie, progress);
+  a_to_b.max = std::max(a_to_b.max, max_over_vertices(a, frame, surface_b, progress));
+  b_to_a.max = std::max(b_to_a.max, max_over_vertices(b, frame, surface_a, progress));
+  if (progress.stopped()) return fail(Error::Interrupted, "compare: interrupted");
 
   Comparison result;
   result.diagonal = frame.diagonal;
@@ -115,7 +134,7 @@ Comparison compare(const Mesh& a, const Mesh& b, const CompareOptions& options) 
 
 }  // namespace
 
-Comparison compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options) {
+Result<Comparison> compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options) {
   CREASE_ASSERT(a.triangle_count() > 0 && b.triangle_count() > 0);
   CREASE_ASSERT(a.normals() != nullptr && b.normals() != nullptr);
   return run_on(options.threads, [&] { return compare(a, b, options); });

@@ -4,13 +4,13 @@
 
 #include "base/assert.h"
 #include "parallel/parallel.h"
+#include "parallel/shared_progress.h"
 #include "simplify/partition.h"
 #include "simplify/pass_limits.h"
 #include "simplify/patch_simplifier.h"
 #include "simplify/work_mesh.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -274,24 +274,18 @@ class Simplifier {
 
   bool run_pass(const Steering& steering, std::size_t input_triangles) {
     results_.assign(patches_.count(), {});
-    std::atomic<bool> stop{false};
-    std::atomic<std::size_t> left{work_.live.size()};
-    std::mutex report;
+    SharedProgress progress(options_.progress, "simplify", input_triangles,
+                            input_triangles - work_.live.size());
     parallel_for(patches_.count(), [&](std::size_t p) {
-      if (stop) return;
+      if (progress.stopped()) return;
       const std::span<const std::uint32_t> triangles = patches_.of(p);
       PatchSimplifier& patch = patch_simplifiers_->local();
       patch.start(work_, triangles, static_cast<std::uint32_t>(p), steering);
       results_[p] = patch.run();
-      const std::size_t gone = triangles.size() - results_[p].triangles_left;
-      const std::size_t now = left.fetch_sub(gone) - gone;
-      if (options_.progress && report.try_lock()) {
-        if (!options_.progress("simplify", 1 - double(now) / double(input_triangles))) stop = true;
-        report.unlock();
-      }
+      progress.advance(triangles.size() - results_[p].triangles_left);
     });
     patch_simplifiers_.emplace();  // their memory is for what follows
-    if (stop) return false;
+    if (progress.stopped()) return false;
     number_new_values();
     append_contractions();
     std::erase_if(work_.live,

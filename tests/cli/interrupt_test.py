@@ -48,6 +48,14 @@ class Interrupt(tool.Case):
             self.assertRegex(text, r"interrupted")
             self.assertEqual(self.files(), ["city.ply"])
 
+    def test_a_comparison_can_be_interrupted(self):
+        city = self.city(1000)
+        process, terminal = self.start_on_terminal("compare", city, city, "--samples", "10000000")
+        text = self.read_until(terminal, r"compare +\[[#.]+\] +\d+ %")
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(), 130)
+        self.assertRegex(text + self.read_until(terminal, r"interrupted"), r"interrupted")
+
     def test_no_bar_where_nobody_looks(self):
         done = self.run_tool("build", self.city(), "-o", self.path("city.crease"))
         self.assertNotIn("[#", done.stderr)

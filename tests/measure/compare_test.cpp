@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 using namespace crease;
 
@@ -80,7 +81,7 @@ TEST_CASE("every mesh of the zoo is where it is") {
   for (const ZooMesh& z : mesh_zoo()) {
     if (z.mesh.triangle_count() == 0) continue;
     CAPTURE(z.name);
-    const Comparison c = compare_meshes(z.mesh, z.mesh, {.samples = 2000});
+    const Comparison c = *compare_meshes(z.mesh, z.mesh, {.samples = 2000});
     CHECK(c.distance.a_to_b.max < 1e-12 * c.diagonal);
     CHECK(c.distance.b_to_a.max < 1e-12 * c.diagonal);
     CHECK(c.normal_deviation.max < 1e-5);
@@ -119,7 +120,7 @@ TEST_CASE("closest points equal the brute force on random triangles") {
 TEST_CASE("parallel squares are as far apart as they are") {
   for (double gap : {1e-8, 1e-3, 0.5}) {
     CAPTURE(gap);
-    const Comparison c = compare_meshes(square(0, 1), square(gap, 7), {.samples = 1000});
+    const Comparison c = *compare_meshes(square(0, 1), square(gap, 7), {.samples = 1000});
     for (const Spread& s : {c.distance.a_to_b, c.distance.b_to_a}) {
       CHECK(s.mean == doctest::Approx(gap).epsilon(1e-9));
       CHECK(s.rms == doctest::Approx(gap).epsilon(1e-9));
@@ -132,7 +133,7 @@ TEST_CASE("parallel squares are as far apart as they are") {
 
 TEST_CASE("concentric spheres are their radii's difference apart") {
   const Mesh inner = smooth_sphere(64, 128), outer = moved(inner, {}, 1.25);
-  const Comparison c = compare_meshes(inner, outer, {.samples = 20'000});
+  const Comparison c = *compare_meshes(inner, outer, {.samples = 20'000});
   CHECK(c.distance.a_to_b.mean == doctest::Approx(0.25).epsilon(0.002));
   CHECK(c.distance.b_to_a.mean == doctest::Approx(0.25).epsilon(0.002));
   CHECK(c.distance.a_to_b.max < 0.2505);
@@ -144,7 +145,7 @@ TEST_CASE("the two directions differ when one mesh has a part more") {
   b.box({0, 0, 0}, {1, 1, 1}, 1);
   b.box({3, 0, 0}, {4, 1, 1}, 1);
   const Mesh one = hard_box(1), two = b.take();
-  const Comparison c = compare_meshes(one, two, {.samples = 10'000});
+  const Comparison c = *compare_meshes(one, two, {.samples = 10'000});
   CHECK(c.distance.a_to_b.max < 1e-12);
   CHECK(c.distance.b_to_a.max == doctest::Approx(3));  // a vertex: samples alone stop short of it
   CHECK(c.distance.b_to_a.mean == doctest::Approx(1.25).epsilon(0.02));
@@ -160,7 +161,7 @@ TEST_CASE("normals that are turned are seen, all of them by their angle") {
     const Vec3d to = from * std::cos(radians(10.0)) + across * std::sin(radians(10.0));
     for (int i = 0; i < 3; ++i) v[i] = float(to[i]);
   }
-  const Comparison c = compare_meshes(hard_box(2), turned, {.samples = 10'000});
+  const Comparison c = *compare_meshes(hard_box(2), turned, {.samples = 10'000});
   CHECK(c.normal_deviation.mean == doctest::Approx(10).epsilon(1e-4));
   CHECK(c.normal_deviation.p95 == doctest::Approx(10).epsilon(1e-4));
   CHECK(c.normal_deviation.max == doctest::Approx(10).epsilon(1e-4));
@@ -170,14 +171,14 @@ TEST_CASE("turned normals of one side in six count for a sixth") {
   Mesh turned = hard_box(2);
   float* first = turned.normals()->values.data();
   std::swap(first[0], first[1]);  // by 90 degrees
-  const Comparison c = compare_meshes(hard_box(2), turned, {.samples = 10'000});
+  const Comparison c = *compare_meshes(hard_box(2), turned, {.samples = 10'000});
   CHECK(c.normal_deviation.mean == doctest::Approx(15).epsilon(0.01));
   CHECK(c.normal_deviation.max == doctest::Approx(90));
 }
 
 TEST_CASE("a sample on a hard edge sees the side that agrees") {
   // The same box in other cells: samples near edges find both sides.
-  const Comparison c = compare_meshes(hard_box(3), hard_box(7), {.samples = 50'000});
+  const Comparison c = *compare_meshes(hard_box(3), hard_box(7), {.samples = 50'000});
   CHECK(c.normal_deviation.max < 1e-5);
 }
 
@@ -189,19 +190,19 @@ TEST_CASE("an offset of a thousand kilometres loses nothing") {
   }
   const Mesh other = moved(mesh, {0x1p-12, 0, 0});
   const Vec3d offset{1e6, 5e6, 0};
-  const Comparison near = compare_meshes(mesh, other, {.samples = 5000});
+  const Comparison near = *compare_meshes(mesh, other, {.samples = 5000});
   const Comparison far =
-      compare_meshes(moved(mesh, offset), moved(other, offset), {.samples = 5000});
+      *compare_meshes(moved(mesh, offset), moved(other, offset), {.samples = 5000});
   CHECK(same(near, far));
   CHECK(near.distance.a_to_b.mean > 0);
 }
 
 TEST_CASE("size does not matter") {
   const Mesh a = torus(24, 12), b = torus(12, 8);
-  const Comparison one = compare_meshes(a, b, {.samples = 2000});
+  const Comparison one = *compare_meshes(a, b, {.samples = 2000});
   for (double scale : {0x1p-80, 0x1p80}) {
     const Comparison c =
-        compare_meshes(moved(a, {}, scale), moved(b, {}, scale), {.samples = 2000});
+        *compare_meshes(moved(a, {}, scale), moved(b, {}, scale), {.samples = 2000});
     CHECK(c.distance.a_to_b.mean / scale == one.distance.a_to_b.mean);
     CHECK(c.normal_deviation.mean == one.normal_deviation.mean);
   }
@@ -209,10 +210,46 @@ TEST_CASE("size does not matter") {
 
 TEST_CASE("the number of threads changes nothing") {
   const Mesh a = torus(48, 24), b = torus(20, 9);
-  const Comparison one = compare_meshes(a, b, {.samples = 20'000, .threads = 1});
+  const Comparison one = *compare_meshes(a, b, {.samples = 20'000, .threads = 1});
   for (int threads : {2, 7}) {
     CAPTURE(threads);
-    CHECK(same(one, compare_meshes(a, b, {.samples = 20'000, .threads = threads})));
+    CHECK(same(one, *compare_meshes(a, b, {.samples = 20'000, .threads = threads})));
   }
-  CHECK(!same(one, compare_meshes(a, b, {.samples = 20'000, .seed = 2})));
+  CHECK(!same(one, *compare_meshes(a, b, {.samples = 20'000, .seed = 2})));
+}
+
+TEST_CASE("a comparison stops where its caller asks it to") {
+  const Mesh a = hard_box(3), b = hard_box(7);
+  for (const int threads : {1, 4}) {
+    for (const int asked_after : {1, 3, 20}) {
+      int told = 0;
+      double last = 0;
+      const Result<Comparison> c = compare_meshes(
+          a, b,
+          {.samples = 20'000, .threads = threads, .progress = [&](const char* stage, double done) {
+             CHECK(std::string(stage) == "compare");
+             CHECK(done > 0);
+             CHECK(done <= 1);
+             last = std::max(last, done);
+             return ++told < asked_after;
+           }});
+      REQUIRE(!c.ok());
+      CHECK(c.failure().error == Error::Interrupted);
+      CHECK(told == asked_after);
+      CHECK(last < 1);
+    }
+  }
+}
+
+TEST_CASE("progress changes nothing and ends at all") {
+  const Mesh a = hard_box(3), b = hard_box(7);
+  double last = 0;
+  const Result<Comparison> c = compare_meshes(
+      a, b, {.samples = 20'000, .threads = 1, .progress = [&](const char*, double done) {
+               last = done;
+               return true;
+             }});
+  REQUIRE(c.ok());
+  CHECK(last == 1);
+  CHECK(same(*c, *compare_meshes(a, b, {.samples = 20'000})));
 }

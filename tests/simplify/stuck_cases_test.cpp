@@ -46,7 +46,7 @@ Reached reduce(Mesh mesh, std::size_t target) {
   reached.triangles = reached.mesh.triangle_count();
   CompareOptions options;
   options.samples = 20'000;
-  reached.apart = compare_meshes(mesh, reached.mesh, options);
+  reached.apart = *compare_meshes(mesh, reached.mesh, options);
   return reached;
 }
 
