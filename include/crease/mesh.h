@@ -118,6 +118,10 @@ struct Precision {
   int bits = 24;
 };
 
+// Fails with CommandLine where a length is so long that little would be left of the mesh: more than
+// a 16th of the longest side.
+Status check_precision(const Mesh& mesh, const Precision& precision);
+
 // The origin is the bounding box's centre, rounded to a multiple of the step, so that a grid of
 // whole millimetres stays on whole millimetres.
 Grid make_grid(const Mesh& mesh, const Precision& precision);

@@ -50,6 +50,14 @@ class Failures(tool.Case):
                           ["render", city, "-o", "x.png", "--levels", "1,0,2"],
                           ["render", city, "-o", "x.png", "--size", "10"]):
             self.assertEqual(self.fails(1, *arguments)["name"], "CommandLine")
+        # A grid coarser than the model, as one gets who means bits and says a length.
+        tiny = self.write("tiny.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        for arguments in (["build", tiny, "-o", self.path("x.crease"), "--precision", "14"],
+                          ["extract", tiny, "-o", self.path("x.ply"), "--precision", "14"]):
+            self.assertIn("14bits", self.fails(1, *arguments)["message"])
+        self.run_tool("build", tiny, "-o", self.path("x.crease"), "--precision", "0.0625")
+        self.run_tool("build", tiny, "-o", self.path("x.crease"), "--precision", "0.07",
+                      exit_status=1)
 
     def test_2_input_cannot_be_read(self):
         out = self.path("x.crease")
