@@ -26,7 +26,7 @@ set(CREASE_LAYER_view      base parallel mesh hierarchy assemble io codec codec_
                            http runtime render)
 
 # Which folder a public header belongs to.
-set(CREASE_HEADERS_base      vec.h ids.h result.h progress.h)
+set(CREASE_HEADERS_base      vec.h ids.h result.h progress.h write_file.h)
 set(CREASE_HEADERS_parallel  threads.h)
 set(CREASE_HEADERS_mesh      mesh.h shading.h)
 set(CREASE_HEADERS_hierarchy contraction.h progressive_arrays.h compact_ranges.h packed_indices.h

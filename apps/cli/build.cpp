@@ -5,6 +5,7 @@
 #include "cli/fields.h"
 #include "cli/memory_option.h"
 #include "cli/model.h"
+#include "cli/output.h"
 #include "cli/text.h"
 
 #include <memory>
@@ -63,6 +64,9 @@ Json snapped_json(const std::vector<SnappedLayer>& layers) {
 
 Result<Report> run_build(const BuildArguments& options, const Common& common) {
   const Stopwatch watch;
+  const std::string_view ending[] = {".crease"};
+  const Status writable = check_output(options.output, ending, "models are", options.inputs);
+  if (!writable.ok()) return writable.failure();
   for (const std::filesystem::path& input : options.inputs) {
     if (is_crease_file(input)) {
       return fail(Error::NotSupported,

@@ -5,6 +5,7 @@
 #include "cli/level.h"
 #include "cli/lod_chain.h"
 #include "cli/model.h"
+#include "cli/output.h"
 #include "cli/text.h"
 #include "cli/view.h"
 #include "crease/export.h"
@@ -241,7 +242,10 @@ Result<Report> run_extract(const ExtractArguments& options, const Common& common
                 "--view asks for what a camera sees: leave out --triangles, --ratio, --error and "
                 "--levels");
   }
-  const Status writable = check_output(options.output, is_chain);
+  const std::string_view glb[] = {".glb"};
+  const Status writable =
+      is_chain ? check_output(options.output, glb, "chains of levels are", {&options.file, 1})
+               : check_output(options.output, kMeshEndings, "levels are", {&options.file, 1});
   if (!writable.ok()) return writable.failure();
   const Result<ModelFile> file = open_model(options.file, options.read, common);
   if (!file.ok()) return file.failure();

@@ -2,6 +2,7 @@
 #include "crease/generate.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/output.h"
 #include "cli/text.h"
 #include "crease/export.h"
 
@@ -20,6 +21,8 @@ struct GenerateArguments {
 
 Result<Report> run_generate(const GenerateArguments& options, const Common&) {
   const Stopwatch watch;
+  const Status writable = check_output(options.output, kMeshEndings, "shapes are", {});
+  if (!writable.ok()) return writable.failure();
   const Mesh mesh = generate_city(options.city);
   if (interrupted()) return interrupted_failure();
   const Status written = export_mesh(mesh, options.output);

@@ -4,8 +4,8 @@
 #include "cli/fields.h"
 #include "cli/level.h"
 #include "cli/text.h"
-#include "cli/write_file.h"
 #include "crease/export.h"
+#include "crease/write_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,18 +30,6 @@ void add_chain_options(CLI::App& command, LodChainOptions& options) {
   command
       .add_flag("--lod-glb", options.one_glb, "the chain as one GLB whose node carries MSFT_lod")
       ->needs(levels);
-}
-
-Status check_output(const std::filesystem::path& output, bool is_chain) {
-  const std::string extension = output.extension().string();
-  if (is_chain && extension != ".glb") {
-    return fail(Error::NotSupported, output.string() + ": a chain of levels is written as .glb");
-  }
-  for (const char* known : {".obj", ".ply", ".stl", ".glb"}) {
-    if (extension == known) return Done{};
-  }
-  return fail(Error::NotSupported,
-              output.string() + ": levels are written as .obj, .ply, .stl or .glb");
 }
 
 namespace {

@@ -19,9 +19,6 @@ struct LodChainOptions {
 
 void add_chain_options(CLI::App& command, LodChainOptions& options);
 
-// Refuses names that could not be written before any work is done.
-Status check_output(const std::filesystem::path& output, bool is_chain);
-
 // Writes city_0.glb, city_1.glb, ... and city.json for the output city.glb; with one_glb city.glb.
 // Every level is measured against the full mesh, when `samples` is not 0.
 // Each has the images.

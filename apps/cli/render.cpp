@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/model.h"
+#include "cli/output.h"
 #include "cli/panels.h"
 #include "cli/text.h"
 #include "cli/view.h"
@@ -84,9 +85,9 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
                 "--outside shows what --view refines: leave out --levels, --triangles, --ratio and "
                 "--error");
   }
-  if (options.output.extension() != ".png") {
-    return fail(Error::NotSupported, options.output.string() + ": pictures are written as .png");
-  }
+  const std::string_view ending[] = {".png"};
+  const Status writable = check_output(options.output, ending, "pictures are", options.files);
+  if (!writable.ok()) return writable.failure();
   Result<RenderOptions> render = render_options(options);
   if (!render.ok()) return render.failure();
   options.panels.errors_of_positions = render->coloring == Coloring::Error;

@@ -4,12 +4,13 @@
 #include "cli/facts.h"
 #include "cli/fields.h"
 #include "cli/model.h"
+#include "cli/output.h"
 #include "cli/report_levels.h"
 #include "cli/report_page.h"
 #include "cli/text.h"
 #include "cli/view.h"
-#include "cli/write_file.h"
 #include "crease/build_progressive_arrays.h"
+#include "crease/write_file.h"
 
 #include <algorithm>
 #include <functional>
@@ -66,6 +67,9 @@ Json level_json(const ReportLevel& level) {
 
 Result<Report> run_report(const ReportArguments& options, const Common& common) {
   const Stopwatch watch;
+  const std::string_view endings[] = {".html", ".htm"};
+  const Status writable = check_output(options.output, endings, "pages are", {&options.file, 1});
+  if (!writable.ok()) return writable.failure();
   const Result<ReportLevelOptions> asked = report_level_options(options);
   if (!asked.ok()) return asked.failure();
   const Result<ModelFile> file = open_model(options.file, options.read, common);

@@ -1,43 +1,35 @@
-// A file that appears under its name only when it is complete.
+// An output file (base/output_file.h) as the sink of a ContainerWriter.
 //
 //   Result<AtomicFile> file = AtomicFile::create("city.crease");
 //   file->write(0, bytes);
 //   Status status = file->commit();  // without it nothing is left
 #pragma once
 
+#include "base/output_file.h"
 #include "codec/byte_sink.h"
 
-#include <cstdio>
 #include <filesystem>
-#include <memory>
+#include <utility>
 
 namespace crease {
 
 class AtomicFile final : public ByteSink {
  public:
-  // Beside `path`, so that the last step, a rename, stays on one file system.
-  static Result<AtomicFile> create(const std::filesystem::path& path);
+  static Result<AtomicFile> create(const std::filesystem::path& path) {
+    Result<OutputFile> file = OutputFile::create(path);
+    if (!file.ok()) return file.failure();
+    return AtomicFile(*std::move(file));
+  }
 
-  AtomicFile(AtomicFile&&) = default;
-  AtomicFile& operator=(AtomicFile&&) = delete;
-  ~AtomicFile() override;
-
-  Status write(std::uint64_t offset, std::span<const std::byte> bytes) override;
-  // On the disk, then under its name. Once, and last.
-  Status commit();
+  Status write(std::uint64_t offset, std::span<const std::byte> bytes) override {
+    return file_.write(offset, bytes);
+  }
+  Status commit() { return file_.commit(); }
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
+  explicit AtomicFile(OutputFile file) : file_(std::move(file)) {}
 
-  AtomicFile(std::FILE* file, std::filesystem::path path, std::filesystem::path aside)
-      : file_(file), path_(std::move(path)), aside_(std::move(aside)) {}
-  Failure failed(int reason) const;
-
-  std::unique_ptr<std::FILE, Close> file_;  // null: committed, failed to, or moved from
-  std::filesystem::path path_, aside_;
-  std::uint64_t position_ = 0;  // where the next byte would go
+  OutputFile file_;
 };
 
 }  // namespace crease

@@ -1,18 +1,14 @@
 #include "crease/export.h"
 
+#include "base/output_file.h"
+#include "crease/write_file.h"
 #include "io/formats.h"
 #include "io/images.h"
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <deque>
 #include <string>
 #include <utility>
-
-#include <unistd.h>
 
 namespace crease {
 
@@ -22,45 +18,6 @@ std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
-
-Failure cannot_write(const std::filesystem::path& path, int reason) {
-  return fail(Error::WriteFailed, path.string() + ": cannot be written: " + std::strerror(reason));
-}
-
-// A file that is complete but not yet under its name: beside the target, so that the rename stays
-// on one file system; gone again unless it is put in place.
-class AsideFile {
- public:
-  explicit AsideFile(std::filesystem::path path) : path_(std::move(path)), aside_(path_) {
-    aside_ += ".part-";
-    aside_ += std::to_string(::getpid());
-  }
-  ~AsideFile() {
-    if (written_) std::remove(aside_.c_str());
-  }
-  AsideFile(const AsideFile&) = delete;
-  AsideFile& operator=(const AsideFile&) = delete;
-
-  Status write(std::span<const std::byte> bytes) {
-    std::FILE* file = std::fopen(aside_.c_str(), "wb");
-    if (!file) return cannot_write(path_, errno);
-    written_ = true;
-    const bool complete = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    int reason = complete ? 0 : errno;
-    if (std::fclose(file) != 0 && reason == 0) reason = errno;
-    if (reason != 0) return cannot_write(path_, reason);
-    return Done{};
-  }
-  Status put_in_place() {
-    if (std::rename(aside_.c_str(), path_.c_str()) != 0) return cannot_write(path_, errno);
-    written_ = false;
-    return Done{};
-  }
-
- private:
-  std::filesystem::path path_, aside_;
-  bool written_ = false;
-};
 
 Result<std::vector<std::byte>> bytes_of(const Mesh& mesh, std::string_view extension) {
   const std::string ending = lower_case(std::string(extension));
@@ -107,9 +64,15 @@ std::vector<std::string> image_files(const Mesh& mesh, const std::string& stem) 
 Status export_obj(const Mesh& mesh, const std::filesystem::path& path) {
   const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
   const std::vector<std::string> names = image_files(mesh, path.stem().string());
-  std::deque<AsideFile> files;
-  const auto write = [&](const std::filesystem::path& to, std::span<const std::byte> bytes) {
-    return files.emplace_back(to).write(bytes);
+  std::vector<OutputFile> files;
+  const auto write = [&](const std::filesystem::path& to,
+                         std::span<const std::byte> bytes) -> Status {
+    Result<OutputFile> file = OutputFile::create(to);
+    if (!file.ok()) return file.failure();
+    if (Status done = file->write(0, bytes); !done.ok()) return done;
+    if (Status done = file->finish(); !done.ok()) return done;
+    files.push_back(*std::move(file));
+    return Done{};
   };
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Status done = write(path.parent_path() / names[i], *mesh.images[i].bytes);
@@ -118,8 +81,8 @@ Status export_obj(const Mesh& mesh, const std::filesystem::path& path) {
   if (const Status done = write(library, write_mtl(mesh, names)); !done.ok()) return done;
   const Status done = write(path, write_obj(mesh, library.filename().string()));
   if (!done.ok()) return done;
-  for (AsideFile& file : files) {
-    if (const Status there = file.put_in_place(); !there.ok()) return there;
+  for (OutputFile& file : files) {
+    if (const Status there = file.commit(); !there.ok()) return there;
   }
   return Done{};
 }
@@ -133,9 +96,7 @@ Status export_mesh(const Mesh& mesh, const std::filesystem::path& path) {
   if (!bytes.ok()) {
     return fail(bytes.failure().error, path.string() + ": " + bytes.failure().message);
   }
-  AsideFile file(path);
-  if (Status done = file.write(*bytes); !done.ok()) return done;
-  return file.put_in_place();
+  return write_file(path, *bytes);
 }
 
 }  // namespace crease

@@ -1,22 +1,19 @@
 #include "crease/render.h"
+#include "crease/write_file.h"
 
 #include <png.h>
 
-#include <cerrno>
-#include <cstring>
-#include <system_error>
+#include <string>
 
 namespace crease {
 
-// libpng's simplified interface: it reports through the image and never jumps. The file appears
-// under its name only when it is complete.
+// libpng's simplified interface: it reports through the image and never jumps.
 namespace {
 
-// `where`: put before what is wrong.
-Result<png_image> described(const Image& image, const std::string& where) {
+Result<png_image> described(const Image& image) {
   const std::size_t bytes = std::size_t(image.width) * std::size_t(image.height) * 4;
   if (image.width <= 0 || image.height <= 0 || image.rgba.size() != bytes) {
-    return fail(Error::BadValue, where + "the image has no pixels or not all of them");
+    return fail(Error::BadValue, "the image has no pixels or not all of them");
   }
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
@@ -28,26 +25,8 @@ Result<png_image> described(const Image& image, const std::string& where) {
 
 }  // namespace
 
-Status write_png(const Image& image, const std::filesystem::path& path) {
-  Result<png_image> png = described(image, path.string() + ": ");
-  if (!png.ok()) return png.failure();
-  std::filesystem::path part = path;
-  part += ".part";
-  if (png_image_write_to_file(&*png, part.c_str(), 0, image.rgba.data(), 0, nullptr) == 0) {
-    const std::string why = errno != 0 ? std::strerror(errno) : png->message;
-    png_image_free(&*png);
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    return fail(Error::WriteFailed, path.string() + ": cannot write the picture: " + why);
-  }
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) return fail(Error::WriteFailed, path.string() + ": " + error.message());
-  return Done{};
-}
-
 Result<std::vector<std::byte>> encode_png(const Image& image) {
-  Result<png_image> png = described(image, "");
+  Result<png_image> png = described(image);
   if (!png.ok()) return png.failure();
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(*png);
   std::vector<std::byte> encoded(size);
@@ -60,6 +39,14 @@ Result<std::vector<std::byte>> encode_png(const Image& image) {
   }
   encoded.resize(size);
   return encoded;
+}
+
+Status write_png(const Image& image, const std::filesystem::path& path) {
+  const Result<std::vector<std::byte>> bytes = encode_png(image);
+  if (!bytes.ok()) {
+    return fail(bytes.failure().error, path.string() + ": " + bytes.failure().message);
+  }
+  return write_file(path, *bytes);
 }
 
 }  // namespace crease

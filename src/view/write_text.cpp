@@ -1,6 +1,6 @@
 #include "view/write_text.h"
 
-#include "codec/atomic_file.h"
+#include "crease/write_file.h"
 
 #include <span>
 #include <system_error>
@@ -8,12 +8,7 @@
 namespace crease {
 
 Status write_text(const std::filesystem::path& path, std::string_view text) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file.ok()) return file.failure();
-  if (Status written = file->write(0, std::as_bytes(std::span(text))); !written.ok()) {
-    return written;
-  }
-  return file->commit();
+  return write_file(path, std::as_bytes(std::span(text)));
 }
 
 std::filesystem::path unused_path(const std::filesystem::path& folder, const std::string& stem,

@@ -6,6 +6,8 @@ import pathlib
 import re
 import resource
 import signal
+import socket
+import stat
 import subprocess
 
 import tool
@@ -94,6 +96,22 @@ class Failures(tool.Case):
         self.fails(3, "render", self.city(), "-o", self.path("x.jpg"))
         self.fails(3, "build", self.built(), "-o", self.path("x.crease"))
 
+    def test_an_output_is_no_other_format_and_no_input(self):
+        model = self.write("t.obj", tool.TETRAHEDRON)
+        for ending in (".ply", ".obj", ".png", ".glb"):
+            self.fails(3, "build", model, "-o", self.path("x" + ending))
+            self.fails(3, "report", model, "-o", self.path("x" + ending))
+        crease = self.path("t.crease")
+        self.run_tool("build", model, "-o", crease)
+        os.symlink(model, self.path("link.obj"))
+        os.symlink(model, self.path("link.crease"))
+        before = pathlib.Path(model).read_bytes()
+        for arguments in (["extract", model, "-o", model],
+                          ["extract", model, "-o", self.path("link.obj")],
+                          ["build", model, "-o", self.path("link.crease")]):
+            self.assertIn("is an input", self.fails(1, *arguments)["message"])
+        self.assertEqual(pathlib.Path(model).read_bytes(), before)
+
     def test_4_cannot_write(self):
         nowhere = self.path("no/such/folder/")
         self.fails(4, "build", self.city(), "-o", nowhere + "x.crease")
@@ -145,6 +163,46 @@ class Failures(tool.Case):
         self.fails(2, "build", bad, "-o", out)
         self.assertEqual(pathlib.Path(out).read_text(), "precious")
         self.assertEqual(self.files(), before)
+
+    def outputs(self):
+        """Of every kind of writer: the command, and how what it writes begins."""
+        model = self.write("t.obj", tool.TETRAHEDRON)
+        return ((["build", model], ".crease", b"\x89CREASE"), (["extract", model], ".glb", b"glTF"),
+                (["extract", model], ".obj", b""), (["render", model, "--size", "64x64"], ".png",
+                                                    b"\x89PNG"),
+                (["report", model, "--size", "64x64"], ".html", b"<!"))
+
+    def test_a_symlink_is_followed_and_stays(self):
+        os.mkdir(self.path("there"))
+        for command, ending, begin in self.outputs():
+            for link, to in (("x" + ending, "there/x" + ending),
+                             ("y" + ending, self.path("there/y" + ending)),
+                             ("z" + ending, "y" + ending)):
+                os.symlink(to, self.path(link))
+                self.run_tool(*command, "-o", self.path(link))
+                self.assertTrue(os.path.islink(self.path(link)))
+                self.assertTrue(pathlib.Path(self.path(link)).read_bytes().startswith(begin))
+            self.assertTrue(os.path.isfile(self.path("there/y" + ending)))
+        self.assertEqual([f for f in self.files() if ".part" in f], [])
+
+    def test_a_pipe_is_written_to_and_stays(self):
+        for command, ending, begin in self.outputs():
+            pipe = self.path("pipe" + ending)
+            os.mkfifo(pipe)
+            writer = subprocess.Popen([tool.BINARY, *command, "-o", pipe, "--quiet"])
+            reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)  # waits for no writer
+            self.assertEqual(writer.wait(), 0)
+            self.assertTrue(os.read(reading, 60_000).startswith(begin))
+            os.close(reading)
+            self.assertTrue(stat.S_ISFIFO(os.stat(pipe).st_mode))
+
+    def test_4_a_socket_is_refused_and_stays(self):
+        for command, ending, _ in self.outputs():
+            path = self.path("s" + ending)
+            with socket.socket(socket.AF_UNIX) as listener:
+                listener.bind(path)
+                self.fails(4, *command, "-o", path)
+            self.assertTrue(stat.S_ISSOCK(os.stat(path).st_mode))
 
     def test_messages_are_one_line(self):
         done = self.run_tool("info", self.path("none.ply"), exit_status=2)

@@ -1,0 +1,41 @@
+#include "cli/output.h"
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+
+namespace crease::cli {
+
+namespace {
+
+// ".obj, .ply, .stl or .glb"
+std::string in_words(std::span<const std::string_view> endings) {
+  std::string words;
+  for (std::size_t i = 0; i < endings.size(); ++i) {
+    if (i > 0) words += i + 1 < endings.size() ? ", " : " or ";
+    words += endings[i];
+  }
+  return words;
+}
+
+}  // namespace
+
+Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
+                    std::string_view what, std::span<const std::filesystem::path> inputs) {
+  const std::string ending = output.extension().string();
+  const bool is_known = std::ranges::find(endings, ending) != endings.end();
+  if (!is_known && !(ending.empty() && endings.size() == 1)) {
+    return fail(Error::NotSupported,
+                output.string() + ": " + std::string(what) + " written as " + in_words(endings));
+  }
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code error;  // one of them is not there
+    if (std::filesystem::equivalent(output, input, error)) {
+      return fail(Error::CommandLine,
+                  output.string() + ": is an input, which is never written over");
+    }
+  }
+  return Done{};
+}
+
+}  // namespace crease::cli

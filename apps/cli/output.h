@@ -1,0 +1,22 @@
+// What a command may write to.
+//
+//   Status fine = check_output(options.output, kMeshEndings, "levels are", {&options.file, 1});
+#pragma once
+
+#include "crease/result.h"
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace crease::cli {
+
+inline constexpr std::string_view kMeshEndings[] = {".obj", ".ply", ".stl", ".glb"};
+
+// Refuses, before any work is done, an output whose ending is none of `endings`, and one that is
+// among the inputs. Where there is one ending, a name without any, as pipes have it, will do.
+// `what` begins the message: "levels are".
+Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
+                    std::string_view what, std::span<const std::filesystem::path> inputs);
+
+}  // namespace crease::cli

@@ -1,0 +1,117 @@
+#include "base/output_file.h"
+
+#include "crease/write_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace crease {
+
+namespace {
+
+Failure cannot_write(const std::filesystem::path& path, const std::string& reason) {
+  return fail(Error::WriteFailed, path.string() + ": cannot be written: " + reason);
+}
+
+// Where a chain of symlinks leads to, whether or not that is there yet.
+std::filesystem::path follow_links(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, error); ++i) {
+    const std::filesystem::path link = std::filesystem::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / link;  // an absolute one stands alone
+  }
+  return path;
+}
+
+// Not a name that can be replaced, though the system opens it: "/dev/stdout" may lead to a file
+// that was deleted since.
+bool leads_elsewhere(const struct ::stat& found, const std::filesystem::path& target) {
+  struct ::stat at_target {};
+  return ::stat(target.c_str(), &at_target) != 0 || at_target.st_dev != found.st_dev ||
+         at_target.st_ino != found.st_ino;
+}
+
+}  // namespace
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
+  std::filesystem::path target = follow_links(path);
+  struct ::stat found {};
+  const bool is_there = ::stat(path.c_str(), &found) == 0;
+  const bool is_file = is_there && S_ISREG(found.st_mode);
+  if (is_there && S_ISDIR(found.st_mode)) return cannot_write(path, std::strerror(EISDIR));
+  if (is_there && !is_file && !S_ISFIFO(found.st_mode) && !S_ISCHR(found.st_mode)) {
+    return cannot_write(path, S_ISBLK(found.st_mode) ? "it is a disk" : "it is a socket");
+  }
+  const bool is_replaced = !is_there || (is_file && !leads_elsewhere(found, target));
+  std::filesystem::path aside;
+  if (is_replaced) {
+    aside = target;
+    aside += ".part-" + std::to_string(::getpid());
+  }
+  std::FILE* file = std::fopen(is_replaced ? aside.c_str() : path.c_str(), "wb");
+  if (file == nullptr) return cannot_write(path, std::strerror(errno));
+  return OutputFile(file, path, std::move(target), std::move(aside));
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : file_(std::move(other.file_)),
+      name_(std::move(other.name_)),
+      target_(std::move(other.target_)),
+      aside_(std::exchange(other.aside_, {})),
+      position_(other.position_) {}
+
+OutputFile::~OutputFile() {
+  if (!aside_.empty()) std::remove(aside_.c_str());
+}
+
+Failure OutputFile::failed(int reason) const {
+  return cannot_write(name_, std::strerror(reason));
+}
+
+Status OutputFile::write(std::uint64_t offset, std::span<const std::byte> bytes) {
+  if (bytes.empty()) return Done{};
+  if (offset != position_ && ::fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0) {
+    return failed(errno);
+  }
+  position_ = offset + bytes.size();
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) return failed(errno);
+  return Done{};
+}
+
+Status OutputFile::finish() {
+  int reason = 0;
+  if (std::fflush(file_.get()) != 0) reason = errno;
+  const bool is_on_disk = !aside_.empty();
+  if (reason == 0 && is_on_disk && ::fsync(::fileno(file_.get())) != 0 && errno != EINVAL) {
+    reason = errno;
+  }
+  if (std::fclose(file_.release()) != 0 && reason == 0) reason = errno;
+  if (reason != 0) return failed(reason);
+  return Done{};
+}
+
+Status OutputFile::commit() {
+  if (file_) {
+    if (Status status = finish(); !status.ok()) return status;
+  }
+  if (aside_.empty()) return Done{};
+  if (std::rename(aside_.c_str(), target_.c_str()) != 0) return failed(errno);
+  aside_.clear();
+  return Done{};
+}
+
+Status write_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  Result<OutputFile> file = OutputFile::create(path);
+  if (!file.ok()) return file.failure();
+  if (Status status = file->write(0, bytes); !status.ok()) return status;
+  return file->commit();
+}
+
+}  // namespace crease
