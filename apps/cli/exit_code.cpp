@@ -18,6 +18,7 @@ constexpr Row kRows[] = {
     {Error::ReadFailed, ExitCode::BadInput, "ReadFailed"},
     {Error::WriteFailed, ExitCode::CannotWrite, "WriteFailed"},
     {Error::Replaced, ExitCode::BadInput, "Replaced"},
+    {Error::OutOfMemory, ExitCode::NotSupported, "OutOfMemory"},
     {Error::NotCrease, ExitCode::BadInput, "NotCrease"},
     {Error::VersionTooNew, ExitCode::NotSupported, "VersionTooNew"},
     {Error::Truncated, ExitCode::BadInput, "Truncated"},

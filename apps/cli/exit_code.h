@@ -11,8 +11,8 @@ namespace crease::cli {
 enum class ExitCode : int {
   Done = 0,
   CommandLine = 1,
-  BadInput = 2,  // cannot be read, or is not what it says
-  NotSupported = 3,
+  BadInput = 2,      // cannot be read, or is not what it says
+  NotSupported = 3,  // by crease, or by this machine's memory
   CannotWrite = 4,
   TargetNotMet = 5,  // with --strict
   Invalid = 6,       // validation failed

@@ -4,10 +4,13 @@
 #include "cli/exit_code.h"
 #include "cli/memory_option.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -53,9 +56,28 @@ Result<Report> run_command(const Command& command) {
     return command.run();
   } catch (const std::bad_alloc&) {
     std::optional<Failure> failure = spill_failure();
-    if (!failure) throw;
-    return *std::move(failure);
+    if (failure) return *std::move(failure);
+    return fail(Error::OutOfMemory, "out of memory; crease build has --memory for large models");
+  } catch (const std::exception& error) {
+    return fail(Error::NotSupported, error.what());
   }
+}
+
+// As far as the words tell that cannot be parsed.
+bool asks_for_json(std::span<char*> words) {
+  return std::ranges::any_of(words, [](const char* word) { return word == std::string("--json"); });
+}
+
+Failure parse_failure(const CLI::App& app, const CLI::ParseError& error) {
+  if (!app.get_subcommands().empty()) {
+    const std::string command = app.get_subcommands().front()->get_name();
+    return fail(Error::CommandLine,
+                std::string(error.what()) + " (see crease " + command + " --help)");
+  }
+  const std::vector<std::string> words = app.remaining();
+  return fail(Error::CommandLine,
+              (words.empty() ? "a command is missing" : "'" + words.front() + "' is no command") +
+                  std::string(" (see crease --help)"));
 }
 
 int run_main(int argc, char** argv) {
@@ -75,9 +97,9 @@ int run_main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const bool asked_for = error.get_exit_code() == 0;  // --help, --version
-    app.exit(error);
-    return static_cast<int>(asked_for ? ExitCode::Done : ExitCode::CommandLine);
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    common.json = asks_for_json(std::span(argv, static_cast<std::size_t>(argc)));
+    return print_failure(parse_failure(app, error), common);
   }
 
   watch_for_interrupts();
@@ -96,8 +118,6 @@ int run_main(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return crease::cli::run_main(argc, argv);
-  } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "crease: out of memory\n");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "crease: %s\n", error.what());
   }

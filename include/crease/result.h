@@ -21,6 +21,7 @@ enum class Error : std::uint16_t {
   ReadFailed = 11,
   WriteFailed = 12,
   Replaced = 13,  // while it was read; open it again
+  OutOfMemory = 14,
   NotCrease = 20,
   VersionTooNew = 21,
   Truncated = 22,

@@ -1,6 +1,7 @@
 """Every way to fail has its exit status, a message that names file, place and reason, and leaves
 nothing half done."""
 
+import json
 import os
 import pathlib
 import re
@@ -18,6 +19,10 @@ def limit_file_size():
     resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 
 
+def limit_memory():
+    resource.setrlimit(resource.RLIMIT_DATA, (24 << 20, 24 << 20))
+
+
 class Failures(tool.Case):
     def fails(self, exit_status, *arguments):
         failed = self.json(*arguments, exit_status=exit_status)
@@ -27,15 +32,15 @@ class Failures(tool.Case):
 
     def test_1_command_line(self):
         city = self.city()
-        for arguments in ([], ["unknown"], ["build"], ["build", city], ["build", city, "--output"],
-                          ["info"], ["extract", city, "-o", "x.ply", "--ratio", "2"],
+        for arguments in ([], ["unknown"], ["build"], ["build", city], ["info"],
+                          ["extract", city, "-o", "x.ply", "--ratio", "2"],
                           ["extract", city, "-o", "x.ply", "--triangles", "0"],
                           ["extract", city, "-o", "x.ply", "--triangles", "9", "--ratio", "0.5"],
                           ["extract", city, "-o", "x.ply", "--lod-glb"],
                           ["compare", city], ["render", city, "-o", "x.png", "--color", "pink"],
                           ["generate", "castle", "-o", "x.ply"], ["info", city, "--threads", "-1"],
                           ["view", city, "--mode", "magic"], ["serve"]):
-            self.run_tool(*arguments, exit_status=1)
+            self.assertEqual(self.fails(1, *arguments)["name"], "CommandLine")
         for arguments in (["build", city, "-o", "x.crease", "--precision", "fine"],
                           ["build", city, "-o", "x.crease", "--precision", "31bits"],
                           ["build", city, "-o", "x.crease", "--precision", "-1"],
@@ -60,6 +65,22 @@ class Failures(tool.Case):
         self.run_tool("build", tiny, "-o", self.path("x.crease"), "--precision", "0.0625")
         self.run_tool("build", tiny, "-o", self.path("x.crease"), "--precision", "0.07",
                       exit_status=1)
+
+    def test_the_wrong_word_is_named(self):
+        for words, named in ((["bogus"], "'bogus'"), (["--nosuch"], "'--nosuch'"),
+                             (["info", "x.ply", "--nosuch"], "--nosuch"), ([], "command"),
+                             (["info"], "FILE"), (["build", "x.ply", "--output"], "--output")):
+            done = self.run_tool(*words, exit_status=1)
+            self.assertRegex(done.stderr, f"^crease: [^\n]*{named}[^\n]*\n$")
+
+    def test_out_of_memory_is_told(self):
+        if os.environ.get("CREASE_SANITIZED") == "ON":
+            self.skipTest("a sanitizer has no such limit")
+        city = self.city(200_000)
+        done = subprocess.run([tool.BINARY, "info", city, "--json"], capture_output=True, text=True,
+                              preexec_fn=limit_memory)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["error"]["name"], "OutOfMemory")
 
     def test_2_input_cannot_be_read(self):
         out = self.path("x.crease")
