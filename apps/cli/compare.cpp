@@ -4,6 +4,7 @@
 #include "cli/console.h"
 #include "cli/fields.h"
 #include "cli/model.h"
+#include "cli/number_check.h"
 #include "cli/text.h"
 
 #include <cstdio>
@@ -73,7 +74,7 @@ Command add_compare(CLI::App& app, const Common& common) {
   command->add_option("B", options->b, "the other one")->required();
   command->add_option("--samples", options->compare.samples, "points on each surface")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t(1), std::size_t(1'000'000'000)))
+      ->check(sample_count(1))
       ->capture_default_str();
   command->add_option("--seed", options->compare.seed, "of the samples")
       ->type_name("N")

@@ -2,6 +2,7 @@
 #include "crease/generate.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/number_check.h"
 #include "cli/output.h"
 #include "cli/text.h"
 #include "crease/export.h"
@@ -51,7 +52,7 @@ Command add_generate(CLI::App& app, const Common& common) {
       ->type_name("OUT");
   command->add_option("--triangles", options->city.triangles, "about how many")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t(1), CityOptions::kMost))
+      ->check(number_from(1, double(CityOptions::kMost)))
       ->capture_default_str();
   command->add_option("--seed", options->city.seed, "another seed, another city")
       ->type_name("S")

@@ -2,6 +2,7 @@
 
 #include "cli/console.h"
 #include "cli/fields.h"
+#include "cli/number_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +14,11 @@ void add_level_options(CLI::App& command, LevelOptions& options) {
   CLI::Option* triangles =
       command.add_option("--triangles", options.triangles, "the finest level with at most N")
           ->type_name("N")
-          ->check(CLI::PositiveNumber);
+          ->check(number_from(1));
   CLI::Option* ratio =
       command.add_option("--ratio", options.ratio, "share of the triangles, above 0 and up to 1")
           ->type_name("R")
-          ->check(CLI::Range(1e-9, 1.0));
+          ->check(number_above(0, 1));
   CLI::Option* error =
       command
           .add_option(
@@ -25,7 +26,7 @@ void add_level_options(CLI::App& command, LevelOptions& options) {
               "the coarsest level whose measured distance from the full mesh, both ways, is "
               "at most LENGTH")
           ->type_name("LENGTH")
-          ->check(CLI::NonNegativeNumber);
+          ->check(number_from(0));
   triangles->excludes(ratio);
   triangles->excludes(error);
   ratio->excludes(error);
@@ -33,6 +34,7 @@ void add_level_options(CLI::App& command, LevelOptions& options) {
       .add_option("--samples", options.samples,
                   "points on each surface that errors are measured at; 0 measures nothing")
       ->type_name("N")
+      ->check(sample_count(0))
       ->capture_default_str();
 }
 

@@ -3,6 +3,7 @@
 #include "cli/console.h"
 #include "cli/fields.h"
 #include "cli/level.h"
+#include "cli/number_check.h"
 #include "cli/text.h"
 #include "crease/export.h"
 #include "crease/write_file.h"
@@ -20,11 +21,11 @@ void add_chain_options(CLI::App& command, LodChainOptions& options) {
               "--levels", options.levels,
               "a chain of N levels: OUT_0.glb, OUT_1.glb, ... and OUT.json with their errors")
           ->type_name("N")
-          ->check(CLI::Range(1, 32));
+          ->check(number_from(1, 32));
   command
       .add_option("--step", options.step, "triangles of a level of the chain beside the one before")
       ->type_name("R")
-      ->check(CLI::Range(0.01, 0.99))
+      ->check(number_from(0.01, 0.99))
       ->needs(levels)
       ->capture_default_str();
   command

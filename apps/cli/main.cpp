@@ -3,6 +3,7 @@
 #include "cli/console.h"
 #include "cli/exit_code.h"
 #include "cli/memory_option.h"
+#include "cli/number_check.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -23,7 +24,7 @@ void add_common_options(CLI::App& command, Common& common) {
   command.add_flag("--quiet", common.quiet, "nothing on standard error but failures");
   command.add_option("--threads", common.threads, "how many; 0: all. The result is the same")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024))
+      ->check(number_from(0, 1024))
       ->capture_default_str();
 }
 

@@ -2,6 +2,7 @@
 
 #include "cli/console.h"
 #include "cli/fields.h"
+#include "cli/number_check.h"
 #include "cli/text.h"
 #include "crease/block_view.h"
 #include "crease/build_progressive_arrays.h"
@@ -24,7 +25,7 @@ void add_import_options(CLI::App& command, ReadOptions& options) {
                   "normals at one vertex that differ by no more become one: exporter noise is no "
                   "crease")
       ->type_name("DEGREES")
-      ->check(CLI::Range(0.0, 180.0))
+      ->check(number_from(0.0, 180.0))
       ->capture_default_str();
 }
 

@@ -3,6 +3,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/model.h"
+#include "cli/number_check.h"
 #include "cli/output.h"
 #include "cli/panels.h"
 #include "cli/text.h"
@@ -170,7 +171,7 @@ Command add_render(CLI::App& app, const Common& common) {
       ->type_name("WxH");
   command->add_option("--columns", options->columns, "panels in a row; 0: as many as look best")
       ->type_name("N")
-      ->check(CLI::Range(0, 64));
+      ->check(number_from(0, 64));
   command->add_flag("--no-titles{false}", options->panels.titles, "no titles in the panels");
   add_build_options(*command, options->panels.read);
   command->footer(

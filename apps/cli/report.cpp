@@ -4,6 +4,7 @@
 #include "cli/facts.h"
 #include "cli/fields.h"
 #include "cli/model.h"
+#include "cli/number_check.h"
 #include "cli/output.h"
 #include "cli/report_levels.h"
 #include "cli/report_page.h"
@@ -130,6 +131,7 @@ Command add_report(CLI::App& app, const Common& common) {
       ->add_option("--samples", options->samples,
                    "points on each surface that errors are measured at; 0 measures nothing")
       ->type_name("N")
+      ->check(sample_count(0))
       ->capture_default_str();
   command->add_option("--title", options->title, "of the page; default: the file's name");
   command

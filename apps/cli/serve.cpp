@@ -1,6 +1,7 @@
 // crease serve: the files of a folder over HTTP, until Ctrl-C.
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/number_check.h"
 #include "cli/text.h"
 #include "crease/file_server.h"
 
@@ -84,7 +85,7 @@ Command add_serve(CLI::App& app, const Common& common) {
       ->type_name("RATE");
   command->add_option("--delay", options->delay_ms, "pause before each answer")
       ->type_name("MS")
-      ->check(CLI::Range(0, 60'000));
+      ->check(number_from(0, 60'000));
   command->footer(
       "Examples:\n  crease serve models --port 8080\n"
       "  crease serve models --limit 20Mbit --delay 40");

@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/model.h"
+#include "cli/number_check.h"
 #include "cli/text.h"
 #include "cli/view.h"
 #include "crease/viewer.h"
@@ -225,20 +226,20 @@ Command add_view(CLI::App& app, const Common& common) {
                       "first. Without one, drop a file on the window");
   command->add_option("--size", options->size, "of the window; default 1280x800")->type_name("WxH");
   command->add_option("--pixels", options->pixels, "error allowed on the screen; default 1")
-      ->check(CLI::Range(0.01, 1000.0))
+      ->check(number_from(0.01, 1000.0))
       ->type_name("N");
   command->add_option("--degrees", options->degrees, "error of shading allowed; default: any")
-      ->check(CLI::Range(0.0, 180.0))
+      ->check(number_from(0.0, 180.0))
       ->type_name("N");
   command->add_option("--triangles", options->triangles, "at most so many; default: no limit")
       ->type_name("N");
   command->add_option("--budget", options->budget_mb, "memory of blocks, MB; default 537")
-      ->check(CLI::Range(1.0, 1e6))
+      ->check(number_from(1.0, 1e6))
       ->type_name("MB");
   command
       ->add_option("--bandwidth", options->bandwidth_kb,
                    "what blocks are asked for, kB a second; default: no limit")
-      ->check(CLI::Range(0.1, 1e9))
+      ->check(number_from(0.1, 1e9))
       ->type_name("KB");
   command
       ->add_option(

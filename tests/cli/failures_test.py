@@ -52,6 +52,16 @@ class Failures(tool.Case):
                           ["build", city, "-o", "x.crease", "--texcoord-bits", "many"],
                           ["build", city, "-o", "x.crease", "--color-bits", "8.5"],
                           ["extract", city, "-o", "x.ply", "--error", "1", "--samples", "0"],
+                          ["extract", city, "-o", "x.ply", "--ratio", "nan"],
+                          ["extract", city, "-o", "x.ply", "--error", "nan"],
+                          ["extract", city, "-o", "x.ply", "--error", "inf"],
+                          ["build", city, "-o", "x.crease", "--same-normal", "nan"],
+                          ["render", city, "-o", "x.png", "--samples", "-1"],
+                          ["report", city, "-o", "x.html", "--samples", "-1"],
+                          ["compare", city, city, "--samples", "0"],
+                          ["extract", city, "-o", "x.ply", "--samples", "-1"],
+                          ["extract", city, "-o", "x.ply", "--samples", "1000000001"],
+                          ["extract", city, "-o", "x.ply", "--samples", "9" * 20],
                           ["extract", city, "-o", "x.glb", "--levels", "2", "--ratio", "0.5"],
                           ["extract", city, "-o", "x.ply", "--view", "c.json", "--ratio", "0.5"],
                           ["render", city, "-o", "x.png", "--levels", "1,0,2"],
@@ -81,6 +91,17 @@ class Failures(tool.Case):
                               preexec_fn=limit_memory)
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertEqual(json.loads(done.stdout)["error"]["name"], "OutOfMemory")
+
+    def test_a_number_out_of_range_is_told_with_its_range(self):
+        for option, value, wanted in (("--triangles", "0", "of 1 or more"),
+                                      ("--ratio", "0", "above 0 and up to 1"),
+                                      ("--error", "-1", "of 0 or more"),
+                                      ("--error", "inf", "of 0 or more"),
+                                      ("--same-normal", "181", "from 0 to 180"),
+                                      ("--samples", "-1", "from 0 to 1000000000")):
+            done = self.run_tool("extract", self.city(), "-o", "x.ply", option, value,
+                                 exit_status=1)
+            self.assertIn(f"{option}: '{value}' is no number {wanted}", done.stderr)
 
     def test_2_input_cannot_be_read(self):
         out = self.path("x.crease")
