@@ -28,11 +28,18 @@ void add_common_options(CLI::App& command, Common& common) {
       ->capture_default_str();
 }
 
+// All of it arrived: what a full disk lost shows at the latest now.
+int after_printing(ExitCode exit_code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return static_cast<int>(exit_code);
+  std::fprintf(stderr, "crease: standard output cannot be written\n");
+  return static_cast<int>(ExitCode::CannotWrite);
+}
+
 int print_failure(const Failure& failure, const Common& common) {
   wipe_progress_bar();
   std::fprintf(stderr, "crease: %s\n", failure.message.c_str());
   if (common.json) std::printf("%s\n", failure_json(failure).c_str());
-  return static_cast<int>(exit_code_of(failure.error));
+  return after_printing(exit_code_of(failure.error));
 }
 
 int print_report(const Report& report, const Common& common) {
@@ -44,12 +51,9 @@ int print_report(const Report& report, const Common& common) {
   } else if (!report.text.empty() && (report.text_is_answer || !common.quiet)) {
     std::printf("%s\n", report.text.c_str());
   }
-  const bool printed = std::fflush(stdout) == 0;
-  if (!report.shortfall.empty()) {
-    std::fprintf(stderr, "crease: %s\n", report.shortfall.c_str());
-    return static_cast<int>(exit_code_of(report.short_of));
-  }
-  return static_cast<int>(printed ? ExitCode::Done : ExitCode::CannotWrite);
+  if (report.shortfall.empty()) return after_printing(ExitCode::Done);
+  std::fprintf(stderr, "crease: %s\n", report.shortfall.c_str());
+  return after_printing(exit_code_of(report.short_of));
 }
 
 Result<Report> run_command(const Command& command) {
@@ -98,7 +102,10 @@ int run_main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      app.exit(error);
+      return after_printing(ExitCode::Done);
+    }
     common.json = asks_for_json(std::span(argv, static_cast<std::size_t>(argc)));
     return print_failure(parse_failure(app, error), common);
   }

@@ -177,6 +177,17 @@ class Failures(tool.Case):
             self.assertEqual(done.returncode, 4, done.stderr)
             self.assertEqual(self.files(), before, arguments)
 
+    def test_4_output_that_a_full_disk_loses(self):
+        many = self.write("many.obj", tool.TETRAHEDRON * 99)
+        for arguments in (["info", many, "--json"], ["--help"], ["extract", "--help"]):
+            with open(self.path("full"), "wb", buffering=0) as full:
+                full.write(b" " * 19_999)  # of what limit_file_size() allows
+                done = subprocess.run([tool.BINARY, *arguments], stdout=full,
+                                      stderr=subprocess.PIPE, text=True,
+                                      preexec_fn=limit_file_size)
+            self.assertEqual(done.returncode, 4, arguments)
+            self.assertIn("standard output cannot be written", done.stderr)
+
     def test_5_target_not_met(self):
         model = self.write("t.obj", tool.TETRAHEDRON)  # levels of 4 and 2 triangles, then none
         out = self.path("x.ply")
