@@ -119,8 +119,8 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
 
 // Where the output has a place for them.
 Status add_images(const ExtractArguments& options, const ModelFile& file, Mesh& mesh) {
-  const std::string extension = options.output.extension().string();
-  if (extension != ".glb" && extension != ".obj") return Done{};
+  const std::string ending = ending_of(options.output);
+  if (ending != ".glb" && ending != ".obj") return Done{};
   Result<std::vector<ImageFile>> images = file.images(mesh.materials);
   if (!images.ok()) return images.failure();
   mesh.images = *std::move(images);

@@ -1,7 +1,6 @@
 #include "cli/output.h"
 
 #include <algorithm>
-#include <string>
 #include <system_error>
 
 namespace crease::cli {
@@ -20,9 +19,15 @@ std::string in_words(std::span<const std::string_view> endings) {
 
 }  // namespace
 
+std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return ending;
+}
+
 Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
                     std::string_view what, std::span<const std::filesystem::path> inputs) {
-  const std::string ending = output.extension().string();
+  const std::string ending = ending_of(output);
   const bool is_known = std::ranges::find(endings, ending) != endings.end();
   if (!is_known && !(ending.empty() && endings.size() == 1)) {
     return fail(Error::NotSupported,

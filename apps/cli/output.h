@@ -7,11 +7,15 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace crease::cli {
 
 inline constexpr std::string_view kMeshEndings[] = {".obj", ".ply", ".stl", ".glb"};
+
+// ".glb" of "X.GLB".
+std::string ending_of(const std::filesystem::path& path);
 
 // Refuses, before any work is done, an output whose ending is none of `endings`, and one that is
 // among the inputs. Where there is one ending, a name without any, as pipes have it, will do.

@@ -3,6 +3,7 @@
 #include "cli/console.h"
 #include "cli/model.h"
 #include "cli/number_check.h"
+#include "cli/output.h"
 #include "cli/text.h"
 #include "cli/view.h"
 #include "crease/viewer.h"
@@ -187,10 +188,9 @@ Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common&
 
 Result<Report> run_view(const ViewArguments& options, const Common& common) {
   const Stopwatch watch;
-  if (!options.screenshot.empty() && options.screenshot.extension() != ".png") {
-    return fail(Error::NotSupported,
-                options.screenshot.string() + ": pictures are written as .png");
-  }
+  const std::string_view ending[] = {".png"};
+  const Status writable = check_output(options.screenshot, ending, "pictures are", {});
+  if (!writable.ok()) return writable.failure();
   if (!options.screenshot.empty() && options.source.empty()) {
     return fail(Error::CommandLine, "--screenshot needs a FILE");
   }

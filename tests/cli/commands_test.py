@@ -247,6 +247,17 @@ class Commands(tool.Case):
             self.assertIsNone(level["error_measured"])
             self.assertEqual(self.json("info", out)["triangles"], level["triangles"], extension)
 
+    def test_an_ending_may_be_in_capitals(self):
+        model = self.write("t.obj", tool.TETRAHEDRON)
+        for command, name in (("build", "A.CREASE"), ("extract", "A.GLB"), ("extract", "A.Obj"),
+                              ("report", "A.HTML"), ("render", "A.PNG")):
+            self.run_tool(command, model, "-o", self.path(name))
+            self.assertIn(name, self.files())
+        self.run_tool("extract", model, "-o", self.path("B.GLB"), "--levels", 2)
+        textured = self.json("info", self.painted())["images"]
+        self.run_tool("extract", self.path("painted.obj"), "-o", self.path("P.GLB"))
+        self.assertEqual(len(self.json("info", self.path("P.GLB"))["images"]), len(textured))
+
     def test_extract_of_everything_is_the_snapped_model(self):
         out = self.path("all.ply")
         self.json("extract", self.built(), "-o", out)
