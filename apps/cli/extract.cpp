@@ -221,8 +221,10 @@ Result<Report> extract_levels(const ExtractArguments& options, const ModelFile& 
   ProgressiveMesh mesh = model->levels();
   const Result<std::vector<ImageFile>> images = file.images(mesh.arrays().materials);
   if (!images.ok()) return images.failure();
+  LodChainOptions chain = options.chain;
+  chain.strict = options.strict;
   Result<Report> report =
-      extract_chain(mesh, *images, options.output, options.chain, options.level.samples, common);
+      extract_chain(mesh, *images, options.output, chain, options.level.samples, common);
   if (!report.ok()) return report;
   report->json["asked"] = asked_json(options);
   report->json.update(read_json(file, *model));

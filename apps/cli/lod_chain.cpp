@@ -87,6 +87,7 @@ Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>
                              std::size_t samples, const Common& common) {
   const Mesh full = mesh.extract();
   std::vector<ChainLevel> levels;
+  bool target_met = true;
   double asked = static_cast<double>(mesh.full_triangle_count());
   for (int i = 0; i < options.levels; ++i, asked *= options.step) {
     LevelOptions wanted;
@@ -96,8 +97,10 @@ Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>
     if (i > 0 && levels.back().json["triangles"] == mesh.triangle_count()) {
       log(common, "the chain ends after " + std::to_string(i) + " levels: the coarsest has " +
                       grouped(mesh.triangle_count()) + " triangles");
+      target_met = false;
       break;
     }
+    target_met = target_met && chosen->target_met;
     Result<ChainLevel> level = make_level(mesh, images, full, options, samples, common);
     if (!level.ok()) return level.failure();
     levels.push_back(*std::move(level));
@@ -105,6 +108,15 @@ Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>
   }
 
   Report report;
+  report.json["output"] = nullptr;
+  report.json["target_met"] = target_met;
+  if (options.strict && !target_met) {
+    report.json["levels"] = Json::array();
+    report.short_of = Error::TargetNotMet;
+    report.shortfall = "target not met: there are no " + std::to_string(options.levels) +
+                       " levels, each as coarse as asked; nothing was written (--strict)";
+    return report;
+  }
   Json manifest = Json::array();
   const std::filesystem::path stem = output.parent_path() / output.stem();
   for (std::size_t i = 0; i < levels.size(); ++i) {

@@ -197,6 +197,18 @@ class Failures(tool.Case):
         self.assertEqual((level["stopped_by"], level["target_met"]), ("topology", False))
         self.assertTrue(os.path.exists(out))
 
+    def test_5_a_chain_that_ends_early(self):
+        model = self.write("t.obj", tool.TETRAHEDRON)  # levels of 4 and 2 triangles, then none
+        before = self.files()
+        for more in ([], ["--lod-glb"]):
+            chain = ["extract", model, "-o", self.path("x.glb"), "--levels", 5, *more]
+            self.assertEqual(self.json(*chain, "--strict", exit_status=5)["levels"], [])
+            self.assertEqual(self.files(), before)
+            self.assertFalse(self.json(*chain)["target_met"])
+            self.run_tool("extract", model, "-o", self.path("y.glb"), "--levels", 2, *more,
+                          "--strict")
+            before = self.files()
+
     def test_6_validation_failed(self):
         whole = bytearray(pathlib.Path(self.built(1500)).read_bytes())
         for share in (0.2, 0.5, 0.9):
