@@ -114,7 +114,7 @@ Result<Report> run_info(const InfoArguments& options, const Common& common) {
     if (!file->blocks().has_images()) return file->blocks().read_images().failure();
     report.json["images"] = images_json(*images);
     report.text += images_text(report.json["images"]);
-    report.json["bytes_read"] = file->blocks().source().bytes_read();
+    report.json["bytes_read"] = file->bytes_read();
   } else if (options.head_only) {
     return fail(Error::NotCrease, options.file.string() + ": --head is of .crease files");
   } else {

@@ -171,9 +171,16 @@ std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles) {
 ModelFile::ModelFile(BlockFile blocks, std::vector<std::byte> built, const Common& common)
     : built_(std::move(built)),
       blocks_(std::move(blocks)),
-      bytes_to_open_(is_http_url(blocks_.source().name()) ? blocks_.source().bytes_read()
+      read_to_open_(blocks_.source().bytes_read()),
+      bytes_to_open_(is_http_url(blocks_.source().name()) ? read_to_open_
                                                           : blocks_.head().head_bytes),
       common_(&common) {}
+
+std::uint64_t ModelFile::bytes_read() const {
+  const std::uint64_t read = blocks_.source().bytes_read() - read_to_open_ + bytes_to_open_;
+  if (is_http_url(blocks_.source().name())) return read;
+  return std::min(read, blocks_.source().size());
+}
 
 std::string ModelFile::name() const {
   return std::filesystem::path(blocks_.source().name()).filename().string();

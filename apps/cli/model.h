@@ -70,6 +70,9 @@ class ModelFile {
     return static_cast<std::size_t>(blocks_.facts().triangle_count);
   }
   std::uint64_t bytes_to_open() const { return bytes_to_open_; }
+  // All that came from a host until now. Of a file here, which may be read again and again, how
+  // much of it that is.
+  std::uint64_t bytes_read() const;
   std::string name() const;                           // without folders or host
   bool was_built() const { return !built_.empty(); }  // FILE was a mesh, built on the fly
   const std::optional<ImportReport>& imported() const { return imported_; }  // of such a mesh
@@ -82,7 +85,8 @@ class ModelFile {
   std::vector<std::byte> built_;  // what blocks_ reads, or empty
   std::optional<ImportReport> imported_;
   BlockFile blocks_;
-  std::uint64_t bytes_to_open_;
+  std::uint64_t read_to_open_;   // of the source
+  std::uint64_t bytes_to_open_;  // as they are told
   const Common* common_;
 };
 

@@ -103,7 +103,7 @@ Result<Report> run_report(const ReportArguments& options, const Common& common) 
   report.json = {{"output", options.output.string()},
                  {"bytes", html.size()},
                  {"levels", std::move(all)},
-                 {"bytes_read", file->blocks().source().bytes_read()},
+                 {"bytes_read", file->bytes_read()},
                  {"seconds", watch.seconds()}};
   report.text = options.output.string() + ": " + in_bytes(html.size()) + ", " +
                 std::to_string(page.levels.levels.size()) + " levels, " +

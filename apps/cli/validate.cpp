@@ -92,7 +92,7 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
   report.json = {{"ok", problems.empty()},
                  {"errors", problems},
                  {"bytes", bytes},
-                 {"bytes_read", file.ok() ? file->blocks().source().bytes_read() : 0},
+                 {"bytes_read", file.ok() ? file->bytes_read() : 0},
                  {"hierarchy", hierarchy},
                  {"seconds", watch.seconds()}};
   report.text_is_answer = true;

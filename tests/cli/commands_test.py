@@ -3,6 +3,7 @@
 import hashlib
 import json
 import math
+import os
 import pathlib
 import struct
 
@@ -91,7 +92,7 @@ class Commands(tool.Case):
 
     def test_precision_is_a_length_or_bits(self):
         model = self.write("square.obj", tool.SQUARE.format(z=0.123))
-        for text, step in (("0.25", 0.25), ("3bits", None)):
+        for text, step in (("0.0625", 0.0625), ("3bits", None)):
             out = self.path("square.crease")
             self.json("build", model, "-o", out, "--precision", text)
             got = self.json("info", out)["precision"]
@@ -172,6 +173,19 @@ class Commands(tool.Case):
         self.assertEqual(errors, sorted(errors))
         self.assertGreater(info["depth"], 3)
         self.assertLess(info["linear_bytes"]["crease"], info["linear_bytes"]["replicated"])
+
+    def test_what_was_read_of_a_file_is_part_of_it(self):
+        model = self.built()
+        size = os.path.getsize(model)
+        self.assertEqual(self.json("info", model)["bytes_read"], size)
+        self.assertEqual(self.json("validate", model)["bytes_read"], size)
+        self.assertLess(self.json("info", model, "--head")["bytes_read"], size)
+        level = ["extract", model, "-o", self.path("a.ply"), "--triangles", 200]
+        read = self.json(*level)["bytes_read"]
+        self.assertEqual(read, self.json(*level, "--samples", 0)["bytes_read"])
+        self.assertLess(read, size / 2)
+        page = ["report", model, "-o", self.path("a.html"), "--levels", "0.1", "--size", "64x64"]
+        self.assertEqual(self.json(*page)["bytes_read"], size)
 
     def test_info_of_a_mesh_file_agrees_with_the_file_built_from_it(self):
         mesh, file = self.json("info", self.city()), self.json("info", self.built())
