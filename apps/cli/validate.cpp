@@ -89,12 +89,9 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
   if (interrupted()) return interrupted_failure();
 
   Report report;
-  report.json = {{"ok", problems.empty()},
-                 {"errors", problems},
-                 {"bytes", bytes},
-                 {"bytes_read", file.ok() ? file->bytes_read() : 0},
-                 {"hierarchy", hierarchy},
-                 {"seconds", watch.seconds()}};
+  report.json = {{"ok", problems.empty()}, {"errors", problems},
+                 {"bytes", bytes},         {"bytes_read", file.ok() ? file->bytes_read() : 0},
+                 {"hierarchy", hierarchy}, {"seconds", watch.seconds()}};
   report.text_is_answer = true;
   if (problems.empty()) {
     report.text =

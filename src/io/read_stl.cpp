@@ -1,14 +1,16 @@
 // STL, binary and text. Binary is told by its size, 84 + 50 n, since binary files begin with
-// "solid" too. Facet normals are not used: they are flat by definition, often zero, and say nothing
+// "solid" too; where it has another size, cut or longer, by a zero byte, which no text has. Facet normals are not used: they are flat by definition, often zero, and say nothing
 // that the winding does not; hard edges come from the crease angle.
 #include "base/bytes.h"
 #include "io/formats.h"
 #include "io/text.h"
 
+#include <algorithm>
 #include <bit>
 #include <cctype>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -126,14 +128,30 @@ Result<RawMesh> read_text(const Source& source) {
   return raw;
 }
 
+// In any case, after blanks and blank lines, as text readers take it.
+bool says_solid(std::string_view text) {
+  constexpr std::string_view kSolid = "solid";
+  const std::size_t begin = text.find_first_not_of(" \t\r\n\v\f");
+  if (begin == text.npos) return false;
+  const std::string_view word = text.substr(begin, kSolid.size());
+  return std::ranges::equal(word, kSolid, {}, [](char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  });
+}
+
+// Names of binary solids end in zeros or blanks; its counts and coordinates have zeros early on.
+bool is_text(std::string_view text) {
+  constexpr std::size_t kEarly = 1024;
+  return says_solid(text) && text.substr(0, kEarly).find('\0') == text.npos;
+}
+
 }  // namespace
 
 Result<RawMesh> read_stl(const Source& source) {
   const std::size_t size = source.bytes.size();
   const std::size_t promised = size >= kHeaderBytes ? u32_at(source.bytes, 80) : 0;
   const std::size_t needed = kHeaderBytes + kFacetBytes * promised;
-  const bool says_solid = source.text().starts_with("solid");
-  const bool is_binary = size >= kHeaderBytes && (needed == size || !says_solid);
+  const bool is_binary = size >= kHeaderBytes && (needed == size || !is_text(source.text()));
   Result<RawMesh> raw = [&]() -> Result<RawMesh> {
     if (!is_binary) return read_text(source);
     if (needed > size) {

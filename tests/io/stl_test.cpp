@@ -32,6 +32,28 @@ TEST_CASE("a binary file that is cut off is refused, one that is too long is rea
   CHECK(import_text(binary_stl(1, 2), "a.stl").mesh.triangle_count() == 1);
 }
 
+TEST_CASE("a binary file that says solid is binary, cut off or too long as well") {
+  const auto solid = [](std::uint32_t promised, int facets) {
+    std::string bytes = binary_stl(promised, facets);
+    bytes.replace(0, 12, "solid a cube");
+    return bytes;
+  };
+  CHECK(import_text(solid(2, 2), "a.stl").report.format == "binary STL");
+  CHECK(import_text(solid(2, 2) + "xy", "a.stl").report.format == "binary STL");
+  CHECK(refusal_of(solid(3, 2), "a.stl") ==
+        "a.stl: byte 184: the header promises 3 facets, 234 bytes");
+}
+
+TEST_CASE("a text begins with solid in any case, after blanks") {
+  const std::string facet =
+      " facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n";
+  for (const char* begin : {"SOLID", "Solid", " solid", "\n\t solid", "\r\nsolid"}) {
+    const Imported in = import_text(begin + (" x\n" + facet) + "endsolid\n", "a.stl");
+    CHECK(in.report.format == "text STL");
+    CHECK(in.mesh.triangle_count() == 1);
+  }
+}
+
 TEST_CASE("attribute bytes are carried as a category") {
   const Mesh mesh = import_text(binary_stl(2, 2, 0x1234), "a.stl").mesh;
   REQUIRE(mesh.layers.size() == 2);
