@@ -79,6 +79,13 @@ std::pair<std::vector<Json>, std::string> root_nodes(const Json& json) {
   return {std::move(roots), "nodes"};
 }
 
+std::vector<double> weights_of(const Json& mesh, const Json& node) {
+  const Json& stored = at(at(node, "weights").is_null() ? mesh : node, "weights");
+  std::vector<double> weights;
+  for (std::size_t k = 0; k < size_of(stored); ++k) weights.push_back(as_number(stored[k], 0));
+  return weights;
+}
+
 std::string name_of(const Json& named, const std::string& otherwise) {
   std::string name = as_text(at(named, "name"));
   return name.empty() ? otherwise : name;
@@ -110,7 +117,10 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
   const Json& meshes = at(json, "meshes");
   if (size_of(nodes) == 0) {
     for (std::size_t i = 0; i < size_of(meshes); ++i) {
-      scene.instances.push_back({i, {}, name_of(meshes[i], "mesh " + std::to_string(i))});
+      scene.instances.push_back({i,
+                                 {},
+                                 name_of(meshes[i], "mesh " + std::to_string(i)),
+                                 weights_of(meshes[i], meshes[i])});
     }
     return scene;
   }
@@ -140,7 +150,7 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
                          "no node to begin with: the scene is empty or every node is a child");
   }
 
-  std::size_t skinned = 0;
+  std::size_t skinned = 0, instanced = 0;
   while (!pending.empty()) {
     const Pending current = pending.back();
     pending.pop_back();
@@ -160,8 +170,10 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
         return fail_at_place(Error::BadValue, source, place + ".mesh", "no such mesh");
       }
       const std::string otherwise = name_of(meshes[*mesh], "node " + std::to_string(current.node));
-      scene.instances.push_back({*mesh, to_world, name_of(node, otherwise)});
+      scene.instances.push_back(
+          {*mesh, to_world, name_of(node, otherwise), weights_of(meshes[*mesh], node)});
       if (!at(node, "skin").is_null()) ++skinned;
+      if (!at(at(node, "extensions"), "EXT_mesh_gpu_instancing").is_null()) ++instanced;
     }
     const Json& children = at(node, "children");
     Status pushed = push_all(children, size_of(children), place + ".children", to_world);
@@ -170,6 +182,11 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
   if (skinned > 0) {
     scene.notes.push_back(std::to_string(skinned) +
                           " skinned meshes taken as they are stored, without their joints");
+  }
+  if (instanced > 0) {
+    scene.notes.push_back(
+        std::to_string(instanced) +
+        " nodes with EXT_mesh_gpu_instancing taken once, without their instances");
   }
   return scene;
 }

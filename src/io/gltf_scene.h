@@ -35,6 +35,7 @@ struct MeshInstance {
   std::size_t mesh = 0;
   Transform to_world;
   std::string name;  // of the node, else of the mesh, else "node 3"
+  std::vector<double> weights;  // of morph targets: the node's, else the mesh's; none: at rest
 };
 
 struct GltfScene {

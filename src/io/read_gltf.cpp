@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -120,10 +122,10 @@ class MeshBuilder {
     const bool has_parts = scene->instances.size() > 1;
 
     const Json& meshes = at(json_, "meshes");
-    std::vector<std::vector<Instance>> instances_of_mesh(size_of(meshes));
+    std::vector<std::map<Weights, std::vector<Instance>>> instances_of_mesh(size_of(meshes));
     for (const MeshInstance& instance : scene->instances) {
       const auto part = static_cast<PartId>(raw_.parts.size());
-      instances_of_mesh[instance.mesh].push_back({part, instance.to_world});
+      instances_of_mesh[instance.mesh][instance.weights].push_back({part, instance.to_world});
       if (has_parts) raw_.parts.push_back(instance.name);
     }
     for (std::size_t m = 0; m < instances_of_mesh.size(); ++m) {
@@ -131,8 +133,10 @@ class MeshBuilder {
       const Json& primitives = at(meshes[m], "primitives");
       for (std::size_t p = 0; p < size_of(primitives); ++p) {
         const std::string place = place_of(place_of("meshes", m) + ".primitives", p);
-        Status added = add_primitive(primitives[p], place, instances_of_mesh[m]);
-        if (!added.ok()) return added.failure();
+        for (const auto& [weights, instances] : instances_of_mesh[m]) {
+          Status added = add_primitive(primitives[p], place, weights, instances);
+          if (!added.ok()) return added.failure();
+        }
       }
       if (interrupted(double(m + 1) / double(instances_of_mesh.size()))) {
         return fail(Error::Interrupted, source_.name + ": interrupted");
@@ -146,12 +150,15 @@ class MeshBuilder {
   }
 
  private:
+  using Weights = std::vector<double>;  // of morph targets
+
   struct Instance {
     PartId part{};
     Transform to_world;
   };
 
-  Status add_primitive(const Json& primitive, const std::string& place,
+  // `instances` have these weights.
+  Status add_primitive(const Json& primitive, const std::string& place, const Weights& weights,
                        const std::vector<Instance>& instances) {
     const std::size_t mode = as_index(at(primitive, "mode")).value_or(4);
     if (mode < 4) {
@@ -159,11 +166,11 @@ class MeshBuilder {
       return Done{};
     }
     if (mode > 6) return fail_at_place(Error::BadValue, source_, place + ".mode", "unknown");
-    if (size_of(at(primitive, "targets")) > 0) ++morphed_primitives_;
-
     reader_.forget_given();
     Status decompressed = decompress(primitive, place);
     if (!decompressed.ok()) return decompressed;
+    Status morphed = morph(primitive, place, weights);
+    if (!morphed.ok()) return morphed;
     const Json& attributes = at(primitive, "attributes");
     const std::string attributes_place = place + ".attributes";
     const std::string position_place = attributes_place + ".POSITION";
@@ -259,6 +266,41 @@ class MeshBuilder {
     return Done{};
   }
 
+  // 3.7.2.2: what the weights make of a primitive takes the place of its accessors' values.
+  Status morph(const Json& primitive, const std::string& place, const Weights& weights) {
+    const Json& targets = at(primitive, "targets");
+    if (size_of(targets) > 0) ++morphed_primitives_;
+    for (const char* semantic : {"POSITION", "NORMAL"}) {
+      const Json& stored = at(at(primitive, "attributes"), semantic);
+      const auto accessor = as_index(stored);
+      std::optional<GltfReader::Floats> moved;
+      for (std::size_t k = 0; accessor && k < std::min(size_of(targets), weights.size()); ++k) {
+        const Json& target = at(targets[k], semantic);
+        if (weights[k] == 0 || target.is_null()) continue;
+        if (!moved) {
+          auto base = reader_.floats(stored, 3, 3, place + ".attributes." + semantic);
+          if (!base.ok()) return base.failure();
+          moved = *std::move(base);
+        }
+        const std::string here = place_of(place + ".targets", k) + "." + semantic;
+        const auto offset = reader_.floats(target, 3, 3, here);
+        if (!offset.ok()) return offset.failure();
+        if (offset->values.size() != moved->values.size()) {
+          return fail_at_place(Error::BadValue, source_, here, "not a value for every vertex");
+        }
+        if (!within_limit(1, offset->count(), 0)) {
+          return fail_at_place(Error::OverLimit, source_, here,
+                               "shared accessors multiply the file beyond reason");
+        }
+        for (std::size_t i = 0; i < moved->values.size(); ++i) {
+          moved->values[i] += static_cast<float>(weights[k]) * offset->values[i];
+        }
+      }
+      if (moved) reader_.give(*accessor, *std::move(moved));
+    }
+    return Done{};
+  }
+
   Status add_material(const Json& primitive, const std::string& place, std::size_t count) {
     std::uint32_t material = kNone;  // none given: settled at the end
     if (!at(primitive, "material").is_null()) {
@@ -311,7 +353,7 @@ class MeshBuilder {
       if (count > 0) raw_.report.notes.push_back(std::to_string(count) + " " + what);
     };
     note(point_and_line_primitives_, "primitives of points or lines ignored");
-    note(morphed_primitives_, "primitives with morph targets taken at rest");
+    note(morphed_primitives_, "primitives with morph targets taken as their weights are, at rest without");
     note(odd_runs_, "primitives whose index count is no multiple of three; the rest is ignored");
     note(size_of(at(json_, "animations")), "animations ignored");
   }

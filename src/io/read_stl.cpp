@@ -1,6 +1,7 @@
 // STL, binary and text. Binary is told by its size, 84 + 50 n, since binary files begin with
-// "solid" too; where it has another size, cut or longer, by a zero byte, which no text has. Facet normals are not used: they are flat by definition, often zero, and say nothing
-// that the winding does not; hard edges come from the crease angle.
+// "solid" too; where it has another size, cut or longer, by a zero byte, which no text has. Facet
+// normals are not used: they are flat by definition, often zero, and say nothing that the winding
+// does not; hard edges come from the crease angle.
 #include "base/bytes.h"
 #include "io/formats.h"
 #include "io/text.h"

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -154,6 +155,54 @@ TEST_CASE("glTF: one mesh under several nodes is a part each time") {
   CHECK(mesh.triangle_count() == 2);
   CHECK(mesh.part_of_triangle == std::vector<PartId>{PartId{0}, PartId{1}});
   CHECK(corner(mesh, 1, 0) == Vec3d{3, 0, 0});
+}
+
+GltfBuilder triangle_at_a_node() {
+  GltfBuilder b;
+  b.primitive({{"POSITION", b.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3")}});
+  b.json["nodes"] = {{{"mesh", 0}}};
+  b.json["scenes"] = {{{"nodes", {0}}}};
+  return b;
+}
+
+TEST_CASE("glTF: instances that are not taken are told") {
+  GltfBuilder b = triangle_at_a_node();
+  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = 0;
+  b.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  CHECK(has_note(import_text(b.gltf(), "a.gltf").report,
+                 "1 nodes with EXT_mesh_gpu_instancing taken once"));
+}
+
+TEST_CASE("glTF: morph targets are taken by the mesh's weights, or the node's") {
+  GltfBuilder b = triangle_at_a_node();
+  const auto normals = b.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  const auto up = b.add<float>({0, 0, 4, 0, 0, 4, 0, 0, 4}, "VEC3");
+  const auto turned = b.add<float>({2, 0, 0, 2, 0, 0, 2, 0, 0}, "VEC3");
+  GltfBuilder::Json& primitive = b.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["NORMAL"] = normals;
+  primitive["targets"] = {{{"POSITION", up}}, {{"POSITION", up}, {"NORMAL", turned}}};
+  const auto height = [&] {
+    const Mesh mesh = import_text(b.gltf(), "a.gltf").mesh;
+    CHECK(mesh.vertex_count() == 3);
+    return mesh.positions[0].z;
+  };
+  CHECK(height() == 0);
+  b.json["meshes"][0]["weights"] = {0.5, 0.0};
+  CHECK(height() == 2);
+  b.json["nodes"][0]["weights"] = {0.25, 0.5};
+  CHECK(height() == 3);
+  const Mesh mesh = import_text(b.gltf(), "a.gltf").mesh;
+  CHECK(mesh.layers[0].values[0] == doctest::Approx(std::sqrt(0.5)));
+  CHECK(mesh.layers[0].values[2] == doctest::Approx(std::sqrt(0.5)));
+
+  b.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 0.0}}});
+  b.json["scenes"][0]["nodes"] = {0, 1};
+  const Mesh both = import_text(b.gltf(), "a.gltf").mesh;
+  CHECK(both.triangle_count() == 2);
+  CHECK(both.positions[0].z + both.positions[3].z == 7);
+
+  primitive["targets"][1]["POSITION"] = b.add<float>({1, 2, 3}, "VEC3");
+  CHECK(refusal_of(b.gltf(), "a.gltf").find("targets[1].POSITION") != std::string::npos);
 }
 
 TEST_CASE("glTF: every index type, and none") {
