@@ -231,6 +231,23 @@ void drop_degenerate(Mesh& mesh, RawMesh& raw, ImportReport& report) {
   if (!raw.smoothing_group.empty()) keep_rows(raw.smoothing_group, kept);
 }
 
+double longest_side(const std::vector<Vec3d>& positions) {
+  Vec3d low = positions.front(), high = low;
+  for (const Vec3d& p : positions) {
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  }
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
+std::string shortest(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
+
 }  // namespace
 
 Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const std::string& name) {
@@ -273,6 +290,10 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
     return fail(Error::NoTriangles, name + ": " + reason);
   }
   report.isolated_vertices = drop_isolated_vertices(mesh);
+  if (const double extent = longest_side(mesh.positions); extent < kMinExtent) {
+    return fail(Error::BadValue, name + ": its longest side is " + shortest(extent) +
+                                     ", which leaves no numbers to work with: scale it up");
+  }
   drop_unused_parts(mesh);
   report.duplicate_triangles = count_duplicate_triangles(mesh);
   report.zero_area_triangles = count_zero_area_triangles(mesh);

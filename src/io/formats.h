@@ -39,6 +39,10 @@ Failure fail_at_byte(Error error, const Source& source, std::size_t offset,
 inline constexpr double kMaxCoordinate = 1e30;
 bool is_position(const Vec3d& p);
 
+// The longest side of a model that has triangles, at least: errors and steps of a grid over it are
+// floats, and stay so.
+inline constexpr double kMinExtent = 1e-30;
+
 Result<RawMesh> read_obj(const Source& source);
 Result<RawMesh> read_ply(const Source& source);
 Result<RawMesh> read_stl(const Source& source);

@@ -34,7 +34,7 @@ struct Transform {
 struct MeshInstance {
   std::size_t mesh = 0;
   Transform to_world;
-  std::string name;  // of the node, else of the mesh, else "node 3"
+  std::string name;             // of the node, else of the mesh, else "node 3"
   std::vector<double> weights;  // of morph targets: the node's, else the mesh's; none: at rest
 };
 

@@ -353,7 +353,8 @@ class MeshBuilder {
       if (count > 0) raw_.report.notes.push_back(std::to_string(count) + " " + what);
     };
     note(point_and_line_primitives_, "primitives of points or lines ignored");
-    note(morphed_primitives_, "primitives with morph targets taken as their weights are, at rest without");
+    note(morphed_primitives_,
+         "primitives with morph targets taken as their weights are, at rest without");
     note(odd_runs_, "primitives whose index count is no multiple of three; the rest is ignored");
     note(size_of(at(json_, "animations")), "animations ignored");
   }

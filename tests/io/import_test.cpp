@@ -10,6 +10,15 @@
 namespace crease {
 namespace {
 
+TEST_CASE("a model that is too small for numbers is refused, a small one is not") {
+  const auto triangle = [](const std::string& side) {
+    return "v 5 0 0\nv 5 " + side + " 0\nv 5 0 " + side + "\nf 1 2 3\n";
+  };
+  CHECK(import_text(triangle("1e-30"), "a.obj").mesh.triangle_count() == 1);
+  CHECK(refusal_of(triangle("1e-310"), "a.obj") ==
+        "a.obj: its longest side is 1e-310, which leaves no numbers to work with: scale it up");
+}
+
 TEST_CASE("normal policies are read from words") {
   CHECK(parse_normal_policy("keep")->kind == NormalPolicy::Kind::Keep);
   CHECK(parse_normal_policy("flat")->kind == NormalPolicy::Kind::Flat);
