@@ -259,7 +259,7 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
 
   if (!goes_on(options, "weld", 0)) return interrupted();
   for (const Vec3d& p : raw.positions) {
-    if (!is_position(p)) return fail(Error::BadValue, name + ": a position is not a finite number");
+    if (!is_position(p)) return fail(Error::BadValue, name + ": a position is " + fault_of(p));
   }
   for (RawLayer& layer : raw.layers) {
     report.bad_attribute_values += clear_bad_values(layer);

@@ -38,6 +38,8 @@ Failure fail_at_byte(Error error, const Source& source, std::size_t offset,
 // Finite, and small enough that squares and cubes of it are: a coordinate that can be meant.
 inline constexpr double kMaxCoordinate = 1e30;
 bool is_position(const Vec3d& p);
+// What is wrong with one that is none: "not finite" or "beyond 1e30".
+const char* fault_of(const Vec3d& p);
 
 // The longest side of a model that has triangles, at least: errors and steps of a grid over it are
 // floats, and stay so.

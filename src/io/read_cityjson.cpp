@@ -173,7 +173,8 @@ class CityBuilder {
       const Vec3d p{v->x * scale.x + translate.x, v->y * scale.y + translate.y,
                     v->z * scale.z + translate.z};
       if (!is_position(p)) {
-        return fail_at_place(Error::BadValue, source_, place_of(place, i), "not a finite position");
+        return fail_at_place(Error::BadValue, source_, place_of(place, i),
+                             std::string("position is ") + fault_of(p));
       }
       to.push_back(p);
     }
@@ -308,7 +309,7 @@ class CityBuilder {
         points_.push_back(context.vertices[*v]);
         if (!is_position(points_.back())) {
           return fail_at_place(Error::BadValue, source_, place_of(place, rank),
-                               "not a finite position");
+                               std::string("position is ") + fault_of(points_.back()));
         }
       }
     }

@@ -212,7 +212,7 @@ class MeshBuilder {
         const Vec3d p = instance.to_world.point({stored[0], stored[1], stored[2]}) + center_;
         if (!is_position(p)) {
           return fail_at_place(Error::BadValue, source_, place_of(position_place, v),
-                               "not a finite position");
+                               std::string("position is ") + fault_of(p));
         }
         raw_.positions.push_back(p);
       }

@@ -105,7 +105,9 @@ class ObjReader {
     if (!line.done() && line.at[0] != '#') return not_a_number(line, "vertex");
     if (count < 3) return not_a_number(line, "vertex");
     const Vec3d p{x[0], x[1], x[2]};
-    if (!is_position(p)) return refuse(Error::BadValue, "vertex is not finite");
+    if (!is_position(p)) {
+      return refuse(Error::BadValue, std::string("vertex is ") + fault_of(p));
+    }
     raw_.positions.push_back(p);
     if (count == 6 || count == 7) {
       colors_.resize(3 * (raw_.positions.size() - 1), 1.0f);  // white where there was none
@@ -354,18 +356,36 @@ class ObjReader {
 
   void read_libraries() {
     if (raw_.materials.empty()) return;
-    for (const std::string& name : libraries_) {
-      const std::filesystem::path relative(name);
-      if (!source_.folder || relative.is_absolute() || name.find('\0') != name.npos) continue;
-      std::ifstream file(*source_.folder / relative, std::ios::binary);
-      const std::string text{std::istreambuf_iterator<char>(file),
-                             std::istreambuf_iterator<char>()};
-      if (text.empty()) {
+    for (const std::string& named : libraries_) {
+      if (!source_.folder || read_library(named)) continue;
+      // Not one name with blanks in it, then: several without, if any of these is there.
+      std::vector<std::string> missing;
+      std::size_t found = 0;
+      Line line{named.data(), named.data() + named.size(), 0};
+      while (!line.done()) {
+        const std::string name(line.word());
+        if (name != named && read_library(name)) {
+          ++found;
+        } else {
+          missing.push_back(name);
+        }
+      }
+      if (found == 0) missing = {named};
+      for (const std::string& name : missing) {
         raw_.report.notes.push_back("material library " + in_quotes(name) + " not found");
-      } else {
-        read_mtl(text, relative.parent_path().generic_string(), raw_.materials);
       }
     }
+  }
+
+  // False if it is not there. One from elsewhere is passed over without a word.
+  bool read_library(const std::string& name) {
+    const std::filesystem::path relative(name);
+    if (relative.is_absolute() || name.find('\0') != name.npos) return true;
+    std::ifstream file(*source_.folder / relative, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (text.empty()) return false;
+    read_mtl(text, relative.parent_path().generic_string(), raw_.materials);
+    return true;
   }
 
   static constexpr std::size_t kMaxIgnoredWords = 8;

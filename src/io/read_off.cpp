@@ -84,6 +84,9 @@ class OffReader {
     // A vertex takes at least the six characters "0 0 0\n", a face "3 0 0 0\n" or "0\n".
     const std::size_t left =
         source_.text().size() - static_cast<std::size_t>(lines_.position() - source_.text().data());
+    if (left == 0 && !line_.done()) {
+      return refuse(Error::NotSupported, "vertices and faces have no lines of their own");
+    }
     if (vertex_count_ > left / 5 || face_count_ > left / 2 + 1) {
       return refuse(Error::Truncated, "the header promises " + std::to_string(vertex_count_) +
                                           " vertices and " + std::to_string(face_count_) +
@@ -113,7 +116,7 @@ class OffReader {
       std::array<double, 3> x;
       if (!read_numbers(3, x.data(), "vertex")) return false;
       const Vec3d p{x[0], x[1], x[2]};
-      if (!is_position(p)) return refuse(Error::BadValue, what() + " is not finite");
+      if (!is_position(p)) return refuse(Error::BadValue, what() + " is " + fault_of(p));
       raw_.positions.push_back(p);
       if (has_normals_) {
         if (!read_numbers(3, x.data(), "vertex normal")) return false;

@@ -96,10 +96,21 @@ class PlyReader {
 
   bool read_element(const PlyElement& element) {
     if (element.name == "vertex") return read_vertices(element);
-    if (element.name == "face") return read_faces(element);
-    if (element.name == "tristrips") return read_strips(element);
+    const bool is_face = element.name == "face", is_strip = element.name == "tristrips";
+    if ((is_face || is_strip) && element.count > 0 && is_before_vertices(element)) {
+      return refuse(body_.refuse(Error::NotSupported,
+                                 "'" + element.name + "' comes before the vertices it names"));
+    }
+    if (is_face) return read_faces(element);
+    if (is_strip) return read_strips(element);
     raw_.report.notes.push_back("element '" + element.name + "' ignored");
     return skip_rows(element);
+  }
+
+  bool is_before_vertices(const PlyElement& element) const {
+    return std::any_of(
+        &element, header_.elements.data() + header_.elements.size(),
+        [](const PlyElement& later) { return later.name == "vertex" && later.count > 0; });
   }
 
   template <typename TakeScalar, typename TakeList>
@@ -254,7 +265,7 @@ class PlyReader {
       if (!read_row(element, i, take, [](std::size_t) { return true; })) return false;
       if (!is_position(position)) {
         return refuse(
-            body_.refuse(Error::BadValue, "vertex " + std::to_string(i) + " is not finite"));
+            body_.refuse(Error::BadValue, "vertex " + std::to_string(i) + " is " + fault_of(position)));
       }
       raw_.positions.push_back(position);
       vertices_.keep_row();

@@ -52,7 +52,7 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
                     f32_at(source.bytes, at + 8)};
       if (!is_position(p)) {
         return fail_at_byte(Error::BadValue, source, at,
-                            "corner of facet " + std::to_string(f) + " is not finite");
+                            "corner of facet " + std::to_string(f) + " is " + fault_of(p));
       }
       raw.positions.push_back(p);
     }
@@ -103,7 +103,9 @@ Result<RawMesh> read_text(const Source& source) {
             return refuse(Error::BadFormat, "vertex: not a number: " + in_quotes(line.word()));
           }
         }
-        if (!is_position(p)) return refuse(Error::BadValue, "vertex is not finite");
+        if (!is_position(p)) {
+          return refuse(Error::BadValue, std::string("vertex is ") + fault_of(p));
+        }
         if (!in_facet || ++corners > 3)
           return refuse(Error::BadFormat, "vertex beyond a facet's three");
         raw.positions.push_back(p);

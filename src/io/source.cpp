@@ -22,6 +22,11 @@ bool is_position(const Vec3d& p) {
          std::abs(p.z) <= kMaxCoordinate;
 }
 
+const char* fault_of(const Vec3d& p) {
+  const bool is_finite = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  return is_finite ? "beyond 1e30" : "not finite";
+}
+
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string out = "'";

@@ -21,8 +21,9 @@ std::size_t limit_for(std::size_t packed) {
   return std::max(kUnpackedAlways, packed * kMaxUnpackedTimes);
 }
 
-Failure cut_off(const std::string& name) {
-  return fail(Error::Truncated, name + ": the packed file is cut off");
+Failure cut_off(const std::string& name, std::size_t offset) {
+  return fail(Error::Truncated, name + ": packed byte " + std::to_string(offset) +
+                                    ": the packed file is cut off; fetch it again");
 }
 
 Failure damaged(const std::string& name, std::size_t offset, const std::string& why) {
@@ -82,7 +83,7 @@ Result<std::vector<std::byte>> unpack_zstd(std::span<const std::byte> bytes,
     const bool output_full = chunk.pos == chunk.size;
     if (in.pos == in.size && !output_full) break;
   }
-  if (state != 0) return cut_off(name);
+  if (state != 0) return cut_off(name, bytes.size());
   return out;
 }
 
@@ -109,7 +110,7 @@ Result<std::vector<std::byte>> unpack_xz(std::span<const std::byte> bytes,
     if (out.size() > limit) return bomb(name);
   }
   const std::size_t offset = bytes.size() - stream.avail_in;
-  if (state == LZMA_BUF_ERROR) return cut_off(name);
+  if (state == LZMA_BUF_ERROR) return cut_off(name, bytes.size());
   if (state == LZMA_MEMLIMIT_ERROR)
     return damaged(name, offset, "wants more than 128 MiB to unpack");
   if (state != LZMA_STREAM_END) return damaged(name, offset, "not xz data");

@@ -153,6 +153,28 @@ TEST_CASE("the material library beside the file is read") {
   std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("one line may name several material libraries") {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "crease_obj_test_libraries";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.mtl") << "newmtl red\nKd 1 0 0\n";
+  std::ofstream(folder / "b.mtl") << "newmtl blue\nKd 0 0 1\n";
+  const auto import_with = [&](const std::string& libraries) {
+    std::ofstream(folder / "a.obj") << "mtllib " << libraries << "\nusemtl red\n"
+                                    << kSquare << "f 1 2 3\nusemtl blue\nf 1 3 4\n";
+    return *import_mesh(folder / "a.obj", {});
+  };
+  const Imported both = import_with("a.mtl  b.mtl");
+  CHECK(both.report.notes.empty());
+  CHECK(both.mesh.materials[0].base_color == std::array<float, 4>{1, 0, 0, 1});
+  CHECK(both.mesh.materials[1].base_color == std::array<float, 4>{0, 0, 1, 1});
+  CHECK(import_with("a.mtl c.mtl").report.notes ==
+        std::vector<std::string>{"material library 'c.mtl' not found"});
+  CHECK(import_with("c d.mtl").report.notes ==
+        std::vector<std::string>{"material library 'c d.mtl' not found"});
+  std::filesystem::remove_all(folder);
+}
+
 TEST_CASE("colours after the coordinates of vertices") {
   const Mesh mesh = import_text("v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0\nf 1 2 3\n", "a.obj").mesh;
   REQUIRE(mesh.layers.size() == 2);
@@ -169,6 +191,7 @@ TEST_CASE("every refusal names the line and the reason") {
   CHECK(refusal_of("v 0 0 0,5\n", "a.obj") == "a.obj:1: vertex: not a number: '0,5'");
   CHECK(refusal_of("\nv 0 nan 0\n", "a.obj") == "a.obj:2: vertex is not finite");
   CHECK(refusal_of("v 1e999 0 0\n", "a.obj") == "a.obj:1: vertex is not finite");
+  CHECK(refusal_of("v 1e39 0 0\n", "a.obj") == "a.obj:1: vertex is beyond 1e30");
   CHECK(refusal_of(kSquare + "f 1 2 0\n", "a.obj") == "a.obj:5: face index 0: OBJ counts from 1");
   CHECK(refusal_of(kSquare + "f 1 2 -5\n", "a.obj") == "a.obj:5: face index -5 of 4 vertices");
   CHECK(refusal_of(kSquare + "f 1 2 99999999999999999999\n", "a.obj")

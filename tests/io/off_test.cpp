@@ -63,6 +63,8 @@ TEST_CASE("every refusal names the line and the reason") {
             .starts_with("a.off:1: OFF of more than three dimensions"));
   CHECK(refusal_of("OFF\n353535235358 6 0\n0 0 0\n", "a.off")
             .starts_with("a.off:2: the header promises"));
+  CHECK(refusal_of("OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2", "a.off") ==
+        "a.off:1: vertices and faces have no lines of their own");
 }
 
 }  // namespace

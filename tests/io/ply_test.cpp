@@ -232,6 +232,12 @@ TEST_CASE("every refusal names the place and the reason") {
         "a.ply:13: vertex index -1 of 3 vertices");
   CHECK(refusal_of(header("", "") + "0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "a.ply") ==
         "a.ply:11: vertex 1 is not finite");
+  CHECK(refusal_of("ply\nformat ascii 1.0\nelement face 1\n"
+                   "property list uchar int vertex_indices\nelement vertex 3\nproperty float x\n"
+                   "property float y\nproperty float z\nend_header\n3 0 1 2\n" +
+                       std::string(kThreePoints),
+                   "a.ply")
+            .find("'face' comes before the vertices it names") != std::string::npos);
   CHECK(refusal_of(header("", "") + "0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "a.ply") ==
         "a.ply:11: vertex 1 of 3 has too few numbers");
   CHECK(refusal_of(header("", "") + kThreePoints + "3 0 1 x\n", "a.ply") ==

@@ -65,6 +65,9 @@ TEST_CASE("a packed file cut anywhere is refused") {
       CAPTURE(size);
       CHECK_FALSE(unpacked(packed.substr(0, size)).ok());
     }
+    const std::string half = packed.substr(0, packed.size() / 2);
+    CHECK(unpacked(half).failure().message.find("byte " + std::to_string(half.size())) !=
+          std::string::npos);
   }
 }
 
