@@ -264,8 +264,8 @@ class PlyReader {
       };
       if (!read_row(element, i, take, [](std::size_t) { return true; })) return false;
       if (!is_position(position)) {
-        return refuse(
-            body_.refuse(Error::BadValue, "vertex " + std::to_string(i) + " is " + fault_of(position)));
+        return refuse(body_.refuse(Error::BadValue,
+                                   "vertex " + std::to_string(i) + " is " + fault_of(position)));
       }
       raw_.positions.push_back(position);
       vertices_.keep_row();
