@@ -249,6 +249,12 @@ Result<Report> run_extract(const ExtractArguments& options, const Common& common
       is_chain ? check_output(options.output, glb, "chains of levels are", {&options.file, 1})
                : check_output(options.output, kMeshEndings, "levels are", {&options.file, 1});
   if (!writable.ok()) return writable.failure();
+  if (is_chain) {
+    for (const std::filesystem::path& output : files_of_chain(options.output, options.chain)) {
+      const Status kept = keep_inputs(output, {&options.file, 1});
+      if (!kept.ok()) return kept.failure();
+    }
+  }
   const Result<ModelFile> file = open_model(options.file, options.read, common);
   if (!file.ok()) return file.failure();
   if (file->triangle_count() == 0) {

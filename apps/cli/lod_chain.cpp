@@ -35,6 +35,14 @@ void add_chain_options(CLI::App& command, LodChainOptions& options) {
 
 namespace {
 
+std::filesystem::path level_file(const std::filesystem::path& output, std::size_t level) {
+  return output.parent_path() / (output.stem().string() + "_" + std::to_string(level) + ".glb");
+}
+
+std::filesystem::path manifest_file(const std::filesystem::path& output) {
+  return output.parent_path() / (output.stem().string() + ".json");
+}
+
 struct ChainLevel {
   std::vector<std::byte> glb;  // of its own, or
   Mesh mesh;                   // for one of all levels
@@ -82,6 +90,16 @@ Status write_one_glb(std::vector<ChainLevel> levels, const std::filesystem::path
 
 }  // namespace
 
+std::vector<std::filesystem::path> files_of_chain(const std::filesystem::path& output,
+                                                  const LodChainOptions& options) {
+  if (options.one_glb) return {output};
+  std::vector<std::filesystem::path> files = {manifest_file(output)};
+  for (int i = 0; i < options.levels; ++i) {
+    files.push_back(level_file(output, static_cast<std::size_t>(i)));
+  }
+  return files;
+}
+
 Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>& images,
                              const std::filesystem::path& output, const LodChainOptions& options,
                              std::size_t samples, const Common& common) {
@@ -118,14 +136,13 @@ Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>
     return report;
   }
   Json manifest = Json::array();
-  const std::filesystem::path stem = output.parent_path() / output.stem();
   for (std::size_t i = 0; i < levels.size(); ++i) {
     Json& json = levels[i].json;
     if (!options.one_glb) {
-      const std::string name = stem.string() + "_" + std::to_string(i) + ".glb";
-      const Status written = write_file(name, levels[i].glb);
+      const std::filesystem::path file = level_file(output, i);
+      const Status written = write_file(file, levels[i].glb);
       if (!written.ok()) return written.failure();
-      json["file"] = std::filesystem::path(name).filename().string();
+      json["file"] = file.filename().string();
     }
     report.text += (i > 0 ? "\n" : "") + std::string("level ") + std::to_string(i) + ": " +
                    grouped(json["triangles"].get<std::size_t>()) + " triangles";
@@ -144,10 +161,10 @@ Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>
     report.json["output"] = output.string();
   } else {
     const std::string text = Json{{"levels", manifest}}.dump(2) + "\n";
-    const Status written =
-        write_file(stem.string() + ".json", std::as_bytes(std::span<const char>(text)));
+    const std::filesystem::path file = manifest_file(output);
+    const Status written = write_file(file, std::as_bytes(std::span<const char>(text)));
     if (!written.ok()) return written.failure();
-    report.json["output"] = stem.string() + ".json";
+    report.json["output"] = file.string();
   }
   report.json["levels"] = std::move(manifest);
   return report;

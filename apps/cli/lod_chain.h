@@ -20,6 +20,10 @@ struct LodChainOptions {
 
 void add_chain_options(CLI::App& command, LodChainOptions& options);
 
+// What extract_chain() writes at most.
+std::vector<std::filesystem::path> files_of_chain(const std::filesystem::path& output,
+                                                  const LodChainOptions& options);
+
 // Writes city_0.glb, city_1.glb, ... and city.json for the output city.glb; with one_glb city.glb.
 // Every level is measured against the full mesh, when `samples` is not 0.
 // Each has the images.

@@ -33,6 +33,11 @@ Status check_output(const std::filesystem::path& output, std::span<const std::st
     return fail(Error::NotSupported,
                 output.string() + ": " + std::string(what) + " written as " + in_words(endings));
   }
+  return keep_inputs(output, inputs);
+}
+
+Status keep_inputs(const std::filesystem::path& output,
+                   std::span<const std::filesystem::path> inputs) {
   for (const std::filesystem::path& input : inputs) {
     std::error_code error;  // one of them is not there
     if (std::filesystem::equivalent(output, input, error)) {

@@ -147,10 +147,15 @@ class Failures(tool.Case):
         self.run_tool("build", model, "-o", crease)
         os.symlink(model, self.path("link.obj"))
         os.symlink(model, self.path("link.crease"))
+        for name in ("t_1.glb", "t.json"):  # which a chain of t.glb would write
+            os.symlink(model, self.path(name))
         before = pathlib.Path(model).read_bytes()
         for arguments in (["extract", model, "-o", model],
                           ["extract", model, "-o", self.path("link.obj")],
-                          ["build", model, "-o", self.path("link.crease")]):
+                          ["build", model, "-o", self.path("link.crease")],
+                          ["extract", self.path("t_1.glb"), "-o", self.path("t.glb"), "--levels", 2],
+                          ["extract", self.path("t.json"), "-o", self.path("t.glb"),
+                           "--levels", 2]):
             self.assertIn("is an input", self.fails(1, *arguments)["message"])
         self.assertEqual(pathlib.Path(model).read_bytes(), before)
 
