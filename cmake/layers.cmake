@@ -5,7 +5,7 @@ set(CREASE_FOLDERS
   stream http serve spill runtime render view)
 
 set(CREASE_LAYER_base      )
-set(CREASE_LAYER_parallel  )
+set(CREASE_LAYER_parallel  base)
 set(CREASE_LAYER_mesh      base)
 set(CREASE_LAYER_hierarchy base mesh)
 set(CREASE_LAYER_assemble  base mesh hierarchy)
