@@ -38,17 +38,19 @@ class HttpSource final : public ByteSource {
   void prefetch(std::span<const FileRange> ranges) const override {
     const std::lock_guard guard(lock_);
     take_answers();
-    std::vector<RangeRequest> wanted;
+    std::vector<FileRange> wanted;
+    std::vector<RangeRequest> requests;
     std::uint64_t unread = kept_.unread_bytes() + coming_bytes_;
     for (const FileRange& range : ranges) {
       if (kept_.has(range) || coming_.contains(range.offset)) continue;
       unread += range.bytes;
       if (unread > kept_.max_bytes() / 2) break;
-      wanted.push_back({range, 0});
+      wanted.push_back(range);
+      requests.push_back({rest_of(range), 0});
     }
-    const Ticket first = loader_->request(wanted);
+    const Ticket first = loader_->request(requests);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      const FileRange& range = wanted[i].range;
+      const FileRange& range = wanted[i];
       coming_.emplace(range.offset, Coming{ticket_after(first, i), range.bytes});
       prefetched_.emplace(number(ticket_after(first, i)), range);
       coming_bytes_ += range.bytes;
@@ -61,6 +63,25 @@ class HttpSource final : public ByteSource {
     Ticket ticket{};
     std::uint64_t bytes = 0;
   };
+
+  // Without the bytes at its begin that were transferred already: those of a block that the end of
+  // the first request cuts.
+  FileRange rest_of(const FileRange& range) const {
+    const std::uint64_t begun = kept_.begin_of(range).size();
+    return {range.offset + begun, range.bytes - begun};
+  }
+
+  // What came for rest_of(range).
+  void keep(const FileRange& range, std::vector<std::byte> bytes) const {
+    const std::uint64_t begun = range.bytes - bytes.size();
+    const std::span<const std::byte> begin = kept_.begin_of({range.offset, begun});
+    if (begin.size() == begun) {
+      bytes.insert(bytes.begin(), begin.begin(), begin.end());
+      kept_.put(range.offset, std::move(bytes));
+    } else {  // dropped since
+      kept_.put(range.offset + begun, std::move(bytes));
+    }
+  }
 
   static std::uint64_t number(Ticket ticket) { return static_cast<std::uint64_t>(ticket); }
 
@@ -77,10 +98,13 @@ class HttpSource final : public ByteSource {
       }
       if (kept_.read(offset, into)) return Done{};  // else it failed, and may not now
     }
-    Bytes bytes = wait_for(loader_->request({offset, into.size()}, 1), guard);
+    const std::span<const std::byte> begin = kept_.begin_of({offset, into.size()});
+    const std::size_t begun = begin.size();
+    std::copy(begin.begin(), begin.end(), into.begin());
+    Bytes bytes = wait_for(loader_->request({offset + begun, into.size() - begun}, 1), guard);
     if (!bytes.ok()) return without_name(bytes.failure());
-    std::copy(bytes->begin(), bytes->end(), into.begin());
-    kept_.put(offset, *std::move(bytes));
+    std::copy(bytes->begin(), bytes->end(), into.begin() + static_cast<std::ptrdiff_t>(begun));
+    keep({offset, into.size()}, *std::move(bytes));
     kept_.mark_read(offset);
     return Done{};
   }
@@ -136,7 +160,7 @@ class HttpSource final : public ByteSource {
       prefetched_.erase(found);
       coming_.erase(range.offset);
       coming_bytes_ -= range.bytes;
-      if (answer.bytes.ok()) kept_.put(range.offset, *std::move(answer.bytes));
+      if (answer.bytes.ok()) keep(range, *std::move(answer.bytes));
     }
   }
 

@@ -5,10 +5,24 @@
 
 namespace crease::http {
 
+TransferredBytes::Pieces::const_iterator TransferredBytes::before(std::uint64_t offset) const {
+  const auto behind = pieces_.upper_bound(offset);
+  return behind == pieces_.begin() ? pieces_.end() : std::prev(behind);
+}
+
+std::span<const std::byte> TransferredBytes::begin_of(const FileRange& range) const {
+  const auto piece = before(range.offset);
+  if (piece == pieces_.end()) return {};
+  const std::span<const std::byte> bytes = piece->second.bytes;
+  const std::uint64_t begin = range.offset - piece->first;
+  if (begin >= bytes.size()) return {};
+  const std::uint64_t count = std::min<std::uint64_t>(range.bytes, bytes.size() - begin);
+  return bytes.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
+}
+
 TransferredBytes::Pieces::const_iterator TransferredBytes::find(const FileRange& range) const {
-  auto piece = pieces_.upper_bound(range.offset);
-  if (piece == pieces_.begin()) return pieces_.end();
-  --piece;
+  const auto piece = before(range.offset);
+  if (piece == pieces_.end()) return piece;
   const std::uint64_t begin = range.offset - piece->first;
   const std::uint64_t there = piece->second.bytes.size();
   return begin <= there && range.bytes <= there - begin ? piece : pieces_.end();

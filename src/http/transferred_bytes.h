@@ -21,6 +21,8 @@ class TransferredBytes {
 
   void put(std::uint64_t offset, std::vector<std::byte> bytes);
   bool has(const FileRange& range) const { return find(range) != pieces_.end(); }
+  // The first bytes of a range, as many as one piece holds; valid until the next put().
+  std::span<const std::byte> begin_of(const FileRange& range) const;
   // False, and nothing is copied, where one piece does not hold all of it.
   bool read(std::uint64_t offset, std::span<std::byte> into);
   // The piece that begins there, if there is one.
@@ -38,6 +40,8 @@ class TransferredBytes {
   };
   using Pieces = std::map<std::uint64_t, Piece>;  // by offset
 
+  // The piece that begins there or before, if there is one.
+  Pieces::const_iterator before(std::uint64_t offset) const;
   Pieces::const_iterator find(const FileRange& range) const;
   void drop(Pieces::const_iterator piece);
 

@@ -198,6 +198,30 @@ TEST_CASE("what is fetched ahead is not fetched again") {
   CHECK((*source)->bytes_read() == 65536 + 100'000);
 }
 
+TEST_CASE("of a range whose begin is there, the rest is asked for") {
+  Host host;
+  const std::vector<std::byte> bytes = some_bytes(200'000);
+  host.folder.write("model.crease", bytes);
+  const FileRange cut{60'000, 20'000};  // by the end of the first request
+  for (const bool ahead : {false, true}) {
+    const Result<ByteSourcePtr> source = open_http_source(host.url(), hasty());
+    CHECK(read_all(**source, {0, 65536}) == part_of(bytes, {0, 65536}));
+    if (ahead) (*source)->prefetch(std::vector{cut, FileRange{80'000, 1000}});
+    CHECK(read_all(**source, cut) == part_of(bytes, cut));
+    CHECK(read_all(**source, {80'000, 1000}) == part_of(bytes, {80'000, 1000}));
+    CHECK((*source)->bytes_read() == 81'000);
+  }
+  // What was kept of the begin may have gone until the rest comes: all of it is there in any case.
+  HttpOptions small = hasty();
+  small.keep_bytes = 70'000;
+  const Result<ByteSourcePtr> source = open_http_source(host.url(), small);
+  CHECK(read_all(**source, {0, 65536}) == part_of(bytes, {0, 65536}));
+  (*source)->prefetch(std::vector{cut});
+  const FileRange far{100'000, 69'000};
+  CHECK(read_all(**source, far) == part_of(bytes, far));
+  CHECK(read_all(**source, cut) == part_of(bytes, cut));
+}
+
 TEST_CASE("what is no URL of a host") {
   CHECK(is_http_url("http://a/b"));
   CHECK(is_http_url("https://a/b"));
