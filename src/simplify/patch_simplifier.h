@@ -96,9 +96,10 @@ class PatchSimplifier {
   // A pair, and what is known of it as long as its ends do not change.
   struct Candidate {
     Index a, b;
-    Index placed_at;          // so many contractions had been made
-    Vec3i position;           // less center_
-    double cost, free_cost;   // see Placed
+    Index known_at;          // so many contractions, and one, when it was known last; 0: it has not
+                             // been looked at, so that another may own its ends
+    Vec3i position;          // less center_
+    double cost, free_cost;  // see Placed
     double cost_of_other[3];  // free, at the other places that make_legal() tries; or kUnknown
     static constexpr double kUnknown = -1;
   };
@@ -192,6 +193,10 @@ class PatchSimplifier {
   void order_pairs();
   bool pop(Entry& entry);
   float next_cost() const;
+  void fetch_ahead() const;
+  std::size_t slot_of(Index a, Index b) const {
+    return (a * 0x9e3779b1u ^ b * 0x85ebca77u) & (owners_.size() - 1);
+  }
   Index survivor(Index v);
   bool claim(Index pair, Index a, Index b);
   void hold(const Entry& entry, double cost, const Placed& placed);
