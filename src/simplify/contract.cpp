@@ -137,8 +137,8 @@ CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {
 
 // One quadric out of the members', in the place of one of them; none if all show one attribute that
 // is the same all over their triangles.
-void PatchSimplifier::combine_quadrics(std::size_t layer, std::span<const Index> members,
-                                       Wedge& result) {
+inline void PatchSimplifier::combine_quadrics(std::size_t layer, std::span<const Index> members,
+                                              Wedge& result) {
   const std::vector<Wedge>& wedges = wedges_[layer];
   Index host = kNone;
   bool constant = true;
@@ -161,10 +161,10 @@ void PatchSimplifier::combine_quadrics(std::size_t layer, std::span<const Index>
 
 // Gives a joined wedge, whose area and quadric are known, its value; returns its attribute id, or
 // kNone if it is new.
-PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
-                                                     std::span<const Index> members, Index fixed,
-                                                     Slice of_kept, const Vec3d& target,
-                                                     Wedge& result) {
+inline PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
+                                                            std::span<const Index> members,
+                                                            Index fixed, Slice of_kept,
+                                                            const Vec3d& target, Wedge& result) {
   const WorkLayer& work = work_->layers[layer];
   const std::vector<Wedge>& wedges = wedges_[layer];
   Index inherited = fixed;

@@ -78,12 +78,12 @@ CREASE_WIDE void PatchSimplifier::load_turns() {
 }
 
 // Smooth triangles are taken by their geometry.
-Vec3d PatchSimplifier::shown_normal(Index t) const {
+inline Vec3d PatchSimplifier::shown_normal(Index t) const {
   return flat_[t] ? to_double(shading_[t].stored) : facing_[t].normal;
 }
 
 // Among the surviving triangles that touch the vanishing one's third vertex; see find_ring().
-PatchSimplifier::Index PatchSimplifier::heir_of(const Vanishing& vanishing) {
+inline PatchSimplifier::Index PatchSimplifier::heir_of(const Vanishing& vanishing) {
   Index* touching = touching_.start(ring_.size() + 1);
   for (const RingTriangle& ring : ring_) {  // two of many: no branch could foretell which
     *touching = ring.triangle;
@@ -111,7 +111,7 @@ CREASE_WIDE double PatchSimplifier::vanishing_error(const Vanishing& vanishing) 
   return kVanishShare * std::max(0.0, error_of(shading_[t].input, shown) - shading_[t].counts);
 }
 
-void PatchSimplifier::hand_over_represented() {
+CREASE_WIDE void PatchSimplifier::hand_over_represented() {
   for (const Vanishing& vanishing : vanishing_) {
     const Index heir = heir_of(vanishing);
     if (heir == kNone) continue;

@@ -44,24 +44,14 @@ class SmallSets {
 
 }  // namespace
 
-double PatchSimplifier::layer_scale(std::size_t layer) const {
+inline double PatchSimplifier::layer_scale(std::size_t layer) const {
   const double unit = work_->layers[layer].length_per_unit;
   return unit * unit;
 }
 
-void PatchSimplifier::add_quadric(std::size_t layer, const Wedge& wedge,
-                                  AttributeQuadric& all) const {
-  const int dimension = work_->layers[layer].dimension;
-  if (wedge.quadric == kNone) {
-    all.add_constant(wedge.value, wedge.area, dimension);
-  } else {
-    all.add(attribute_quadrics_[layer][wedge.quadric], dimension);
-  }
-}
-
 // The wedge's triangles, when the corner that they share carries `value`.
-void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedge, const float* value,
-                                     Quadric& sum) const {
+inline void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedge,
+                                            const float* value, Quadric& sum) const {
   const int dimension = work_->layers[layer].dimension;
   if (wedge.quadric != kNone) {
     attribute_quadrics_[layer][wedge.quadric].add_fixed(sum, dimension, value, layer_scale(layer));
@@ -85,7 +75,8 @@ bool PatchSimplifier::meet(Index a, Index b) const {
 // Calls unite(i, j) for wedges at two vertices with the same attribute, numbered as one list; none
 // has an attribute twice.
 template <typename Unite>
-void PatchSimplifier::unite_equal(std::size_t layer, Slice wa, Slice wb, Unite unite) {
+[[gnu::always_inline]] inline void PatchSimplifier::unite_equal(std::size_t layer, Slice wa,
+                                                                Slice wb, Unite unite) {
   constexpr std::size_t kFew = 400;  // comparisons
   const Wedge* wedges = wedges_[layer].data();
   const auto id_of = [&](Index i) {
@@ -140,7 +131,7 @@ CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index 
     common += has_corner_at(t, b);
   }
   common_.finish(common);
-  const auto unite_all = [&](auto unite) {
+  const auto unite_all = [&](auto unite) __attribute__((always_inline)) {
     unite_equal(layer, wa, wb, unite);
     for (Index t : common_) {
       const Index at_a = wedge_of_corner[3 * t + corner_at(t, a)];

@@ -165,7 +165,14 @@ class PatchSimplifier {
   void add_attribute_costs(Index a, Index b, Quadric& sum);
   void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum);
   double layer_scale(std::size_t layer) const;
-  void add_quadric(std::size_t layer, const Wedge& wedge, AttributeQuadric& all) const;
+  void add_quadric(std::size_t layer, const Wedge& wedge, AttributeQuadric& all) const {
+    const int dimension = work_->layers[layer].dimension;
+    if (wedge.quadric == kNone) {
+      all.add_constant(wedge.value, wedge.area, dimension);
+    } else {
+      all.add(attribute_quadrics_[layer][wedge.quadric], dimension);
+    }
+  }
   void add_fixed_cost(std::size_t layer, const Wedge& wedge, const float* value,
                       Quadric& sum) const;
 
