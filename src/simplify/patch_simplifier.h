@@ -77,7 +77,7 @@ class PatchSimplifier {
   struct Vertex {
     Index global = 0;
     Index into = kNone;    // of a removed vertex: the one it was contracted into
-    Slice triangles;       // in triangle_pool_
+    Slice corners;         // in corner_pool_
     Index changed_at = 0;  // so many contractions had been made when it last changed
     bool locked = false;
     bool alive = true;
@@ -225,7 +225,7 @@ class PatchSimplifier {
   }
   Vec3i on_grid(const Vec3d& p) const { return center_grid_ + whole(p); }
   Facing facing_of(Index t) const {
-    const Index* v = &vertex_of_corner_[3 * t];
+    const Index* v = &vertex_of_corner_[4 * t];
     const Vec3d& p0 = positions_[v[0]];
     const Vec3d twice = cross(positions_[v[1]] - p0, positions_[v[2]] - p0);
     const double twice_area = length(twice);
@@ -236,24 +236,28 @@ class PatchSimplifier {
   Vec3d normal_if_moved(const RingTriangle& ring, const Vec3d& target) const {
     return cross(positions_[ring.next] - target, positions_[ring.previous] - target);
   }
-  // 0 to 2, without branches; the triangle has v.
-  Index corner_at(Index t, Index v) const {
-    const Index* corners = &vertex_of_corner_[3 * t];
-    return Index(corners[1] == v) + 2 * Index(corners[2] == v);
+  // A triangle's corners are 4 * triangle + 0 to 2: how far it is from one to the others is a look
+  // into a table.
+  static Index triangle_of(Index corner) { return corner / 4; }
+  static Index corner_after(Index corner) {
+    static constexpr Index kSteps[] = {1, 1, Index(-2)};
+    return corner + kSteps[corner % 4];
+  }
+  static Index corner_before(Index corner) {
+    static constexpr Index kSteps[] = {2, Index(-1), Index(-1)};
+    return corner + kSteps[corner % 4];
   }
   bool has_corner_at(Index t, Index v) const {
-    const Index* corners = &vertex_of_corner_[3 * t];
+    const Index* corners = &vertex_of_corner_[4 * t];
     return (corners[0] == v) | (corners[1] == v) | (corners[2] == v);
   }
-  RingTriangle ring_triangle(Index t, Index end) const {
-    const Index* v = &vertex_of_corner_[3 * t];
-    static constexpr std::uint8_t kNext[] = {1, 2, 0}, kPrevious[] = {2, 0, 1};
-    const Index c = corner_at(t, end);
-    return {t, 3 * t + c, v[kNext[c]], v[kPrevious[c]]};
+  RingTriangle ring_triangle(Index corner) const {
+    return {triangle_of(corner), corner, vertex_of_corner_[corner_after(corner)],
+            vertex_of_corner_[corner_before(corner)]};
   }
-  std::span<const Index> triangles_of(Index v) const {
-    return std::span(triangle_pool_)
-        .subspan(vertices_[v].triangles.first, vertices_[v].triangles.count);
+  // One of each of its triangles.
+  std::span<const Index> corners_of(Index v) const {
+    return std::span(corner_pool_).subspan(vertices_[v].corners.first, vertices_[v].corners.count);
   }
   Slice& wedges_of(std::size_t layer, Index v) { return wedge_slices_[layer][v]; }
   Index category_of(Index t) const { return work_->category_of_triangle[global_triangle_[t]]; }
@@ -275,10 +279,10 @@ class PatchSimplifier {
                                        // empty: none is flat
   std::vector<Quadric> line_;          // per crease or border vertex
   std::vector<Index> line_of_vertex_;  // kNone: on no line
-  std::vector<Index> triangle_pool_;
+  std::vector<Index> corner_pool_;
 
   std::vector<Index> global_triangle_;
-  std::vector<Index> vertex_of_corner_;  // 3 a triangle
+  std::vector<Index> vertex_of_corner_;  // 4 a triangle, of which the last is none
   std::vector<char> triangle_alive_;
   std::vector<Facing> facing_;
   std::vector<char> flat_;  // stored normal the same at all three corners, and not derived

@@ -211,9 +211,9 @@ void PatchSimplifier::write_back() {
     work_->derived[global] = derived_[t];
     if (!shading_.empty()) work_->represented[global] = shading_[t].input;
     for (Index c = 0; c < 3; ++c) {
-      work_->vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[3 * t + c]].global;
+      work_->vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[4 * t + c]].global;
       for (std::size_t l = 0; l < layer_count(); ++l) {
-        work_->layers[l].of_corner[3 * global + c] = wedges_[l][wedge_of_corner_[l][3 * t + c]].id;
+        work_->layers[l].of_corner[3 * global + c] = wedges_[l][wedge_of_corner_[l][4 * t + c]].id;
       }
     }
   }
