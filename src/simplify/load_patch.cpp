@@ -41,12 +41,15 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
   heap_.clear();
   held_.clear();
   last_key_ = 0;
-  load(triangles, patch_id);
-  load_wedges();
-  load_quadrics();
-  load_shading();
-  load_turns();
-  load_edges();
+  if (loaded_ != patch_id) {
+    load(triangles, patch_id);
+    load_wedges();
+    load_quadrics();
+    load_shading();
+    load_edges();
+    loaded_ = patch_id;
+  }
+  load_turns();  // alone depends on the steering
   if (steering_.virtual_distance > 0 && work.part_count > 1) find_virtual_pairs();
 }
 

@@ -51,7 +51,8 @@ class PatchSimplifier {
   void start(WorkMesh& work, std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
              const Steering& steering);
 
-  // The costs of all pairs, without contracting any: for choosing the first band's limit.
+  // The costs of all pairs, without contracting any: for choosing the first band's limit. The same
+  // patch can be started at once again, as long as the mesh and the owners stay as they are.
   std::vector<double> initial_costs();
 
   // Once after each start().
@@ -265,6 +266,7 @@ class PatchSimplifier {
 
   WorkMesh* work_ = nullptr;
   Steering steering_;
+  Index loaded_ = kNone;                // the patch that was started, until it is run
   std::vector<Index> local_of_vertex_;  // all kNone between patches
   Vec3d center_;
   Vec3i center_grid_;

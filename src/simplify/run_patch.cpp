@@ -146,6 +146,7 @@ bool PatchSimplifier::claim(Index pair, Index a, Index b) {
 }
 
 PatchResult PatchSimplifier::run() {
+  loaded_ = kNone;
   result_.new_values.resize(layer_count());
   held_of_triangle_.assign(global_triangle_.size(), kNone);
   changed_around_.assign(vertices_.size(), 0);

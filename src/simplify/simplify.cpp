@@ -231,6 +231,7 @@ class Simplifier {
     std::mutex append;
     std::vector<std::size_t> chosen;
     for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
+    std::ranges::reverse(chosen);  // the last one started, the first that is run: it stays loaded
     parallel_for(chosen.size(), [&](std::size_t i) {
       const std::size_t p = chosen[i];
       PatchSimplifier& patch = patch_simplifiers_->local();
