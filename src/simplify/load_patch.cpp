@@ -37,7 +37,7 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
                             std::uint32_t patch_id, const Steering& steering) {
   work_ = &work;
   steering_ = steering;
-  result_ = {};
+  result_.clear();
   heap_.clear();
   held_.clear();
   last_key_ = 0;

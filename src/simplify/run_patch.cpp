@@ -197,9 +197,7 @@ PatchResult PatchSimplifier::run() {
   }
   write_back();
   result_.triangles_left = live_triangles_;
-  result_.contractions.shrink_to_fit();  // all patches' results wait for the last one
-  result_.changes.shrink_to_fit();
-  return std::move(result_);
+  return result_;  // a copy without room to grow: all patches' results wait for the last one
 }
 
 void PatchSimplifier::write_back() {

@@ -387,8 +387,8 @@ class Simplifier {
           std::span(from.derived).subspan(contraction.first_derived, contraction.derived_count);
       contraction.first_change = static_cast<std::uint32_t>(sequence_.changes.size());
       contraction.first_derived = static_cast<std::uint32_t>(sequence_.derived.size());
-      sequence_.changes.insert(sequence_.changes.end(), changes.begin(), changes.end());
-      sequence_.derived.insert(sequence_.derived.end(), derived.begin(), derived.end());
+      for (const AttributeChange& change : changes) sequence_.changes.push_back(change);
+      for (TriangleId triangle : derived) sequence_.derived.push_back(triangle);
       worst_surface_ = std::max(worst_surface_, contraction.error.surface);
       contractions.push_back(contraction);
       if (work_.part_count > 1) {
