@@ -58,7 +58,7 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
     // A part disappears: its planes fit what is left of it, but what it stood for is gone.
     double longest2 = 0;
     for (const Vanishing& vanishing : vanishing_) {
-      const Index* v = &vertex_of_corner_[3 * vanishing.triangle];
+      const Index* v = &vertex_of_corner_[4 * vanishing.triangle];
       for (Index c = 0; c < 3; ++c) {
         longest2 = std::max(longest2, squared(positions_[v[c]] - positions_[v[(c + 1) % 3]]));
       }
@@ -73,11 +73,11 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   // Triangles: vanish, or change hands.
   if (!shading_.empty()) hand_over_represented();
   for (std::size_t i = ring_kept_; i < ring_.size(); ++i) vertex_of_corner_[ring_[i].corner] = kept;
-  const Index first = static_cast<Index>(triangle_pool_.size());
-  for (const RingTriangle& ring : ring_) triangle_pool_.push_back(ring.triangle);
-  q.triangles = {first, static_cast<Index>(triangle_pool_.size()) - first};
+  const Index first = static_cast<Index>(corner_pool_.size());
+  for (const RingTriangle& ring : ring_) corner_pool_.push_back(ring.corner);
+  q.corners = {first, static_cast<Index>(corner_pool_.size()) - first};
   positions_[kept] = target;
-  for (Index t : triangles_of(kept)) facing_[t] = facing_of(t);
+  for (const RingTriangle& ring : ring_) facing_[ring.triangle] = facing_of(ring.triangle);
   if (!work_->category_of_triangle.empty() && category_around_[kept] != category_around_[removed]) {
     category_around_[kept] = kNone;
   }
@@ -87,9 +87,10 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   for (const auto& [t, third] : vanishing_) {
     triangle_alive_[t] = 0;
     --live_triangles_;
-    Slice& around = vertices_[third].triangles;
-    Index* begin = &triangle_pool_[around.first];
-    Index* end = std::remove(begin, begin + around.count, t);
+    Slice& around = vertices_[third].corners;
+    Index* begin = &corner_pool_[around.first];
+    Index* end = std::remove_if(begin, begin + around.count,
+                                [t](Index corner) { return triangle_of(corner) == t; });
     around.count = static_cast<Index>(end - begin);
     release(t);
   }
@@ -108,27 +109,27 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
     changed_around_[ring.next] = changed_around_[ring.previous] = now;
   }
   for (const Vanishing& vanishing : vanishing_) changed_around_[vanishing.third] = now;
-  for (Index t : triangles_of(kept)) release(t);
+  for (const RingTriangle& ring : ring_) release(ring.triangle);
 }
 
 CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {
-  const std::span<const Index> around_kept = triangles_of(kept);
-  const std::span<const Index> around_removed = triangles_of(removed);
+  const std::span<const Index> around_kept = corners_of(kept);
+  const std::span<const Index> around_removed = corners_of(removed);
   // What does not belong to a list is written over by what comes next: no branches.
   RingTriangle* ring = ring_.start(around_kept.size() + around_removed.size());
   Vanishing* vanishing = vanishing_.start(around_kept.size());
-  for (Index t : around_kept) {
-    const RingTriangle own = ring_triangle(t, kept);
+  for (Index corner : around_kept) {
+    const RingTriangle own = ring_triangle(corner);
     const bool before = own.previous == removed, after = own.next == removed;
     *ring = own;
-    *vanishing = {t, after ? own.previous : own.next};
+    *vanishing = {own.triangle, after ? own.previous : own.next};
     vanishing += before | after;
     ring += !(before | after);
   }
   vanishing_.finish(vanishing);
   ring_kept_ = static_cast<std::size_t>(ring - ring_.begin());
-  for (Index t : around_removed) {
-    const RingTriangle own = ring_triangle(t, removed);
+  for (Index corner : around_removed) {
+    const RingTriangle own = ring_triangle(corner);
     *ring = own;
     ring += (own.previous != kept) & (own.next != kept);
   }
@@ -137,8 +138,8 @@ CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {
 
 // One quadric out of the members', in the place of one of them; none if all show one attribute that
 // is the same all over their triangles.
-void PatchSimplifier::combine_quadrics(std::size_t layer, std::span<const Index> members,
-                                       Wedge& result) {
+inline void PatchSimplifier::combine_quadrics(std::size_t layer, std::span<const Index> members,
+                                              Wedge& result) {
   const std::vector<Wedge>& wedges = wedges_[layer];
   Index host = kNone;
   bool constant = true;
@@ -161,10 +162,10 @@ void PatchSimplifier::combine_quadrics(std::size_t layer, std::span<const Index>
 
 // Gives a joined wedge, whose area and quadric are known, its value; returns its attribute id, or
 // kNone if it is new.
-PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
-                                                     std::span<const Index> members, Index fixed,
-                                                     Slice of_kept, const Vec3d& target,
-                                                     Wedge& result) {
+inline PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
+                                                            std::span<const Index> members,
+                                                            Index fixed, Slice of_kept,
+                                                            const Vec3d& target, Wedge& result) {
   const WorkLayer& work = work_->layers[layer];
   const std::vector<Wedge>& wedges = wedges_[layer];
   Index inherited = fixed;

@@ -41,12 +41,12 @@ void PatchSimplifier::load_shading() {
     shading.input = work_->represented[global_triangle_[t]];
     shading.derived = derived_[t];
     if (flat_[t] || derived_[t]) {
-      const Wedge& wedge = wedges_[normal_layer][wedge_of_corner_[normal_layer][3 * t]];
+      const Wedge& wedge = wedges_[normal_layer][wedge_of_corner_[normal_layer][4 * t]];
       shading.stored = {wedge.value[0], wedge.value[1], wedge.value[2]};
       shading.know_stored_error();
       shading.counts = shading.counts_with(facing_[t].normal, facing_[t].area);
     } else {
-      for (Index c = 0; c < 3; ++c) vertices_[vertex_of_corner_[3 * t + c]].flat_around = false;
+      for (Index c = 0; c < 3; ++c) vertices_[vertex_of_corner_[4 * t + c]].flat_around = false;
     }
   }
 }
@@ -65,7 +65,7 @@ CREASE_WIDE void PatchSimplifier::load_turns() {
   const double turn_distance2 = squared(steering_.turn_distance);
   for (Index t = 0; t < global_triangle_.size(); ++t) {
     if (!(flat_[t] || derived_[t]) || !(facing_[t].area > 0)) continue;
-    const Index* v = &vertex_of_corner_[3 * t];
+    const Index* v = &vertex_of_corner_[4 * t];
     const double offset = -dot(facing_[t].normal, positions_[v[0]]);
     const double area = facing_[t].area;
     for (Index c = 0; c < 3; ++c) {
@@ -78,12 +78,12 @@ CREASE_WIDE void PatchSimplifier::load_turns() {
 }
 
 // Smooth triangles are taken by their geometry.
-Vec3d PatchSimplifier::shown_normal(Index t) const {
+inline Vec3d PatchSimplifier::shown_normal(Index t) const {
   return flat_[t] ? to_double(shading_[t].stored) : facing_[t].normal;
 }
 
 // Among the surviving triangles that touch the vanishing one's third vertex; see find_ring().
-PatchSimplifier::Index PatchSimplifier::heir_of(const Vanishing& vanishing) {
+inline PatchSimplifier::Index PatchSimplifier::heir_of(const Vanishing& vanishing) {
   Index* touching = touching_.start(ring_.size() + 1);
   for (const RingTriangle& ring : ring_) {  // two of many: no branch could foretell which
     *touching = ring.triangle;
@@ -111,7 +111,7 @@ CREASE_WIDE double PatchSimplifier::vanishing_error(const Vanishing& vanishing) 
   return kVanishShare * std::max(0.0, error_of(shading_[t].input, shown) - shading_[t].counts);
 }
 
-void PatchSimplifier::hand_over_represented() {
+CREASE_WIDE void PatchSimplifier::hand_over_represented() {
   for (const Vanishing& vanishing : vanishing_) {
     const Index heir = heir_of(vanishing);
     if (heir == kNone) continue;
@@ -125,7 +125,8 @@ void PatchSimplifier::hand_over_represented() {
 
 CREASE_WIDE void PatchSimplifier::derive_where_better(Index kept, LevelError& error) {
   double worst_square = 0;  // of the chords between what is shown and the input
-  for (Index t : triangles_of(kept)) {
+  for (Index corner : corners_of(kept)) {
+    const Index t = triangle_of(corner);
     if (!flat_[t] && !derived_[t]) continue;
     FlatShading& shading = shading_[t];
     if (!(facing_[t].area > 0)) continue;

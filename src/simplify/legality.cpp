@@ -157,7 +157,7 @@ CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& tar
 
 // Vertices joined to both ends without a triangle over the pair: afterwards two sheets share an
 // edge there, or two triangles coincide.
-double PatchSimplifier::coincidence_cost(Index a, Index b) {
+inline double PatchSimplifier::coincidence_cost(Index a, Index b) {
   const Index beside_a = ++mark_now_, told = ++mark_now_;
   for (std::size_t i = 0; i < ring_kept_; ++i) {
     mark_[ring_[i].next] = mark_[ring_[i].previous] = beside_a;

@@ -37,16 +37,19 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
                             std::uint32_t patch_id, const Steering& steering) {
   work_ = &work;
   steering_ = steering;
-  result_ = {};
+  result_.clear();
   heap_.clear();
   held_.clear();
   last_key_ = 0;
-  load(triangles, patch_id);
-  load_wedges();
-  load_quadrics();
-  load_shading();
-  load_turns();
-  load_edges();
+  if (loaded_ != patch_id) {
+    load(triangles, patch_id);
+    load_wedges();
+    load_quadrics();
+    load_shading();
+    load_edges();
+    loaded_ = patch_id;
+  }
+  load_turns();  // alone depends on the steering
   if (steering_.virtual_distance > 0 && work.part_count > 1) find_virtual_pairs();
 }
 
@@ -57,9 +60,9 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
   clear_for(errors_, n / 2);
   clear_for(positions_, n / 2);
   clear_for(global_triangle_, n);
-  clear_for(vertex_of_corner_, 3 * n);
+  clear_for(vertex_of_corner_, 4 * n);
   global_triangle_.assign(triangles.begin(), triangles.end());
-  vertex_of_corner_.resize(3 * n);
+  vertex_of_corner_.resize(4 * n);
   triangle_alive_.assign(n, 1);
   derived_.resize(n);
   flat_.assign(n, 0);
@@ -84,7 +87,8 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
           high[i] = std::max(high[i], p[i]);
         }
       }
-      vertex_of_corner_[3 * t + c] = local;
+      vertex_of_corner_[4 * t + c] = local;
+      ++vertices_[local].corners.count;
     }
   }
   for (int i = 0; i < 3; ++i) {
@@ -97,18 +101,18 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
   }
 
   // Triangles around each vertex: counts, then slots.
-  for (Index v : vertex_of_corner_) ++vertices_[v].triangles.count;
   Index next = 0;
   for (Vertex& vertex : vertices_) {
-    vertex.triangles.first = next;
-    next += vertex.triangles.count;
-    vertex.triangles.count = 0;
+    vertex.corners.first = next;
+    next += std::exchange(vertex.corners.count, 0);
   }
-  clear_for(triangle_pool_, 2 * std::size_t(next));
-  triangle_pool_.resize(next);
-  for (std::size_t corner = 0; corner < 3 * n; ++corner) {
-    Slice& around = vertices_[vertex_of_corner_[corner]].triangles;
-    triangle_pool_[around.first + around.count++] = static_cast<Index>(corner / 3);
+  clear_for(corner_pool_, 2 * std::size_t(next));
+  corner_pool_.resize(next);
+  for (Index t = 0; t < n; ++t) {
+    for (Index corner = 4 * t; corner != 4 * t + 3; ++corner) {
+      Slice& around = vertices_[vertex_of_corner_[corner]].corners;
+      corner_pool_[around.first + around.count++] = corner;
+    }
   }
   mark_.assign(vertices_.size(), 0);
   mark_now_ = 0;
@@ -116,11 +120,13 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
   if (!work_->category_of_triangle.empty()) {
     category_around_.resize(vertices_.size());
     for (Index t = 0; t < n; ++t) {
-      for (Index c = 0; c < 3; ++c) category_around_[vertex_of_corner_[3 * t + c]] = category_of(t);
+      for (Index c = 0; c < 3; ++c) category_around_[vertex_of_corner_[4 * t + c]] = category_of(t);
     }
-    for (std::size_t corner = 0; corner < 3 * n; ++corner) {
-      Index& category = category_around_[vertex_of_corner_[corner]];
-      if (category != category_of(static_cast<Index>(corner / 3))) category = kNone;
+    for (Index t = 0; t < n; ++t) {
+      for (Index c = 0; c < 3; ++c) {
+        Index& category = category_around_[vertex_of_corner_[4 * t + c]];
+        if (category != category_of(t)) category = kNone;
+      }
     }
   }
 }
@@ -139,20 +145,22 @@ void PatchSimplifier::load_wedges() {
     clear_for(id_of_corner, vertex_of_corner_.size());
     id_of_corner.resize(vertex_of_corner_.size());
     for (Index t = 0; t < global_triangle_.size(); ++t) {
-      std::copy_n(&layer.of_corner[3 * global_triangle_[t]], 3, &id_of_corner[3 * t]);
+      std::copy_n(&layer.of_corner[3 * global_triangle_[t]], 3, &id_of_corner[4 * t]);
     }
 
     std::vector<Slice>& slices = wedge_slices_[l];
     clear_for(slices, vertices_.size());
     slices.assign(vertices_.size(), Slice{kNone, 1});
     first_id.resize(vertices_.size());
-    for (std::size_t corner = 0; corner < vertex_of_corner_.size(); ++corner) {
-      const Index v = vertex_of_corner_[corner];
-      if (slices[v].first == kNone) {
-        slices[v].first = 0;
-        first_id[v] = id_of_corner[corner];
-      } else if (first_id[v] != id_of_corner[corner]) {
-        slices[v].count = 2;  // or more
+    for (Index t = 0; t < global_triangle_.size(); ++t) {
+      for (Index corner = 4 * t; corner != 4 * t + 3; ++corner) {
+        const Index v = vertex_of_corner_[corner];
+        if (slices[v].first == kNone) {
+          slices[v].first = 0;
+          first_id[v] = id_of_corner[corner];
+        } else if (first_id[v] != id_of_corner[corner]) {
+          slices[v].count = 2;  // or more
+        }
       }
     }
 
@@ -171,21 +179,21 @@ void PatchSimplifier::load_wedges() {
         append(first_id[v]);
         continue;
       }
-      for (Index t : triangles_of(v)) {
-        Index& corner = id_of_corner[3 * t + corner_at(t, v)];
+      for (Index corner : corners_of(v)) {
+        Index& wedge = id_of_corner[corner];
         Index w = slice.first;
-        while (w < wedges.size() && wedges[w].id != corner) ++w;
-        if (w == wedges.size()) append(corner);
-        corner = w;
+        while (w < wedges.size() && wedges[w].id != wedge) ++w;
+        if (w == wedges.size()) append(wedge);
+        wedge = w;
       }
       slice.count = static_cast<Index>(wedges.size()) - slice.first;
     }
 
     Index quadric_count = 0;
     for (Index t = 0; t < global_triangle_.size(); ++t) {
-      Index* w = &id_of_corner[3 * t];
+      Index* w = &id_of_corner[4 * t];
       for (Index c = 0; c < 3; ++c) {
-        const Slice& slice = slices[vertex_of_corner_[3 * t + c]];
+        const Slice& slice = slices[vertex_of_corner_[4 * t + c]];
         w[c] = slice.count == 1 ? slice.first : w[c];
       }
       Wedge* const own[] = {&wedges[w[0]], &wedges[w[1]], &wedges[w[2]]};
@@ -208,7 +216,7 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
   surface_.assign(vertices_.size(), Quadric{});
   facing_.assign(global_triangle_.size(), Facing{});
   for (Index t = 0; t < global_triangle_.size(); ++t) {
-    const Index* v = &vertex_of_corner_[3 * t];
+    const Index* v = &vertex_of_corner_[4 * t];
     const Vec3d p0 = positions_[v[0]];
     const Vec3d e1 = positions_[v[1]] - p0, e2 = positions_[v[2]] - p0;
     const Vec3d twice = cross(e1, e2);
@@ -233,7 +241,7 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
       third = Row{toward2.x, toward2.y, toward2.z, -dot(toward2, p0)};
     }
     for (std::size_t l = 0; l < layer_count(); ++l) {
-      const Index* w = &wedge_of_corner_[l][3 * t];
+      const Index* w = &wedge_of_corner_[l][4 * t];
       Wedge* wedges = wedges_[l].data();
       for (int c = 0; c < 3; ++c) wedges[w[c]].area += area;
       const WorkLayer& layer = work_->layers[l];
@@ -272,7 +280,7 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
 // Whether an edge is a border, a crease, or where more than two sheets meet.
 inline bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
   if (edge.triangle_count != 2) return true;
-  const Index w = edge.other, t = edge.corner[0] / 3, u = edge.corner[1] / 3;
+  const Index w = edge.other, t = triangle_of(edge.corner[0]), u = triangle_of(edge.corner[1]);
   if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) {
     return true;
   }
@@ -317,10 +325,12 @@ inline void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
 
 inline void PatchSimplifier::add_lines(Index v, const Edge& edge) {
   if (edge.triangle_count <= 2) {
-    for (Index i = 0; i < edge.triangle_count; ++i) add_line(v, edge.other, edge.corner[i] / 3);
+    for (Index i = 0; i < edge.triangle_count; ++i)
+      add_line(v, edge.other, triangle_of(edge.corner[i]));
     return;
   }
-  for (Index t : triangles_of(v)) {
+  for (Index corner : corners_of(v)) {
+    const Index t = triangle_of(corner);
     if (has_corner_at(t, edge.other)) add_line(v, edge.other, t);
   }
 }
@@ -330,7 +340,7 @@ void PatchSimplifier::gather_edge_sides() {
   const Index triangle_count = static_cast<Index>(global_triangle_.size());
   const auto for_sides = [&](auto visit) {
     for (Index t = 0; t < triangle_count; ++t) {
-      const Index* v = &vertex_of_corner_[3 * t];
+      const Index* v = &vertex_of_corner_[4 * t];
       for (Index way = 0; way < 6; way += 2) {
         const Index first = v[kEndsOfWay[way].corner], second = v[kEndsOfWay[way].other_corner];
         visit(std::min(first, second), 8 * t + way + less(second, first));
@@ -361,7 +371,7 @@ CREASE_WIDE void PatchSimplifier::load_edges() {
     Edge* const edges = edges_.start(end - begin + 1);
     Index edge_count = 0;
     for (Index i = begin; i != end; ++i) {
-      const Index corners = 3 * (edge_sides_[i] / 8);
+      const Index corners = 4 * (edge_sides_[i] / 8);
       const EndsOfWay& ends = kEndsOfWay[edge_sides_[i] % 8];
       const Index other_corner = corners + ends.other_corner;
       const Index other = vertex_of_corner_[other_corner];

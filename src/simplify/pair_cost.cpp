@@ -44,24 +44,14 @@ class SmallSets {
 
 }  // namespace
 
-double PatchSimplifier::layer_scale(std::size_t layer) const {
+inline double PatchSimplifier::layer_scale(std::size_t layer) const {
   const double unit = work_->layers[layer].length_per_unit;
   return unit * unit;
 }
 
-void PatchSimplifier::add_quadric(std::size_t layer, const Wedge& wedge,
-                                  AttributeQuadric& all) const {
-  const int dimension = work_->layers[layer].dimension;
-  if (wedge.quadric == kNone) {
-    all.add_constant(wedge.value, wedge.area, dimension);
-  } else {
-    all.add(attribute_quadrics_[layer][wedge.quadric], dimension);
-  }
-}
-
 // The wedge's triangles, when the corner that they share carries `value`.
-void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedge, const float* value,
-                                     Quadric& sum) const {
+inline void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedge,
+                                            const float* value, Quadric& sum) const {
   const int dimension = work_->layers[layer].dimension;
   if (wedge.quadric != kNone) {
     attribute_quadrics_[layer][wedge.quadric].add_fixed(sum, dimension, value, layer_scale(layer));
@@ -78,14 +68,15 @@ void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedge, cons
 // Whether a triangle has both.
 bool PatchSimplifier::meet(Index a, Index b) const {
   bool meets = false;  // at the end as good as at once: nobody could foretell when
-  for (Index t : triangles_of(a)) meets |= has_corner_at(t, b);
+  for (Index corner : corners_of(a)) meets |= has_corner_at(triangle_of(corner), b);
   return meets;
 }
 
 // Calls unite(i, j) for wedges at two vertices with the same attribute, numbered as one list; none
 // has an attribute twice.
 template <typename Unite>
-void PatchSimplifier::unite_equal(std::size_t layer, Slice wa, Slice wb, Unite unite) {
+[[gnu::always_inline]] inline void PatchSimplifier::unite_equal(std::size_t layer, Slice wa,
+                                                                Slice wb, Unite unite) {
   constexpr std::size_t kFew = 400;  // comparisons
   const Wedge* wedges = wedges_[layer].data();
   const auto id_of = [&](Index i) {
@@ -133,18 +124,19 @@ CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index 
   }
 
   const Index* wedge_of_corner = wedge_of_corner_[layer].data();
-  const std::span<const Index> around = triangles_of(a);
+  const std::span<const Index> around = corners_of(a);
   Index* common = common_.start(around.size() + 1);
-  for (Index t : around) {  // two of many: no branch could foretell which
-    *common = t;
-    common += has_corner_at(t, b);
+  for (Index corner : around) {  // two of many: no branch could foretell which
+    *common = corner;
+    common += has_corner_at(triangle_of(corner), b);
   }
   common_.finish(common);
-  const auto unite_all = [&](auto unite) {
+  const auto unite_all = [&](auto unite) __attribute__((always_inline)) {
     unite_equal(layer, wa, wb, unite);
-    for (Index t : common_) {
-      const Index at_a = wedge_of_corner[3 * t + corner_at(t, a)];
-      const Index at_b = wedge_of_corner[3 * t + corner_at(t, b)];
+    for (Index corner : common_) {
+      const Index after = corner_after(corner), before = corner_before(corner);
+      const Index at_a = wedge_of_corner[corner];
+      const Index at_b = wedge_of_corner[vertex_of_corner_[after] == b ? after : before];
       unite(at_a - wa.first, wa.count + (at_b - wb.first));
     }
   };

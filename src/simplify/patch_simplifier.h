@@ -51,7 +51,8 @@ class PatchSimplifier {
   void start(WorkMesh& work, std::span<const std::uint32_t> triangles, std::uint32_t patch_id,
              const Steering& steering);
 
-  // The costs of all pairs, without contracting any: for choosing the first band's limit.
+  // The costs of all pairs, without contracting any: for choosing the first band's limit. The same
+  // patch can be started at once again, as long as the mesh and the owners stay as they are.
   std::vector<double> initial_costs();
 
   // Once after each start().
@@ -77,7 +78,7 @@ class PatchSimplifier {
   struct Vertex {
     Index global = 0;
     Index into = kNone;    // of a removed vertex: the one it was contracted into
-    Slice triangles;       // in triangle_pool_
+    Slice corners;         // in corner_pool_
     Index changed_at = 0;  // so many contractions had been made when it last changed
     bool locked = false;
     bool alive = true;
@@ -96,9 +97,10 @@ class PatchSimplifier {
   // A pair, and what is known of it as long as its ends do not change.
   struct Candidate {
     Index a, b;
-    Index placed_at;          // so many contractions had been made
-    Vec3i position;           // less center_
-    double cost, free_cost;   // see Placed
+    Index known_at;          // so many contractions, and one, when it was known last; 0: it has not
+                             // been looked at, so that another may own its ends
+    Vec3i position;          // less center_
+    double cost, free_cost;  // see Placed
     double cost_of_other[3];  // free, at the other places that make_legal() tries; or kUnknown
     static constexpr double kUnknown = -1;
   };
@@ -164,7 +166,14 @@ class PatchSimplifier {
   void add_attribute_costs(Index a, Index b, Quadric& sum);
   void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum);
   double layer_scale(std::size_t layer) const;
-  void add_quadric(std::size_t layer, const Wedge& wedge, AttributeQuadric& all) const;
+  void add_quadric(std::size_t layer, const Wedge& wedge, AttributeQuadric& all) const {
+    const int dimension = work_->layers[layer].dimension;
+    if (wedge.quadric == kNone) {
+      all.add_constant(wedge.value, wedge.area, dimension);
+    } else {
+      all.add(attribute_quadrics_[layer][wedge.quadric], dimension);
+    }
+  }
   void add_fixed_cost(std::size_t layer, const Wedge& wedge, const float* value,
                       Quadric& sum) const;
 
@@ -192,6 +201,10 @@ class PatchSimplifier {
   void order_pairs();
   bool pop(Entry& entry);
   float next_cost() const;
+  void fetch_ahead() const;
+  std::size_t slot_of(Index a, Index b) const {
+    return (a * 0x9e3779b1u ^ b * 0x85ebca77u) & (owners_.size() - 1);
+  }
   Index survivor(Index v);
   bool claim(Index pair, Index a, Index b);
   void hold(const Entry& entry, double cost, const Placed& placed);
@@ -213,7 +226,7 @@ class PatchSimplifier {
   }
   Vec3i on_grid(const Vec3d& p) const { return center_grid_ + whole(p); }
   Facing facing_of(Index t) const {
-    const Index* v = &vertex_of_corner_[3 * t];
+    const Index* v = &vertex_of_corner_[4 * t];
     const Vec3d& p0 = positions_[v[0]];
     const Vec3d twice = cross(positions_[v[1]] - p0, positions_[v[2]] - p0);
     const double twice_area = length(twice);
@@ -224,24 +237,28 @@ class PatchSimplifier {
   Vec3d normal_if_moved(const RingTriangle& ring, const Vec3d& target) const {
     return cross(positions_[ring.next] - target, positions_[ring.previous] - target);
   }
-  // 0 to 2, without branches; the triangle has v.
-  Index corner_at(Index t, Index v) const {
-    const Index* corners = &vertex_of_corner_[3 * t];
-    return Index(corners[1] == v) + 2 * Index(corners[2] == v);
+  // A triangle's corners are 4 * triangle + 0 to 2: how far it is from one to the others is a look
+  // into a table.
+  static Index triangle_of(Index corner) { return corner / 4; }
+  static Index corner_after(Index corner) {
+    static constexpr Index kSteps[] = {1, 1, Index(-2)};
+    return corner + kSteps[corner % 4];
+  }
+  static Index corner_before(Index corner) {
+    static constexpr Index kSteps[] = {2, Index(-1), Index(-1)};
+    return corner + kSteps[corner % 4];
   }
   bool has_corner_at(Index t, Index v) const {
-    const Index* corners = &vertex_of_corner_[3 * t];
+    const Index* corners = &vertex_of_corner_[4 * t];
     return (corners[0] == v) | (corners[1] == v) | (corners[2] == v);
   }
-  RingTriangle ring_triangle(Index t, Index end) const {
-    const Index* v = &vertex_of_corner_[3 * t];
-    static constexpr std::uint8_t kNext[] = {1, 2, 0}, kPrevious[] = {2, 0, 1};
-    const Index c = corner_at(t, end);
-    return {t, 3 * t + c, v[kNext[c]], v[kPrevious[c]]};
+  RingTriangle ring_triangle(Index corner) const {
+    return {triangle_of(corner), corner, vertex_of_corner_[corner_after(corner)],
+            vertex_of_corner_[corner_before(corner)]};
   }
-  std::span<const Index> triangles_of(Index v) const {
-    return std::span(triangle_pool_)
-        .subspan(vertices_[v].triangles.first, vertices_[v].triangles.count);
+  // One of each of its triangles.
+  std::span<const Index> corners_of(Index v) const {
+    return std::span(corner_pool_).subspan(vertices_[v].corners.first, vertices_[v].corners.count);
   }
   Slice& wedges_of(std::size_t layer, Index v) { return wedge_slices_[layer][v]; }
   Index category_of(Index t) const { return work_->category_of_triangle[global_triangle_[t]]; }
@@ -249,6 +266,7 @@ class PatchSimplifier {
 
   WorkMesh* work_ = nullptr;
   Steering steering_;
+  Index loaded_ = kNone;                // the patch that was started, until it is run
   std::vector<Index> local_of_vertex_;  // all kNone between patches
   Vec3d center_;
   Vec3i center_grid_;
@@ -263,10 +281,10 @@ class PatchSimplifier {
                                        // empty: none is flat
   std::vector<Quadric> line_;          // per crease or border vertex
   std::vector<Index> line_of_vertex_;  // kNone: on no line
-  std::vector<Index> triangle_pool_;
+  std::vector<Index> corner_pool_;
 
   std::vector<Index> global_triangle_;
-  std::vector<Index> vertex_of_corner_;  // 3 a triangle
+  std::vector<Index> vertex_of_corner_;  // 4 a triangle, of which the last is none
   std::vector<char> triangle_alive_;
   std::vector<Facing> facing_;
   std::vector<char> flat_;  // stored normal the same at all three corners, and not derived

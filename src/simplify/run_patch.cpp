@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace crease::simplification {
 
@@ -39,6 +40,19 @@ bool PatchSimplifier::pop(Entry& entry) {
   return true;
 }
 
+// What the pairs that are soon popped read first: they lie anywhere.
+void PatchSimplifier::fetch_ahead() const {
+  const std::size_t near = next_in_order_ + 3, far = next_in_order_ + 6;
+  if (far < order_.size()) __builtin_prefetch(&candidates_[order_[far].pair]);
+  if (near < order_.size()) {
+    const Candidate& pair = candidates_[order_[near].pair];
+    __builtin_prefetch(&vertices_[pair.a]);
+    __builtin_prefetch(&vertices_[pair.b]);
+    __builtin_prefetch(&owners_[slot_of(pair.a, pair.b)]);
+  }
+  if (!heap_.empty()) __builtin_prefetch(&candidates_[heap_.top().pair()]);
+}
+
 float PatchSimplifier::next_cost() const {
   const float in_order = next_in_order_ == order_.size() ? HUGE_VALF : order_[next_in_order_].cost;
   return heap_.empty() ? in_order : std::min(in_order, heap_.top().cost());
@@ -56,23 +70,24 @@ PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
 void PatchSimplifier::hold(const Entry& entry, double cost, const Placed& placed) {
   const bool waits = placed.cost <= steering_.cost_limit;
   const float cost_with_ring = static_cast<float>(placed.cost);
-  if (blamed_ == kNone || entry.tries >= kTries) {
+  const bool is_tried_again = blamed_ != kNone && entry.tries < kTries;
+  if (!is_tried_again && !(waits && placed.lasts)) {
     if (waits) heap_.push({cost_with_ring, entry.pair(), kNone, entry.tries});
     return;
   }
   const Index id = static_cast<Index>(held_.size());
+  const std::uint32_t tries = entry.tries + is_tried_again;
   Held& held = held_.emplace_back();
   held.pair = entry.pair();
-  held.next = held_of_triangle_[blamed_];
   held.cost = static_cast<float>(cost);
-  held.tries = static_cast<std::uint16_t>(entry.tries + 1);
+  held.tries = static_cast<std::uint16_t>(tries);
   held.waiting = true;
   held.lasts = placed.lasts;
   held.looked_at = static_cast<Index>(result_.contractions.size());
   held.position = whole(placed.position);
   held.cost_with_ring = placed.cost;
-  held_of_triangle_[blamed_] = id;
-  if (waits) heap_.push({cost_with_ring, entry.pair(), id, entry.tries + 1});
+  if (is_tried_again) held.next = std::exchange(held_of_triangle_[blamed_], id);
+  if (waits) heap_.push({cost_with_ring, entry.pair(), id, tries});
 }
 
 void PatchSimplifier::release(Index triangle) {
@@ -96,7 +111,7 @@ void PatchSimplifier::order_pairs() {
     Candidate& pair = candidates_.emplace_back();
     pair.a = a;
     pair.b = b;
-    pair.placed_at = 0;
+    pair.known_at = 0;
     keep_placed(placed, pair);
   }
   sort_by_cost(order_, order_scratch_);
@@ -118,7 +133,7 @@ bool PatchSimplifier::claim(Index pair, Index a, Index b) {
     }
   }
   const std::size_t mask = owners_.size() - 1;
-  std::size_t slot = (a * 0x9e3779b1u ^ b * 0x85ebca77u) & mask;
+  std::size_t slot = slot_of(a, b);
   for (; owners_[slot] != kNone; slot = (slot + 1) & mask) {
     const Candidate& owner = candidates_[owners_[slot]];
     if (owner.a == a && owner.b == b) return owners_[slot] == pair;
@@ -131,6 +146,7 @@ bool PatchSimplifier::claim(Index pair, Index a, Index b) {
 }
 
 PatchResult PatchSimplifier::run() {
+  loaded_ = kNone;
   result_.new_values.resize(layer_count());
   held_of_triangle_.assign(global_triangle_.size(), kNone);
   changed_around_.assign(vertices_.size(), 0);
@@ -138,6 +154,7 @@ PatchResult PatchSimplifier::run() {
   owners_.assign(std::bit_ceil(2 * candidates_.size() + 64), kNone);
   owner_count_ = 0;
   for (Entry entry; pop(entry);) {
+    fetch_ahead();
     const Held* waited = nullptr;
     if (entry.held != kNone) {
       if (!held_[entry.held].waiting) continue;
@@ -148,7 +165,8 @@ PatchResult PatchSimplifier::run() {
     Index a = survivor(pair.a), b = survivor(pair.b);
     if (a == b) continue;
     if (a > b) std::swap(a, b);
-    if (!claim(entry.pair(), a, b)) continue;
+    const bool owns = pair.known_at != 0 && pair.a == a && pair.b == b;
+    if (!owns && !claim(entry.pair(), a, b)) continue;
     if (waited != nullptr && waited->lasts &&
         std::max(changed_around_[a], changed_around_[b]) <= waited->looked_at) {
       find_ring(a, b);
@@ -157,10 +175,10 @@ PatchResult PatchSimplifier::run() {
     }
     const float next = next_cost();
 
-    if (std::max(vertices_[a].changed_at, vertices_[b].changed_at) > pair.placed_at) {
-      pair.placed_at = static_cast<Index>(result_.contractions.size());
+    if (std::max(vertices_[a].changed_at, vertices_[b].changed_at) >= std::max(pair.known_at, 1u)) {
       keep_placed(place(a, b, steering_.cost_limit), pair);
     }
+    pair.known_at = static_cast<Index>(result_.contractions.size()) + 1;
     const double cost = pair.cost;
     if (!(cost <= steering_.cost_limit)) continue;
     if (static_cast<float>(cost) > entry.cost() && static_cast<float>(cost) > next) {
@@ -179,9 +197,7 @@ PatchResult PatchSimplifier::run() {
   }
   write_back();
   result_.triangles_left = live_triangles_;
-  result_.contractions.shrink_to_fit();  // all patches' results wait for the last one
-  result_.changes.shrink_to_fit();
-  return std::move(result_);
+  return result_;  // a copy without room to grow: all patches' results wait for the last one
 }
 
 void PatchSimplifier::write_back() {
@@ -194,9 +210,9 @@ void PatchSimplifier::write_back() {
     work_->derived[global] = derived_[t];
     if (!shading_.empty()) work_->represented[global] = shading_[t].input;
     for (Index c = 0; c < 3; ++c) {
-      work_->vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[3 * t + c]].global;
+      work_->vertex_of_corner[3 * global + c] = vertices_[vertex_of_corner_[4 * t + c]].global;
       for (std::size_t l = 0; l < layer_count(); ++l) {
-        work_->layers[l].of_corner[3 * global + c] = wedges_[l][wedge_of_corner_[l][3 * t + c]].id;
+        work_->layers[l].of_corner[3 * global + c] = wedges_[l][wedge_of_corner_[l][4 * t + c]].id;
       }
     }
   }

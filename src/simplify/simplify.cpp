@@ -231,6 +231,7 @@ class Simplifier {
     std::mutex append;
     std::vector<std::size_t> chosen;
     for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
+    std::ranges::reverse(chosen);  // the last one started, the first that is run: it stays loaded
     parallel_for(chosen.size(), [&](std::size_t i) {
       const std::size_t p = chosen[i];
       PatchSimplifier& patch = patch_simplifiers_->local();
@@ -328,12 +329,26 @@ class Simplifier {
     });
   }
 
+  // A contraction of the pass.
+  struct At {
+    double key;
+    std::uint32_t patch, index;
+  };
+  // Patch by patch they are in order; `begin_of_patch` says where each of the patches `first` to
+  // `end` begins, and where the last one ends. Of equal keys the lower patch's come first.
+  static void merge(At* order, std::span<const std::size_t> begin_of_patch, std::size_t first,
+                    std::size_t end) {
+    if (end - first < 2) return;
+    const std::size_t middle = first + (end - first) / 2;
+    parallel_both([&] { merge(order, begin_of_patch, first, middle); },
+                  [&] { merge(order, begin_of_patch, middle, end); });
+    std::inplace_merge(order + begin_of_patch[first], order + begin_of_patch[middle],
+                       order + begin_of_patch[end],
+                       [](const At& a, const At& b) { return a.key < b.key; });
+  }
+
   // One order for the pass: by cost, which never falls inside a patch, then by patch.
   void append_contractions() {
-    struct At {
-      double key;
-      std::uint32_t patch, index;
-    };
     std::size_t contraction_count = 0, change_count = sequence_.changes.size();
     for (const PatchResult& result : results_) {
       contraction_count += result.contractions.size();
@@ -342,16 +357,14 @@ class Simplifier {
     sequence_.changes.reserve(change_count);
     std::vector<At> order;
     order.reserve(contraction_count);
+    std::vector<std::size_t> begin_of_patch = {0};
     for (std::uint32_t p = 0; p < results_.size(); ++p) {
       for (std::uint32_t i = 0; i < results_[p].contractions.size(); ++i) {
         order.push_back({results_[p].contractions[i].key, p, i});
       }
+      begin_of_patch.push_back(order.size());
     }
-    parallel_sort(order, [](const At& a, const At& b) {
-      return a.key != b.key       ? a.key < b.key
-             : a.patch != b.patch ? a.patch < b.patch
-                                  : a.index < b.index;
-    });
+    merge(order.data(), begin_of_patch, 0, results_.size());
     contractions_in_band_ += static_cast<std::uint32_t>(order.size());
     if (options_.record_bands) {
       sequence_.bands.back().contraction_count = contractions_in_band_;
@@ -368,8 +381,8 @@ class Simplifier {
           std::span(from.derived).subspan(contraction.first_derived, contraction.derived_count);
       contraction.first_change = static_cast<std::uint32_t>(sequence_.changes.size());
       contraction.first_derived = static_cast<std::uint32_t>(sequence_.derived.size());
-      sequence_.changes.insert(sequence_.changes.end(), changes.begin(), changes.end());
-      sequence_.derived.insert(sequence_.derived.end(), derived.begin(), derived.end());
+      for (const AttributeChange& change : changes) sequence_.changes.push_back(change);
+      for (TriangleId triangle : derived) sequence_.derived.push_back(triangle);
       worst_surface_ = std::max(worst_surface_, contraction.error.surface);
       contractions.push_back(contraction);
       if (work_.part_count > 1) {

@@ -75,6 +75,15 @@ struct PatchResult {
   std::vector<TriangleId> derived;
   std::vector<std::vector<float>> new_values;  // per layer
   std::size_t triangles_left = 0;
+
+  // Nothing, but the memory stays.
+  void clear() {
+    contractions.clear();
+    changes.clear();
+    derived.clear();
+    for (std::vector<float>& values : new_values) values.clear();
+    triangles_left = 0;
+  }
 };
 
 inline constexpr std::uint32_t kLocalValue = 0x80000000u;
