@@ -8,6 +8,7 @@
 // eight, which compilers turn into instructions for four.
 #pragma once
 
+#include "base/wide.h"
 #include "codec/coded_numbers.h"
 #include "codec/eight_floats.h"
 #include "codec/known_bit.h"
@@ -28,6 +29,26 @@ using PerComponent = std::array<float, kComponents>;
 // What each component expects, and how far it may be off.
 struct AxisMixture {
   PerComponent weight{}, center{}, inverse_scale{};
+};
+
+// Intervals of one width that follow each other from `low`, at most eight, before which the sum of
+// the components' distribution functions is `below`. Endless: there are eight, and the first and
+// the last have no end.
+struct Parts {
+  std::int64_t low = 0, width = 0;
+  float below = 0;
+  std::size_t count = 8;
+  bool is_endless = false;
+};
+// One of them, and its share: from `begin` up to `end`, of 2^16.
+struct Part {
+  std::uint32_t index = 0, begin = 0, end = 0;
+  float inner = 0;  // the sum before it, but after the first of endless ones
+};
+// Which one: that with this index, or in whose share a place is.
+struct Which {
+  std::uint32_t number = 0;
+  bool is_index = false;
 };
 
 // The components that count: those of at least one in 256 of the weight, mostly two or three.
@@ -55,14 +76,18 @@ class LikelyComponents {
     }
     return sum;
   }
-  // The same at the ends of eight parts of one width that follow each other from `low`.
-  void at_ends(std::int64_t low, std::int64_t width, std::array<float, 8>& ends) const;
+  Part part(const Parts& parts, Which which) const;
   // The same to the bit, as processors do it that have no eight at once.
-  void at_ends_by_fours(std::int64_t low, std::int64_t width, std::array<float, 8>& ends) const;
+  Part part_by_fours(const Parts& parts, Which which) const;
 
  private:
   static constexpr float kLeastShare = 1.0f / 256, kWidest = 1 << 28;
   static constexpr float kEvenWidth = 1;  // of the smallest scale
+
+#if defined(CREASE_AVX2)
+  CREASE_AVX2 Part wide_part(float low, float width, float below, std::uint32_t count,
+                             bool is_endless, std::uint32_t which, bool is_index) const;
+#endif
 
   std::size_t count_ = 0;
   float all_ = 0, steepest_ = 0;
@@ -72,7 +97,7 @@ class LikelyComponents {
 // Multiplies weights by how likely each component makes it that a number lies from `low` on, within
 // `width`. Places are seen from `start`.
 void weigh(AxisMixture& mixture, std::int32_t start, std::int64_t low, std::int64_t width);
-// As at_ends_by_fours().
+// As part_by_fours().
 void weigh_by_fours(AxisMixture& mixture, std::int32_t start, std::int64_t low, std::int64_t width);
 
 // From which whole number on one lies, within a power of two; and the sums before both ends.
@@ -102,12 +127,26 @@ void code_far(Coder& coder, const LikelyComponents& likely, bool up, std::int64_
   }
 }
 
+// One of some parts: `index`, which a decoder finds.
+template <class Coder>
+Part code_part(Coder& coder, const LikelyComponents& likely, const Parts& parts,
+               std::int64_t index) {
+  Which which;
+  if constexpr (Coder::kEncodes) {
+    which = {static_cast<std::uint32_t>(index), true};
+  } else {
+    which = {coder.place(), false};
+  }
+  const Part part = likely.part(parts, which);
+  coder.take_share(part.begin, part.end);
+  return part;
+}
+
 // `value` is coded relative to `start`, near which it is likely, about `size` away; differences go
 // round at 2^32. The weights learn what the value says.
 template <class Coder>
 std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, float size,
                        std::int32_t value) {
-  using EightShares = Shares<8>;
   const std::int64_t away = static_cast<std::int32_t>(static_cast<std::uint32_t>(value) -
                                                       static_cast<std::uint32_t>(start));
   const LikelyComponents likely(mixture, start);
@@ -119,29 +158,24 @@ std::int32_t code_axis(Coder& coder, AxisMixture& mixture, std::int32_t start, f
   AxisInterval in;
   in.bits = std::bit_width(static_cast<std::uint32_t>(cut));
   in.low = -4 * in.width();
-  std::array<float, 8> up_to;
-  likely.at_ends(in.low, in.width(), up_to);
-  up_to[7] = all;
-  std::uint32_t part = 0;
-  if constexpr (Coder::kEncodes) {
-    part = static_cast<std::uint32_t>(std::clamp<std::int64_t>((away - in.low) >> in.bits, 0, 7));
+  const Part side = code_part(coder, likely, {in.low, in.width(), -all, 8, true},
+                              std::clamp<std::int64_t>((away - in.low) >> in.bits, 0, 7));
+  in.low += std::int64_t(side.index) << in.bits;
+  in.below = in.above = side.inner;
+  if (side.index == 0 || side.index == 7) {
+    in.below = side.index == 0 ? -all : side.inner;
+    code_far(coder, likely, side.index == 7, away, in);
   }
-  part = coder.one_of(EightShares(up_to, -all, 8), part);
-  in.low += std::int64_t(part) << in.bits;
-  in.below = part > 0 ? up_to[part - 1] : -all;
-  in.above = up_to[part];
-  if (part == 0 || part == 7) code_far(coder, likely, part == 7, away, in);
 
   const int even = likely.even_bits();
   while (in.bits > even) {
     const int bits = std::min(3, in.bits - even);
     in.bits -= bits;
-    likely.at_ends(in.low, in.width(), up_to);
-    part = 0;
-    if constexpr (Coder::kEncodes) part = static_cast<std::uint32_t>((away - in.low) >> in.bits);
-    part = coder.one_of(EightShares(up_to, in.below, std::size_t(1) << bits), part);
-    in.low += std::int64_t(part) << in.bits;
-    in.below = part > 0 ? up_to[part - 1] : in.below;
+    const Part part =
+        code_part(coder, likely, {in.low, in.width(), in.below, std::size_t(1) << bits, false},
+                  (away - in.low) >> in.bits);
+    in.low += std::int64_t(part.index) << in.bits;
+    in.below = part.inner;
   }
 
   weigh(mixture, start, in.low, in.width());

@@ -187,8 +187,8 @@ class BlockCoder {
     std::array<std::array<AdaptiveBit, 2>, 2> is_kept;  // by whether the vertex stays, is new
     DirectionModel direction{false}, corner_direction{true};
   };
-  struct Directions {  // at a layer of directions, per vertex; zero where there is none
-    std::vector<Spot> geometric, stored;
+  struct Normals {  // of a vertex, at a layer of directions; zero where there is none
+    Spot geometric{}, stored{};
   };
   void keep_coarse_normals();
   void start_directions(const std::vector<CodedValue>& values, const OctahedralCoding& coding);
@@ -240,7 +240,7 @@ class BlockCoder {
   std::vector<std::uint32_t> origin_;  // per vertex: the one at the coarse end it comes from
   std::vector<char> has_moved_;        // per vertex, from there
   std::vector<Spot> coarse_normals_;   // per vertex of the coarse end, if a layer has directions
-  Directions directions_;
+  std::vector<Normals> normals_;       // per vertex
 
   Ring ring_;
   Shape shape_, wanted_shape_;

@@ -95,7 +95,7 @@ void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<
         values[corner] = value;
         is_known_[corner] = 1;
       }
-      if (layer.octahedral_bits > 0) directions_.stored[v] = direction_of(layer, value);
+      if (layer.octahedral_bits > 0) normals_[v].stored = direction_of(layer, value);
       return;
     }
   }
@@ -223,7 +223,7 @@ CodedValue BlockCoder<Coder, Guide>::code_corner_direction(const BlockLayer& lay
                    normalized(bent),
                    first,
                    beside,
-                   directions_.geometric[mesh_.triangles[t][corner % 3]],
+                   normals_[mesh_.triangles[t][corner % 3]].geometric,
                    one};
   const Sizes sizes = std::bit_cast<Sizes>(rough_log2_of_each(
       FourFloats{length(smooth - one), length(had - one), length(own), length(beside - one)} +
@@ -252,77 +252,80 @@ template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::start_directions(const std::vector<CodedValue>& values,
                                                 const OctahedralCoding& coding) {
   const std::size_t vertices = mesh_.positions.size();
-  directions_.geometric.assign(vertices, Spot{});
-  directions_.stored.assign(vertices, Spot{});
+  normals_.assign(vertices, Normals{});
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t v = mesh_.triangles[t][c];
-      directions_.geometric[v] += areas_[t].twice;
-      if (!is_known_[3 * t + c] || !is_zero(directions_.stored[v])) continue;
+      normals_[v].geometric += areas_[t].twice;
+      if (!is_known_[3 * t + c] || !is_zero(normals_[v].stored)) continue;
       const Vec3f d = coding.decode(octahedral_code(values[3 * t + c]));
-      directions_.stored[v] = Spot{d.x, d.y, d.z, 0};
+      normals_[v].stored = Spot{d.x, d.y, d.z, 0};
     }
   }
-  for (Spot& n : directions_.geometric) n = normalized(n);
+  for (Normals& n : normals_) n.geometric = normalized(n.geometric);
 }
 
 template <class Coder, class Guide>
 DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t v, const Spot& had,
                                                                    Sizes& sizes) const {
-  const Spot geometric = directions_.geometric[v];
+  const Spot geometric = normals_[v].geometric;
   Spot even{}, angles{}, off{}, beside{};
   FourFloats spread{};  // by component
-  float known = 0;
+  std::int32_t known = 0;
   const Vec3i q = mesh_.positions[v];
   const std::span<const std::uint32_t> list =
       around_[v].first(std::min(around_[v].size(), kLargestRing));
   std::uint32_t last = kNone;  // mostly the next triangle begins there
   Spot at_last{};
   for (std::size_t first = 0; first < list.size(); first += 4) {
-    std::array<Spot, 4> normal;
-    FourFloats cosine{}, squares{}, sine2{};  // of four triangles, times lengths
+    std::array<Spot, 4> after_v{}, before_v{};  // of four triangles
     const std::size_t count = std::min<std::size_t>(list.size() - first, 4);
     for (std::size_t i = 0; i < count; ++i) {
       const Corners& corners = mesh_.triangles[list[first + i]];
       const std::size_t c = corner_of(corners, v);
       const std::uint32_t after = corners[kCornerAfter[c]], before = corners[kCornerBefore[c]];
-      const Spot a = after == last ? at_last : seen_from(q, mesh_.positions[after]);
-      const Spot b = seen_from(q, mesh_.positions[before]);
+      after_v[i] = after == last ? at_last : seen_from(q, mesh_.positions[after]);
+      before_v[i] = at_last = seen_from(q, mesh_.positions[before]);
       last = before;
-      at_last = b;
-      normal[i] = cross_before_turn(a, b);
-      cosine[i] = dot(a, b);
-      squares[i] = dot(a, a) * dot(b, b);
-      const Spot areas = normal[i] * normal[i];
-      sine2[i] = areas[1] + areas[2] + areas[0];  // x, y, z after the turn
-      const Spot &stored = directions_.stored[after], &shape = directions_.geometric[after];
-      spread += shape * geometric;
-      if (is_zero(stored)) continue;
-      off += stored - shape;
-      beside += stored;
-      known += 1;
+      const Normals& of = normals_[after];
+      spread += of.geometric * geometric;
+      // Adds nothing where it is zero.
+      const std::int32_t is_one = -static_cast<std::int32_t>(!is_zero(of.stored));
+      off += std::bit_cast<Spot>(std::bit_cast<FourInts>(of.stored - of.geometric) & is_one);
+      beside += of.stored;
+      known -= is_one;
     }
-    const FourFloats sine = root(sine2);
+    const auto [ax, ay, az] = coordinates_of(after_v[0], after_v[1], after_v[2], after_v[3]);
+    const auto [bx, by, bz] = coordinates_of(before_v[0], before_v[1], before_v[2], before_v[3]);
+    const FourFloats x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+    const FourFloats sine = root(x * x + y * y + z * z);  // times lengths
+    const FourFloats cosine = ax * bx + ay * by + az * bz;
+    const FourFloats squares = (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz);
+    const FourInts has_area = sine > FourFloats{};
+    const auto weighed = [&](const FourFloats& coordinate, const FourFloats& weight) {
+      return std::bit_cast<FourFloats>(std::bit_cast<FourInts>(coordinate * weight) & has_area);
+    };
     const FourFloats by_size = 1.0f / root(squares), by_area = rough_angle(sine, cosine) / sine;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!(sine[i] > 0)) continue;
-      even += normal[i] * by_size[i];
-      angles += normal[i] * by_area[i];
+    for (const Spot& n : spots_at(weighed(x, by_size), weighed(y, by_size), weighed(z, by_size))) {
+      even += n;
+    }
+    for (const Spot& n : spots_at(weighed(x, by_area), weighed(y, by_area), weighed(z, by_area))) {
+      angles += n;
     }
   }
   DirectionCandidates result;
-  const Spot mean_off = known > 0 ? off * (1 / known) : Spot{};
+  const Spot mean_off = known > 0 ? off * (1 / static_cast<float>(known)) : Spot{};
   const std::uint32_t origin = origin_[v];
   const bool has_had = !is_zero(had);
   result.of = {geometric,
-               normalized(turned(even)),
+               normalized(even),
                had,
                has_had && origin < coarse_normals_.size()
                    ? geometric + had - coarse_normals_[origin]
                    : Spot{},
                known > 0 ? geometric + mean_off : Spot{},
                normalized(beside),
-               normalized(turned(angles)),
+               normalized(angles),
                has_had ? had + geometric : Spot{}};
   const float mean_spread =
       list.empty() ? 1 : sum_of_three(spread) / static_cast<float>(list.size());

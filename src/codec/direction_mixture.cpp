@@ -26,9 +26,8 @@ struct OnSquare {
   EightInts is_below, is_any;  // z < 0; no zero vector
 };
 
-[[gnu::always_inline]] inline OnSquare on_square(const std::array<PerComponent, 3>& along,
-                                                 float m) {
-  const EightFloats x(along[0]), y(along[1]), z(along[2]);
+[[gnu::always_inline]] inline OnSquare on_square(const std::array<EightFloats, 3>& along, float m) {
+  const auto& [x, y, z] = along;
   const EightFloats sum = size_of(x) + size_of(y) + size_of(z), unit = EightFloats(m) / sum;
   const EightFloats px = x * unit, py = y * unit;
   return {{px, py},
@@ -56,12 +55,8 @@ CREASE_WIDE DirectionMixture DirectionModel::mixture(const OctahedralCoding& cod
                                                      const DirectionCandidates& candidates,
                                                      const Sizes& sizes) const {
   DirectionMixture result;
-  std::array<PerComponent, 3> along;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < kComponents; ++k) along[i][k] = candidates.of[k][i];
-  }
   const float m = static_cast<float>(coding.max_component() / 2);
-  const OnSquare of = on_square(along, m);
+  const OnSquare of = on_square(coordinates_of(candidates.of), m);
   result.start = coding.frame_of(code_near_first(coding, of));
   const auto& start = result.start;
   const EightInts is_over = of.is_below ^ (start.flip ? -1 : 0);

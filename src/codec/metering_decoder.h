@@ -23,9 +23,14 @@ class MeteringDecoder {
   }
   template <std::size_t N>
   std::uint32_t one_of(const Shares<N>& shares, std::uint32_t) {
-    const std::uint32_t i = decoder_.one_of(shares, 0);
-    add(std::log2(Shares<N>::kAll / double(shares.begin(i + 1) - shares.begin(i))));
+    const std::uint32_t i = shares.find(place());
+    take_share(shares.begin(i), shares.begin(i + 1));
     return i;
+  }
+  std::uint32_t place() const { return decoder_.place(); }
+  void take_share(std::uint32_t begin, std::uint32_t end) {
+    decoder_.take_share(begin, end);
+    add(std::log2(kAllShares / double(end - begin)));
   }
   std::uint32_t uniform(std::uint32_t count, std::uint32_t) {
     add(std::log2(double(count)));

@@ -7,9 +7,11 @@
 //   odds.learn(pair);
 #pragma once
 
+#include "base/wide.h"
 #include "codec/shares.h"
 #include "codec/spot.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -41,9 +43,8 @@ class PairOdds {
     const std::uint32_t after = count_ - 1 - first;
     std::array<float, kMost> up_to{};
     float sum = 0;
-    for (std::uint32_t j = 0; j < after; ++j) {
-      up_to[j] = sum += odds_[row_[first] + j / 4][j % 4];
-    }
+    const FourFloats* const odds = odds_of(first);
+    for (std::uint32_t j = 0; j < after; ++j) up_to[j] = sum += odds[j / 4][j % 4];
     const Shares<kMost> of_last(up_to, 0, after);
     return {first, first + 1 + coder.one_of(of_last, pair.last - first - 1)};
   }
@@ -57,8 +58,22 @@ class PairOdds {
   static constexpr std::size_t kFours = 36;
   using PerFour = std::array<FourFloats, kFours>;
   using PerVertex = std::array<float, kMost + 4>;
+  struct Plan;  // which pairs each four has
+  static const Plan kPlans[];
+  struct Rated {  // what speaks for pairs, per vertex, with four zeros behind the last one
+    PerVertex x, y, z, sum_x, sum_y, sum_z;  // where it is, and the sum up to it
+    PerVertex inverse_length;                // or 0
+    PerVertex of_vertex, of_arc;             // scores
+    Spot all{};                              // the sum of all places
+    float inverse = 1;                       // of the mean length
+  };
 
-  PerVertex rate_vertices(std::span<const RingVertex> ring, float inverse);
+  const FourFloats* odds_of(std::uint32_t first) const;
+  void rate_vertices(std::span<const RingVertex> ring, Rated& rated);
+  void rate_pairs(const Rated& rated);
+#if defined(CREASE_AVX2)
+  CREASE_AVX2 void rate_pairs_wide(const Rated& rated);
+#endif
 
   // Weights of what speaks for a pair: of both together, of each vertex, of the triangles at each
   // vertex, and of those that each child gets.
@@ -72,7 +87,6 @@ class PairOdds {
   float sum_ = 0;
   std::array<std::array<float, kOfVertex>, kMost> vertex_features_;
   std::array<std::size_t, kMost> triangles_class_;
-  std::array<std::size_t, kMost + 1> row_{};  // where the fours of each first begin
   std::array<PerFour, kOfPair> pair_features_;
   PerFour odds_;                      // the greatest is 1; 0 of what is no pair
   std::array<float, kMost> up_to_{};  // the odds of all pairs of those up to each first

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "codec/axis_mixture.h"
+#include "codec/spot.h"
 
 #include <algorithm>
 #include <array>
@@ -29,6 +30,13 @@ inline float rise(const std::array<float, 3>& normal, float first, float second)
 inline EightFloats rise(const std::array<float, 3>& normal, const EightFloats& first,
                         const EightFloats& second) {
   return 0.0f - (normal[0] * first + normal[1] * second) / normal[2];
+}
+// Eight places' x, y and z, each of all eight.
+[[gnu::always_inline]] inline std::array<EightFloats, 3> coordinates_of(
+    const std::array<Spot, kComponents>& p) {
+  const auto low = coordinates_of(p[0], p[1], p[2], p[3]);
+  const auto high = coordinates_of(p[4], p[5], p[6], p[7]);
+  return {EightFloats(low[0], high[0]), {low[1], high[1]}, {low[2], high[2]}};
 }
 inline std::int32_t rounded(float x) {
   constexpr float kLimit = 1 << 30;

@@ -91,17 +91,14 @@ const Scales& scales_of(Leaving leaving) {
 // Places along the axes of the surroundings; along the third, above the tangent plane.
 [[gnu::always_inline]] inline void expect(const std::array<Spot, kComponents>& places,
                                           const Surroundings& around, PlaceMixture& result) {
-  std::array<PerComponent, 3> along;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < kComponents; ++k) along[i][k] = places[k][i];
-  }
+  const std::array<EightFloats, 3> along = coordinates_of(places);
   const std::array<int, 3>& axis = around.axis;
   const Spot& n = around.normal;
   if (n[axis[2]] != 0) result.direction = {n[axis[0]], n[axis[1]], n[axis[2]]};
-  result.center[0] = along[std::size_t(axis[0])];
-  result.center[1] = along[std::size_t(axis[1])];
-  const EightFloats first(result.center[0]), second(result.center[1]);
-  const EightFloats third(along[std::size_t(axis[2])]);
+  const EightFloats &first = along[std::size_t(axis[0])], &second = along[std::size_t(axis[1])];
+  const EightFloats& third = along[std::size_t(axis[2])];
+  first.store(result.center[0]);
+  second.store(result.center[1]);
   (third - rise(result.direction, first, second)).store(result.center[2]);
 }
 

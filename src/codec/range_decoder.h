@@ -42,14 +42,17 @@ class RangeDecoder {
 
   template <std::size_t N>
   std::uint32_t one_of(const Shares<N>& shares, std::uint32_t) {
-    const std::uint32_t step = range_ >> 16;
-    const std::uint32_t i = shares.find(std::min(code_ / step, Shares<N>::kAll - 1));
-    const std::uint32_t begin = step * shares.begin(i);
-    code_ -= begin;
-    range_ = shares.begin(i + 1) == Shares<N>::kAll ? range_ - begin
-                                                    : step * shares.begin(i + 1) - begin;
-    normalize();
+    const std::uint32_t i = shares.find(place());
+    take_share(shares.begin(i), shares.begin(i + 1));
     return i;
+  }
+  // The same by hand: the place of what comes next, below kAllShares; then the share that it is in.
+  std::uint32_t place() const { return std::min(code_ / (range_ >> 16), kAllShares - 1); }
+  void take_share(std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t step = range_ >> 16, before = step * begin, to = step * end;
+    code_ -= before;
+    range_ = (end == kAllShares ? range_ : to) - before;
+    normalize();
   }
 
   std::uint32_t uniform(std::uint32_t count, std::uint32_t) { return take(count, range_ / count); }

@@ -34,12 +34,15 @@ class RangeEncoder {
 
   template <std::size_t N>
   std::uint32_t one_of(const Shares<N>& shares, std::uint32_t i) {
-    const std::uint32_t step = range_ >> 16, begin = step * shares.begin(i);
-    low_ += begin;
-    range_ = shares.begin(i + 1) == Shares<N>::kAll ? range_ - begin
-                                                    : step * shares.begin(i + 1) - begin;
-    normalize();
+    take_share(shares.begin(i), shares.begin(i + 1));
     return i;
+  }
+  // The same by hand: see RangeDecoder.
+  void take_share(std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t step = range_ >> 16, before = step * begin;
+    low_ += before;
+    range_ = end == kAllShares ? range_ - before : step * end - before;
+    normalize();
   }
 
   // One of `count` that are equally likely; count < 2^24.

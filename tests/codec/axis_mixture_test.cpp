@@ -24,7 +24,12 @@ AxisMixture some_mixture(std::mt19937& random) {
   return mixture;
 }
 
-TEST_CASE("sums and weights are the same to the bit by eights and by fours") {
+bool are_same(const Part& a, const Part& b) {
+  return a.index == b.index && a.begin == b.begin && a.end == b.end &&
+         std::bit_cast<std::uint32_t>(a.inner) == std::bit_cast<std::uint32_t>(b.inner);
+}
+
+TEST_CASE("shares, sums and weights are the same to the bit by eights and by fours") {
   std::mt19937 random(1);
   for (int i = 0; i < 20'000; ++i) {
     AxisMixture mixture = some_mixture(random), by_fours = mixture;
@@ -33,13 +38,23 @@ TEST_CASE("sums and weights are the same to the bit by eights and by fours") {
     const std::int64_t low = (std::int64_t(random() % 64) - 32) * width;
 
     const LikelyComponents likely(mixture, start);
-    std::array<float, 8> ends, ends_by_fours;
-    likely.at_ends(low, width, ends);
-    likely.at_ends_by_fours(low, width, ends_by_fours);
-    REQUIRE(std::bit_cast<Bits>(ends) == std::bit_cast<Bits>(ends_by_fours));
-    for (std::int64_t k = 0; k < 8; ++k) {  // and one by one
-      REQUIRE(ends[std::size_t(k)] == likely.at(low + (k + 1) * width));
+    const bool is_endless = random() % 3 == 0;
+    const std::size_t count = is_endless ? 8 : 1 + random() % 8;
+    const float below = is_endless ? -likely.all() : likely.at(low);
+    const Parts parts{low, width, below, count, is_endless};
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const Part part = likely.part(parts, {k, true});
+      REQUIRE(are_same(part, likely.part_by_fours(parts, {k, true})));
+      for (const std::uint32_t place : {part.begin, part.end - 1}) {
+        REQUIRE(are_same(part, likely.part(parts, {place, false})));
+        REQUIRE(are_same(part, likely.part_by_fours(parts, {place, false})));
+      }
+      REQUIRE(part.begin == (k > 0 ? likely.part(parts, {k - 1, true}).end : 0));
+      // And one by one.
+      const std::uint32_t inner = is_endless && k == 0 ? 1 : k;
+      REQUIRE(part.inner == (inner == 0 ? below : likely.at(low + inner * width)));
     }
+    REQUIRE(likely.part(parts, {static_cast<std::uint32_t>(count - 1), true}).end == kAllShares);
 
     weigh(mixture, start, low, width);
     weigh_by_fours(by_fours, start, low, width);
