@@ -61,8 +61,8 @@ FourFloats first_of(const FourFloats& x, std::size_t count, float other) {
                                    (std::bit_cast<FourInts>(FourFloats{} + other) & ~is_one));
 }
 
-// All bits of the first 0 to 4.
-constexpr std::array<FourInts, 5> kFirst{
+// All bits of the first 0 to 4 lanes.
+constexpr std::array<FourInts, 5> kLanes{
     FourInts{}, {-1, 0, 0, 0}, {-1, -1, 0, 0}, {-1, -1, -1, 0}, {-1, -1, -1, -1}};
 
 #if defined(CREASE_AVX2)
@@ -286,7 +286,7 @@ CREASE_AVX2 void PairOdds::rate_pairs_wide(const Rated& r) {
       score = score + of_pair_[m] * features[m];
     }
     const __m256 odds =
-        _mm256_blendv_ps(least, score, two_of(kFirst[one.pairs], kFirst[two.pairs]));
+        _mm256_blendv_ps(least, score, two_of(kLanes[one.pairs], kLanes[two.pairs]));
     _mm256_storeu_ps(reinterpret_cast<float*>(&odds_[f]), odds);
     greatest = _mm256_max_ps(odds, greatest);
   }
@@ -299,7 +299,7 @@ CREASE_AVX2 void PairOdds::rate_pairs_wide(const Rated& r) {
     const __m256 over =
         _mm256_min_ps(_mm256_max_ps((_mm256_loadu_ps(odds) - top) * 1.4427f, _mm256_set1_ps(-60)),
                       _mm256_setzero_ps());
-    const __m256 pairs = two_of(kFirst[plan.fours[f].pairs], kFirst[plan.fours[f + 1].pairs]);
+    const __m256 pairs = two_of(kLanes[plan.fours[f].pairs], kLanes[plan.fours[f + 1].pairs]);
     _mm256_storeu_ps(odds, _mm256_and_ps(exp2_wide(over + 64.0f), pairs));
   }
 }
