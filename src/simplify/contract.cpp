@@ -90,7 +90,7 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
     Slice& around = vertices_[third].corners;
     Index* begin = &corner_pool_[around.first];
     Index* end = std::remove_if(begin, begin + around.count,
-                                [t](Index corner) { return triangle_of(corner) == t; });
+                                [gone = t](Index corner) { return triangle_of(corner) == gone; });
     around.count = static_cast<Index>(end - begin);
     release(t);
   }
