@@ -164,10 +164,12 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
   Mesh shown = options.control ? mesh.extract() : Mesh{};
   shown.images = source.images;
   add(std::move(source), name + ": " + grouped(triangles) + " of " + grouped(full) + " triangles",
-      {{"triangles", triangles}, {"full_triangles", full}, {"control", false}}, options,
-      level_share(full, coarsest, triangles));
+      {{"triangles", triangles},
+       {"full_triangles", full},
+       {"control", false},
+       {"camera", Json::parse(format_camera(*options.view))}},
+      options, level_share(full, coarsest, triangles));
   if (options.control) add_control(shown, name, options);
-  columns_ = std::max(columns_, options.control ? 2 : 1);
   return Done{};
 }
 
@@ -186,7 +188,6 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
     add(std::move(source), name + ": " + grouped(mesh->triangle_count()) + " triangles",
         {{"triangles", mesh->triangle_count()}, {"control", false}}, options, 0.0f);
     if (options.control) add_control(*mesh, name, options);
-    columns_ = std::max(columns_, options.control ? 2 : 1);
     return Done{};
   }
 
@@ -218,8 +219,6 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
     if (interrupted()) return interrupted_failure();
   }
   for (const auto& [name, mesh] : controls) add_control(mesh, name, options);
-  columns_ = std::max(columns_,
-                      static_cast<int>(levels.size() == 1 && options.control ? 2 : levels.size()));
   return Done{};
 }
 

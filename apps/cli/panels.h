@@ -6,6 +6,8 @@
 #include "crease/adaptive_mesh.h"
 #include "crease/render.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -26,6 +28,11 @@ struct PanelOptions {
   // For Coloring::Error: measured distances; of a view, pixels on its screen.
   bool errors_of_positions = false;
   ReadOptions read;
+
+  std::size_t level_count() const { return std::max<std::size_t>(1, ratios.size()); }
+  std::size_t panel_count() const { return level_count() * (control ? 2 : 1); }  // of a file
+  // So that each control stands below its level, and a single one beside it.
+  std::size_t control_columns() const { return level_count() == 1 ? 2 : level_count(); }
 };
 
 class Panels {
@@ -34,9 +41,7 @@ class Panels {
                   const Common& common);
 
   std::span<const Panel> list() const { return panels_; }
-  const Json& json() const { return json_; }  // one object a panel
-  // So that each control stands below its level.
-  int columns() const { return columns_; }
+  const Json& json() const { return json_; }                // one object a panel
   std::uint64_t bytes_read() const { return bytes_read_; }  // of .crease files
 
  private:
@@ -60,7 +65,6 @@ class Panels {
   std::deque<Source> sources_;
   std::vector<Panel> panels_;
   Json json_ = Json::array();
-  int columns_ = 0;
   std::uint64_t bytes_read_ = 0;
 };
 

@@ -90,6 +90,12 @@ struct Image {
 // NotSupported when no EGL device can draw, saying what was tried, and with BadValue for a size or
 // a list that cannot be meant. Threads: call from any; an OpenGL context that is current stays so.
 Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& options);
+
+// What each of `panel_count` panels shows of `options.camera`, which must be there: a camera of the
+// panel's own shape, in its own pixels. A cut made for it is right everywhere in the picture.
+// Fails with BadValue for a size that cannot be meant.
+Result<Camera> camera_of_panel(std::size_t panel_count, bool has_titles,
+                               const RenderOptions& options);
 Status write_png(const Image& image, const std::filesystem::path& path);
 // The bytes that write_png() writes. Fails with BadValue for an image without all its pixels.
 Result<std::vector<std::byte>> encode_png(const Image& image);

@@ -350,7 +350,7 @@ class Commands(tool.Case):
         out = self.path("view.png")
         for source in (self.built(), self.city()):
             seen = self.json("extract", source, "-o", self.path("seen.ply"), "--view", near)
-            picture = self.json("render", source, "-o", out, "--view", near)
+            picture = self.json("render", source, "-o", out, "--view", near, "--no-titles")
             self.assertEqual(png_size(out), (640, 480))
             self.assertEqual(len(picture["panels"]), 1)
             self.assertEqual(picture["panels"][0]["triangles"], seen["triangles"])
@@ -362,10 +362,30 @@ class Commands(tool.Case):
                       "--size", "200x100")
             self.assertEqual(png_size(out), (200, 100))
 
+    def test_a_view_is_refined_for_what_its_panel_shows(self):
+        near = self.camera("near.json", [60, -60, 40])
+
+        def panel(*options):
+            return self.json("render", self.built(), "-o", self.path("view.png"), "--view", near,
+                             *options)["panels"][0]
+
+        own = panel("--no-titles")
+        self.assertEqual(own["camera"]["viewport"], [640, 480])
+        wide = panel("--no-titles", "--size", "1600x480")  # shows more
+        self.assertGreater(wide["triangles"], own["triangles"])
+        small = panel("--no-titles", "--size", "320x240")  # its pixels are larger
+        self.assertLess(small["triangles"], own["triangles"])
+        for options in (("--size", "1600x480"), ("--control", "--color", "kind"), ("--control",)):
+            shown = panel(*options)
+            camera = self.write("panel.json", json.dumps(shown["camera"]))
+            self.assertNotEqual(shown["camera"]["viewport"], [640, 480])
+            seen = self.json("extract", self.built(), "-o", self.path("seen.ply"), "--view", camera)
+            self.assertEqual(shown["triangles"], seen["triangles"], options)
+
     def test_render_from_outside_shows_the_same_triangles_another_way(self):
         near = self.camera("near.json", [60, -60, 40])
         pictures = {}
-        for options in ((), ("--outside",), ("--outside", "--color", "shaded"),
+        for options in (("--no-titles",), ("--outside",), ("--outside", "--color", "shaded"),
                         ("--outside", "--no-wireframe")):
             out = self.path("picture.png")
             made = self.json("render", self.city(), "-o", out, "--view", near, *options)
