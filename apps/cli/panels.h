@@ -25,8 +25,8 @@ struct PanelOptions {
   std::optional<Camera> view;  // instead of both: one panel, as fine as this camera needs it
   bool control = false;        // after the levels, each again with one averaged normal a vertex
   bool titles = true;
-  // For Coloring::Error: measured distances; of a view, pixels on its screen.
-  bool errors_of_positions = false;
+  // For Coloring::Error: measured distances; of a view, pixels on its screen. For Coloring::Level.
+  bool errors_of_positions = false, levels_of_positions = false;
   ReadOptions read;
 
   std::size_t level_count() const { return std::max<std::size_t>(1, ratios.size()); }
@@ -50,7 +50,7 @@ class Panels {
     std::unique_ptr<ProgressiveMesh> progressive;
     std::unique_ptr<MeshDrawArrays> arrays;
     std::unique_ptr<AdaptiveMesh> adaptive;
-    std::vector<float> errors;
+    std::vector<float> errors, levels;
     std::vector<ImageFile> images;
   };
   Status add_view(const std::filesystem::path& path, const PanelOptions& options,
@@ -58,7 +58,8 @@ class Panels {
   // `full` has the images.
   void add_level(ProgressiveMesh mesh, const Mesh& full, std::size_t full_count,
                  const std::string& name, const PanelOptions& options, const Common& common);
-  void add_control(const Mesh& level, const std::string& name, const PanelOptions& options);
+  void add_control(const Mesh& level, const std::string& name, const PanelOptions& options,
+                   float level_share);
   void add(Source source, const std::string& title, Json json, const PanelOptions& options,
            float level_share);
 

@@ -92,6 +92,7 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
   Result<RenderOptions> render = render_options(options);
   if (!render.ok()) return render.failure();
   options.panels.errors_of_positions = render->coloring == Coloring::Error;
+  options.panels.levels_of_positions = render->coloring == Coloring::Level;
   if (render->columns == 0 && options.panels.control) {
     render->columns = static_cast<int>(options.panels.control_columns());
   }

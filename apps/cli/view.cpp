@@ -40,8 +40,9 @@ Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const std::optional
                         decoded.blocks.size()};
 }
 
-Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view) {
-  Result<ModelHierarchy> model = load_hierarchy(file, view);
+Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view, bool all_blocks) {
+  Result<ModelHierarchy> model =
+      load_hierarchy(file, all_blocks ? std::nullopt : std::optional(view));
   if (!model.ok()) return model.failure();
   AdaptiveMesh mesh(std::move(model->hierarchy));
   mesh.update({.camera = view});

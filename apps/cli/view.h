@@ -41,6 +41,7 @@ struct ViewedModel {
   std::uint64_t bytes_read = 0;
   std::size_t blocks_read = 0;
 };
-Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view);
+// Of the blocks that `view` needs, or of all: then its errors and levels are known everywhere.
+Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view, bool all_blocks = false);
 
 }  // namespace crease::cli

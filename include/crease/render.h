@@ -41,7 +41,7 @@ enum class Coloring : std::uint8_t {
   // light.
   Shaded,
   Kind,   // SN, FN and NSN triangles in three colours, shaded
-  Level,  // by `Panel::level_share`
+  Level,  // by `Panel::level_of_position`, or `level_share`
   Error,  // by `Panel::error_of_position` on one scale for all panels (blue small, red large)
 };
 
@@ -49,6 +49,8 @@ struct Panel {
   DrawList list{};
   std::string title;      // drawn at the panel's top; empty: nothing
   float level_share = 0;  // for Coloring::Level: 0 full resolution .. 1 base
+  // The same for each position of the list, where levels differ; or empty.
+  std::span<const float> level_of_position{};
   // For Coloring::Error: one value per position of the list, in RenderOptions::error_unit; or
   // empty.
   std::span<const float> error_of_position{};

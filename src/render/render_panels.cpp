@@ -72,8 +72,14 @@ Status check_panel(const Panel& panel, int max_texel_count) {
         check_part(list, list.nsn, 3 * list.nsn.triangle_count(), list.positions.size(), "NSN")}) {
     if (!status.ok()) return status;
   }
-  if (!panel.error_of_position.empty() && panel.error_of_position.size() != list.positions.size()) {
+  const auto is_one_each = [&](std::span<const float> of_position) {
+    return of_position.empty() || of_position.size() == list.positions.size();
+  };
+  if (!is_one_each(panel.error_of_position)) {
     return fail(Error::BadValue, "errors are not one a position");
+  }
+  if (!is_one_each(panel.level_of_position)) {
+    return fail(Error::BadValue, "levels are not one a position");
   }
   const std::size_t largest = std::max({list.positions.size(), list.sn.indices.size(),
                                         list.fn.indices.size(), list.nsn.indices.size()});
@@ -361,7 +367,10 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
     if (i == 0 || !has_same_materials(panels[i].list, panels[i - 1].list)) {
       materials = upload_materials(panels[i].list, gl->limits(), options);
     }
-    const GlScene on_gpu(panels[i].list, panels[i].error_of_position, materials);
+    const GlScene on_gpu(panels[i].list,
+                         options.coloring == Coloring::Level ? panels[i].level_of_position
+                                                             : panels[i].error_of_position,
+                         materials);
     const Status drawn = draw_view(image, layout->views[i], on_gpu, lines, camera, style, *target,
                                    tile_px, programs);
     if (!drawn.ok()) return drawn.failure();
