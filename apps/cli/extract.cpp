@@ -8,7 +8,6 @@
 #include "cli/output.h"
 #include "cli/text.h"
 #include "cli/view.h"
-#include "crease/export.h"
 #include "crease/progressive_mesh.h"
 
 #include <algorithm>
@@ -141,11 +140,13 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
     chosen.measured = *measured;
   }
   const bool refused = options.strict && !chosen.target_met;
+  ExportReport exported;
   if (!refused) {
     const Status painted = add_images(options, file, extracted->mesh);
     if (!painted.ok()) return painted.failure();
-    const Status written = export_mesh(level, options.output);
+    const Result<ExportReport> written = write_mesh(level, options.output, common);
     if (!written.ok()) return written.failure();
+    exported = *written;
   }
 
   Report report;
@@ -158,6 +159,7 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
       {"target_met", chosen.target_met},
       {"error", to_json(extracted->error)},
       {"error_measured", chosen.measured ? measured_json(*chosen.measured) : Json(nullptr)}};
+  report.json.update(to_json(exported));
   report.json.update(read_json(file, extracted->model));
   report.text = options.output.string() + ": " + grouped(level.triangle_count()) + " of " +
                 grouped(file.triangle_count()) + " triangles, stopped by " +
@@ -193,7 +195,7 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
   if (interrupted()) return interrupted_failure();
   const Status painted = add_images(options, file, seen);
   if (!painted.ok()) return painted.failure();
-  const Status written = export_mesh(seen, options.output);
+  const Result<ExportReport> written = write_mesh(seen, options.output, common);
   if (!written.ok()) return written.failure();
 
   Report report;
@@ -209,6 +211,7 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
                  {"bytes_read", model->bytes_read},
                  {"blocks_read", model->blocks_read},
                  {"file_bytes", file.blocks().head().file_bytes}};
+  report.json.update(to_json(*written));
   report.text = options.output.string() + ": " + grouped(seen.triangle_count()) + " of " +
                 grouped(file.triangle_count()) + " triangles for the view" + in_words(measured);
   return report;

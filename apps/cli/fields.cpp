@@ -50,6 +50,21 @@ Json to_json(const ImportReport& report) {
           {"notes", report.notes}};
 }
 
+Json to_json(const ExportReport& report) {
+  const Vec3d& origin = report.origin;
+  return {{"origin", {origin.x, origin.y, origin.z}}, {"rounding", report.rounding}};
+}
+
+std::vector<std::string> lines_of(const ExportReport& report, const std::filesystem::path& file) {
+  std::vector<std::string> lines;
+  if (report.origin != Vec3d{}) {
+    std::string line = file.string() + ": written less";
+    for (int i = 0; i < 3; ++i) line += " " + in_all_digits(report.origin[i]);
+    lines.push_back(line + ", as floats would lose too much so far from the origin");
+  }
+  return lines;
+}
+
 Json measured_json(const Comparison& c) {
   const Spread& to = c.distance.a_to_b;
   const Spread& from = c.distance.b_to_a;

@@ -261,6 +261,28 @@ class Commands(tool.Case):
             self.assertIsNone(level["error_measured"])
             self.assertEqual(self.json("info", out)["triangles"], level["triangles"], extension)
 
+    def test_an_stl_far_from_the_origin_says_what_it_is_written_less(self):
+        def far(extension, *, at=(390000.1, 5820000.2, 0)):
+            lines = tool.TETRAHEDRON.splitlines()
+            for i, line in enumerate(lines):
+                if line.startswith("v "):
+                    lines[i] = "v " + " ".join(str(float(x) + o)
+                                               for x, o in zip(line.split()[1:], at))
+            model = self.write("far.obj", "\n".join(lines) + "\n")
+            return self.run_tool("extract", model, "-o", self.path("far" + extension), "--json")
+
+        stl = far(".stl")
+        made = json.loads(stl.stdout)
+        self.assertEqual(made["origin"], [390001, 5820001, 1])
+        self.assertLess(made["rounding"], 1e-6)
+        self.assertIn("far.stl: written less 390001 5820001 1,", stl.stderr)
+        low = self.json("info", self.path("far.stl"))["bounds"]["low"]
+        for x, expected in zip(low, (390000.1, 5820000.2, 0)):
+            self.assertAlmostEqual(x, expected, 5)
+        for other in (far(".ply"), far(".glb"), far(".stl", at=(2, 3, 4))):
+            self.assertEqual(json.loads(other.stdout)["origin"], [0, 0, 0])
+            self.assertNotIn("written less", other.stderr)
+
     def test_an_ending_may_be_in_capitals(self):
         model = self.write("t.obj", tool.TETRAHEDRON)
         for command, name in (("build", "A.CREASE"), ("extract", "A.GLB"), ("extract", "A.Obj"),
