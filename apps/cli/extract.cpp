@@ -116,6 +116,16 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
   return level;
 }
 
+// What of the file its meshes lack: parts go by their names, which lie at its end.
+std::vector<std::string> lost_parts(const ModelFile& file, const Mesh& mesh, const Common& common) {
+  const std::size_t part_count = file.blocks().head().part_count;
+  if (part_count == 0 || !mesh.parts.empty()) return {};
+  if (!file.blocks().has_parts()) {
+    log(common, file.name() + ": the names of its parts are missing: the file was cut");
+  }
+  return {"parts (" + std::to_string(part_count) + ")"};
+}
+
 // Where the output has a place for them.
 Status add_images(const ExtractArguments& options, const ModelFile& file, Mesh& mesh) {
   const std::string ending = ending_of(options.output);
@@ -144,7 +154,8 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
   if (!refused) {
     const Status painted = add_images(options, file, extracted->mesh);
     if (!painted.ok()) return painted.failure();
-    const Result<ExportReport> written = write_mesh(level, options.output, common);
+    const Result<ExportReport> written =
+        write_mesh(level, options.output, common, lost_parts(file, level, common));
     if (!written.ok()) return written.failure();
     exported = *written;
   }
@@ -195,7 +206,8 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
   if (interrupted()) return interrupted_failure();
   const Status painted = add_images(options, file, seen);
   if (!painted.ok()) return painted.failure();
-  const Result<ExportReport> written = write_mesh(seen, options.output, common);
+  const Result<ExportReport> written =
+      write_mesh(seen, options.output, common, lost_parts(file, seen, common));
   if (!written.ok()) return written.failure();
 
   Report report;
@@ -230,6 +242,7 @@ Result<Report> extract_levels(const ExtractArguments& options, const ModelFile& 
       extract_chain(mesh, *images, options.output, chain, options.level.samples, common);
   if (!report.ok()) return report;
   report->json["asked"] = asked_json(options);
+  report->json["left_out"] = lost_parts(file, model->decoded.mesh, common);
   report->json.update(read_json(file, *model));
   return report;
 }

@@ -40,9 +40,10 @@ Status check_output(const std::filesystem::path& output, std::span<const std::st
 }
 
 Result<ExportReport> write_mesh(const Mesh& mesh, const std::filesystem::path& output,
-                                const Common& common) {
+                                const Common& common, std::span<const std::string> lost) {
   Result<ExportReport> written = export_mesh(mesh, output);
   if (!written.ok()) return written;
+  written->left_out.insert(written->left_out.end(), lost.begin(), lost.end());
   for (const std::string& line : lines_of(*written, output)) log(common, line);
   return written;
 }

@@ -30,8 +30,9 @@ Status keep_inputs(const std::filesystem::path& output,
 Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
                     std::string_view what, std::span<const std::filesystem::path> inputs);
 
-// export_mesh(), and what the file does not say is logged.
+// export_mesh(), and what the file does not say is logged, `lost` with it: what the mesh lacks
+// already, in the words of ExportReport::left_out.
 Result<ExportReport> write_mesh(const Mesh& mesh, const std::filesystem::path& output,
-                                const Common& common);
+                                const Common& common, std::span<const std::string> lost = {});
 
 }  // namespace crease::cli

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct ExportReport {
   // be off by more than a millionth of the longest side; of all others zero.
   Vec3d origin;
   double rounding = 0;  // how far positions are off at most, as STL and GLB have floats
+  // What has no place there, in words: "normals", "colours 'color'", "parts (12)".
+  std::vector<std::string> left_out;
 };
 
 // Fails with NotSupported for another ending and WriteFailed with the system's reason.

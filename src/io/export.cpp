@@ -5,6 +5,7 @@
 #include "io/float_positions.h"
 #include "io/formats.h"
 #include "io/images.h"
+#include "io/left_out.h"
 
 #include <algorithm>
 #include <cctype>
@@ -93,6 +94,7 @@ Status export_obj(const Mesh& mesh, const std::filesystem::path& path) {
 ExportReport export_report(const Mesh& mesh, std::string_view extension) {
   const std::string ending = lower_case(std::string(extension));
   ExportReport report;
+  report.left_out = left_out(mesh, ending);
   if (ending == ".stl") {
     report.origin = round_origin(mesh);
     report.rounding = float_rounding(mesh, report.origin);

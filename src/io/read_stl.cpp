@@ -50,7 +50,7 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
   raw.report.format = "binary STL";
   raw.positions.reserve(3 * facet_count);
   raw.triangles.reserve(facet_count);
-  RawLayer attribute{"stl_attribute",
+  RawLayer attribute{std::string(kStlAttribute),
                      AttributeRole::Other,
                      Interpolation::Categorical,
                      RawLayer::Per::Face,

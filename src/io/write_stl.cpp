@@ -3,6 +3,7 @@
 #include "io/byte_sink.h"
 #include "io/float_positions.h"
 #include "io/formats.h"
+#include "io/left_out.h"
 
 #include "mesh/normals.h"
 
@@ -35,6 +36,7 @@ std::vector<std::byte> write_stl(const Mesh& mesh) {
   out.reserve(kHeaderBytes + 4 + 50 * mesh.triangle_count());
   out.bytes(header(origin));
   out.u32(static_cast<std::uint32_t>(mesh.triangle_count()));
+  const AttributeLayer* attribute = stl_attribute(mesh);
   const std::vector<Vec3d> normals = face_normals(mesh, {});
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const auto point = [&](const Vec3d& p) {
@@ -42,7 +44,8 @@ std::vector<std::byte> write_stl(const Mesh& mesh) {
     };
     point(normals[t]);
     for (VertexId v : mesh.triangles[t]) point(mesh.positions[index_of(v)] - origin);
-    out.u16(0);
+    const float value = attribute ? attribute->value(attribute->of_corner[3 * t])[0] : 0;
+    out.u16(static_cast<std::uint16_t>(value));
   }
   return out.take();
 }

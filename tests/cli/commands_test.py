@@ -283,6 +283,31 @@ class Commands(tool.Case):
             self.assertEqual(json.loads(other.stdout)["origin"], [0, 0, 0])
             self.assertNotIn("written less", other.stderr)
 
+    def test_what_an_output_leaves_out_is_told(self):
+        parts = self.json("info", self.built())["parts"]
+
+        def left_out(name, model=self.built(), *options):
+            made = self.run_tool("extract", model, "-o", self.path(name), "--json", *options)
+            return json.loads(made.stdout)["left_out"], made.stderr
+
+        for name in ("a.ply", "a.obj", "a.glb"):
+            words, log = left_out(name)
+            self.assertEqual(words, [])
+            self.assertNotIn("leaves out", log)
+            self.assertEqual(self.json("info", self.path(name))["parts"], parts)
+        words, log = left_out("a.stl")
+        self.assertEqual((words[0], words[-1]), ("normals", f"parts ({parts})"))
+        self.assertIn("a.stl: leaves out normals, ", log)
+        # Part names lie at the end of the file.
+        whole = pathlib.Path(self.built()).read_bytes()
+        cut = self.write("cut.crease", whole[:-1])
+        view = self.camera("near.json", [60, -60, 40])
+        for options in (("--triangles", 500, "--samples", 0), ("--view", view, "--samples", 0),
+                        ("--levels", 2)):
+            words, log = left_out("b.glb", cut, *map(str, options))
+            self.assertEqual(words, [f"parts ({parts})"])
+            self.assertIn("cut.crease: the names of its parts are missing: the file was cut", log)
+
     def test_an_ending_may_be_in_capitals(self):
         model = self.write("t.obj", tool.TETRAHEDRON)
         for command, name in (("build", "A.CREASE"), ("extract", "A.GLB"), ("extract", "A.Obj"),

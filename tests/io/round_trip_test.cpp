@@ -116,7 +116,76 @@ TEST_CASE("colours, texture coordinates and materials come back") {
     CHECK(got.materials[index_of(got.material_of_triangle[0])].name == "red");
     CHECK(got.materials[index_of(got.material_of_triangle[1])].name == "blue");
   }
-  CHECK(back(mesh, ".obj").mesh.parts == std::vector<std::string>{"first", "second"});
+  for (const char* extension : {".obj", ".ply", ".glb"}) {
+    CHECK(back(mesh, extension).mesh.parts == std::vector<std::string>{"first", "second"});
+  }
+}
+
+TEST_CASE("a PLY holds parts, base colours and which texture each material has") {
+  Mesh mesh = coloured_square();
+  mesh.parts = {"north wall", "\\ 2\nlines"};
+  mesh.materials[0].base_color = {0.25f, 0.1f, 1, 0.5f};
+  for (const bool has_texture : {false, true}) {
+    CAPTURE(has_texture);
+    if (has_texture) mesh.materials[1].base_color_texture = "bricks of 3.png";
+    const Mesh got = back(mesh, ".ply").mesh;
+    CHECK(got.materials == mesh.materials);
+    CHECK(got.material_of_triangle == mesh.material_of_triangle);
+    CHECK(got.parts == std::vector<std::string>{"north wall", "\\ 2 lines"});
+    CHECK(got.part_of_triangle == mesh.part_of_triangle);
+    CHECK(got.layers.size() == 3);  // no index is left over
+    const std::vector<std::byte> bytes = *export_bytes(mesh, ".ply");
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    CHECK((text.find("comment TextureFile bricks of 3.png\n") != text.npos) == has_texture);
+    CHECK((text.find("property int texnumber\n") != text.npos) == has_texture);
+  }
+  mesh.materials[0].base_color_texture = "bricks of 3.png";
+  const std::vector<std::byte> bytes = *export_bytes(mesh, ".ply");
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  CHECK(text.find("texnumber") == text.npos);  // the only texture is that of all
+  CHECK(back(mesh, ".ply").mesh.materials == mesh.materials);
+}
+
+TEST_CASE("what has no place in a format is told") {
+  using Words = std::vector<std::string>;
+  Mesh mesh = coloured_square();
+  CHECK(export_report(mesh, ".obj").left_out == Words{});
+  CHECK(export_report(mesh, ".ply").left_out == Words{});
+  CHECK(export_report(mesh, ".glb").left_out == Words{});
+  CHECK(export_report(mesh, ".stl").left_out == Words{"normals", "colours 'color'",
+                                                      "texture coordinates 'uv'", "materials (2)",
+                                                      "parts (2)"});
+  AttributeLayer heat{"heat", AttributeRole::Other, Interpolation::Linear, 1, {0.5f}, {}};
+  heat.of_corner.assign(6, AttributeId{0});
+  AttributeLayer second = mesh.layers[2];
+  second.name = "uv2";
+  mesh.layers.push_back(heat);
+  mesh.layers.push_back(second);
+  mesh.materials[0].base_color_texture = "bricks.png";
+  CHECK(export_report(mesh, ".OBJ").left_out == Words{"'heat'", "texture coordinates 'uv2'"});
+  CHECK(export_report(mesh, ".ply").left_out == Words{"the images that textures name"});
+  CHECK(export_report(mesh, ".glb").left_out == Words{});
+}
+
+TEST_CASE("attribute bytes of an STL come back") {
+  Mesh mesh = hard_box(1);
+  mesh.layers.push_back(
+      {"stl_attribute", AttributeRole::Other, Interpolation::Categorical, 1, {0, 65535, 12}, {}});
+  for (std::uint32_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
+    mesh.layers.back().of_corner.push_back(AttributeId{corner / 3 % 3});
+  }
+  CHECK(export_report(mesh, ".stl").left_out == std::vector<std::string>{"normals"});
+  const Mesh got = back(mesh, ".stl").mesh;
+  REQUIRE(got.layers.size() == 2);
+  for (std::size_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
+    const auto value = [&](const Mesh& m) {
+      return m.layers[1].value(m.layers[1].of_corner[corner])[0];
+    };
+    CHECK(value(got) == value(mesh));
+  }
+  mesh.layers.back().values[1] = 65536;  // has no place there
+  CHECK(export_report(mesh, ".stl").left_out.size() == 2);
+  CHECK(back(mesh, ".stl").mesh.layers.size() == 1);
 }
 
 TEST_CASE("categories of faces and other layers go through PLY") {
