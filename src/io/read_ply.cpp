@@ -393,7 +393,16 @@ class PlyReader {
     raw_.report.notes.push_back("colours divided by 255");
   }
 
+  static void tell_rounded(const PlyLayers& from, ImportReport& report) {
+    for (std::size_t l = 0; l < from.layers.size(); ++l) {
+      if (from.layers[l].role != AttributeRole::Other) continue;
+      from.rounded[l].tell(from.layers[l].name, report.notes);
+    }
+  }
+
   void finish() {
+    tell_rounded(vertices_, raw_.report);
+    tell_rounded(faces_, raw_.report);
     // Vertices' normals and colours go before faces'. Faces that strips made have no values.
     for (RawLayer& layer : vertices_.layers) {
       scale_float_colors(layer);

@@ -283,6 +283,16 @@ class Commands(tool.Case):
             self.assertEqual(json.loads(other.stdout)["origin"], [0, 0, 0])
             self.assertNotIn("written less", other.stderr)
 
+    def test_numbers_that_are_no_floats_are_told(self):
+        model = self.write("ids.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                           "property float y\nproperty float z\nelement face 1\n"
+                           "property list uchar int vertex_indices\nproperty int id\nend_header\n"
+                           "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 123456789\n")
+        made = self.run_tool("build", model, "-o", self.path("ids.crease"), "--json")
+        note = "1 values of 'id' rounded to floats, by 3 at most"
+        self.assertIn(note, json.loads(made.stdout)["import"]["notes"])
+        self.assertIn(note, made.stderr)
+
     def test_what_an_output_leaves_out_is_told(self):
         parts = self.json("info", self.built())["parts"]
 
