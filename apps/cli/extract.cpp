@@ -75,9 +75,14 @@ Json read_json(const ModelFile& file, const Model& model) {
 
 Result<Comparison> measure(const ModelFile& file, const Mesh& level, const LevelOptions& options,
                            const Common& common) {
-  const Result<Model> all = file.load({.is_mesh_only = true});
+  const Result<Model> all = file.load({.is_mesh_only = true, .part_names = false});
   if (!all.ok()) return all.failure();
   return measure_level(all->decoded.mesh, level, options.samples, common);
+}
+
+// An STL has none, so that nobody need read their names.
+bool has_parts(const std::filesystem::path& output) {
+  return ending_of(output) != ".stl";
 }
 
 struct ExtractedLevel {
@@ -95,8 +100,10 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
   asked.ratio = std::nullopt;
   const bool is_full =
       !asked.error && asked.triangles.value_or(file.triangle_count()) >= file.triangle_count();
-  Result<Model> model =
-      file.load({.triangles = asked.triangles, .is_one_level = true, .is_mesh_only = is_full});
+  Result<Model> model = file.load({.triangles = asked.triangles,
+                                   .is_one_level = true,
+                                   .is_mesh_only = is_full,
+                                   .part_names = has_parts(options.output)});
   if (!model.ok()) return model.failure();
   ExtractedLevel level;
   if (is_full) {
@@ -117,10 +124,11 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
 }
 
 // What of the file its meshes lack: parts go by their names, which lie at its end.
-std::vector<std::string> lost_parts(const ModelFile& file, const Mesh& mesh, const Common& common) {
+std::vector<std::string> lost_parts(const ModelFile& file, const Mesh& mesh,
+                                    const std::filesystem::path& output, const Common& common) {
   const std::size_t part_count = file.blocks().head().part_count;
   if (part_count == 0 || !mesh.parts.empty()) return {};
-  if (!file.blocks().has_parts()) {
+  if (has_parts(output) && !file.blocks().has_parts()) {
     log(common, file.name() + ": the names of its parts are missing: the file was cut");
   }
   return {"parts (" + std::to_string(part_count) + ")"};
@@ -155,7 +163,7 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
     const Status painted = add_images(options, file, extracted->mesh);
     if (!painted.ok()) return painted.failure();
     const Result<ExportReport> written =
-        write_mesh(level, options.output, common, lost_parts(file, level, common));
+        write_mesh(level, options.output, common, lost_parts(file, level, options.output, common));
     if (!written.ok()) return written.failure();
     exported = *written;
   }
@@ -193,7 +201,8 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
                             const Common& common) {
   const Result<Camera> camera = read_camera(options.view);
   if (!camera.ok()) return camera.failure();
-  Result<ViewedModel> model = load_viewed(file, *camera);
+  Result<ViewedModel> model =
+      load_viewed(file, *camera, {.view = *camera, .part_names = has_parts(options.output)});
   if (!model.ok()) return model.failure();
 
   Mesh seen = model->mesh.extract();
@@ -207,7 +216,7 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
   const Status painted = add_images(options, file, seen);
   if (!painted.ok()) return painted.failure();
   const Result<ExportReport> written =
-      write_mesh(seen, options.output, common, lost_parts(file, seen, common));
+      write_mesh(seen, options.output, common, lost_parts(file, seen, options.output, common));
   if (!written.ok()) return written.failure();
 
   Report report;
@@ -242,7 +251,7 @@ Result<Report> extract_levels(const ExtractArguments& options, const ModelFile& 
       extract_chain(mesh, *images, options.output, chain, options.level.samples, common);
   if (!report.ok()) return report;
   report->json["asked"] = asked_json(options);
-  report->json["left_out"] = lost_parts(file, model->decoded.mesh, common);
+  report->json["left_out"] = lost_parts(file, model->decoded.mesh, options.output, common);
   report->json.update(read_json(file, *model));
   return report;
 }

@@ -149,9 +149,10 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
                         const Common& common) {
   const Result<ModelFile> file = open_model(path, options.read, common);
   if (!file.ok()) return file.failure();
+  Detail detail{.part_names = false};
   // What was not read has no errors and no levels.
-  const bool needs_all = options.errors_of_positions || options.levels_of_positions;
-  Result<ViewedModel> model = load_viewed(*file, *options.view, needs_all);
+  if (!options.errors_of_positions && !options.levels_of_positions) detail.view = options.view;
+  Result<ViewedModel> model = load_viewed(*file, *options.view, detail);
   if (!model.ok()) return model.failure();
   bytes_read_ += model->bytes_read;
   const std::size_t full = file->triangle_count();
@@ -201,7 +202,7 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
   const std::size_t full_count = file->triangle_count();
   const std::vector<LevelOptions> levels = levels_of(options, full_count);
   const auto needed = options.errors_of_positions ? std::nullopt : triangles_needed(levels);
-  Result<Model> model = file->load({.triangles = needed});
+  Result<Model> model = file->load({.triangles = needed, .part_names = false});
   if (!model.ok()) return model.failure();
   bytes_read_ += model->bytes_read;
   Result<std::vector<ImageFile>> images = file->images(model->decoded.mesh.materials);
