@@ -8,7 +8,6 @@
 #include "cli/output.h"
 #include "cli/text.h"
 #include "cli/view.h"
-#include "crease/export.h"
 #include "crease/progressive_mesh.h"
 
 #include <algorithm>
@@ -76,9 +75,14 @@ Json read_json(const ModelFile& file, const Model& model) {
 
 Result<Comparison> measure(const ModelFile& file, const Mesh& level, const LevelOptions& options,
                            const Common& common) {
-  const Result<Model> all = file.load({.is_mesh_only = true});
+  const Result<Model> all = file.load({.is_mesh_only = true, .part_names = false});
   if (!all.ok()) return all.failure();
   return measure_level(all->decoded.mesh, level, options.samples, common);
+}
+
+// An STL has none, so that nobody need read their names.
+bool has_parts(const std::filesystem::path& output) {
+  return ending_of(output) != ".stl";
 }
 
 struct ExtractedLevel {
@@ -96,8 +100,10 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
   asked.ratio = std::nullopt;
   const bool is_full =
       !asked.error && asked.triangles.value_or(file.triangle_count()) >= file.triangle_count();
-  Result<Model> model =
-      file.load({.triangles = asked.triangles, .is_one_level = true, .is_mesh_only = is_full});
+  Result<Model> model = file.load({.triangles = asked.triangles,
+                                   .is_one_level = true,
+                                   .is_mesh_only = is_full,
+                                   .part_names = has_parts(options.output)});
   if (!model.ok()) return model.failure();
   ExtractedLevel level;
   if (is_full) {
@@ -115,6 +121,17 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
   level.error = larger(level.error, model->decoded.error);
   level.model = *std::move(model);
   return level;
+}
+
+// What of the file its meshes lack: parts go by their names, which lie at its end.
+std::vector<std::string> lost_parts(const ModelFile& file, const Mesh& mesh,
+                                    const std::filesystem::path& output, const Common& common) {
+  const std::size_t part_count = file.blocks().head().part_count;
+  if (part_count == 0 || !mesh.parts.empty()) return {};
+  if (has_parts(output) && !file.blocks().has_parts()) {
+    log(common, file.name() + ": the names of its parts are missing: the file was cut");
+  }
+  return {"parts (" + std::to_string(part_count) + ")"};
 }
 
 // Where the output has a place for them.
@@ -141,11 +158,14 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
     chosen.measured = *measured;
   }
   const bool refused = options.strict && !chosen.target_met;
+  ExportReport exported;
   if (!refused) {
     const Status painted = add_images(options, file, extracted->mesh);
     if (!painted.ok()) return painted.failure();
-    const Status written = export_mesh(level, options.output);
+    const Result<ExportReport> written =
+        write_mesh(level, options.output, common, lost_parts(file, level, options.output, common));
     if (!written.ok()) return written.failure();
+    exported = *written;
   }
 
   Report report;
@@ -158,6 +178,7 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
       {"target_met", chosen.target_met},
       {"error", to_json(extracted->error)},
       {"error_measured", chosen.measured ? measured_json(*chosen.measured) : Json(nullptr)}};
+  report.json.update(to_json(exported));
   report.json.update(read_json(file, extracted->model));
   report.text = options.output.string() + ": " + grouped(level.triangle_count()) + " of " +
                 grouped(file.triangle_count()) + " triangles, stopped by " +
@@ -180,7 +201,8 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
                             const Common& common) {
   const Result<Camera> camera = read_camera(options.view);
   if (!camera.ok()) return camera.failure();
-  Result<ViewedModel> model = load_viewed(file, *camera);
+  Result<ViewedModel> model =
+      load_viewed(file, *camera, {.view = *camera, .part_names = has_parts(options.output)});
   if (!model.ok()) return model.failure();
 
   Mesh seen = model->mesh.extract();
@@ -193,7 +215,8 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
   if (interrupted()) return interrupted_failure();
   const Status painted = add_images(options, file, seen);
   if (!painted.ok()) return painted.failure();
-  const Status written = export_mesh(seen, options.output);
+  const Result<ExportReport> written =
+      write_mesh(seen, options.output, common, lost_parts(file, seen, options.output, common));
   if (!written.ok()) return written.failure();
 
   Report report;
@@ -209,6 +232,7 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
                  {"bytes_read", model->bytes_read},
                  {"blocks_read", model->blocks_read},
                  {"file_bytes", file.blocks().head().file_bytes}};
+  report.json.update(to_json(*written));
   report.text = options.output.string() + ": " + grouped(seen.triangle_count()) + " of " +
                 grouped(file.triangle_count()) + " triangles for the view" + in_words(measured);
   return report;
@@ -227,6 +251,7 @@ Result<Report> extract_levels(const ExtractArguments& options, const ModelFile& 
       extract_chain(mesh, *images, options.output, chain, options.level.samples, common);
   if (!report.ok()) return report;
   report->json["asked"] = asked_json(options);
+  report->json["left_out"] = lost_parts(file, model->decoded.mesh, options.output, common);
   report->json.update(read_json(file, *model));
   return report;
 }

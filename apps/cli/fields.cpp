@@ -50,6 +50,30 @@ Json to_json(const ImportReport& report) {
           {"notes", report.notes}};
 }
 
+Json to_json(const ExportReport& report) {
+  const Vec3d& origin = report.origin;
+  return {{"origin", {origin.x, origin.y, origin.z}},
+          {"rounding", report.rounding},
+          {"left_out", report.left_out}};
+}
+
+std::vector<std::string> lines_of(const ExportReport& report, const std::filesystem::path& file) {
+  std::vector<std::string> lines;
+  if (!report.left_out.empty()) {
+    std::string words = report.left_out[0];
+    for (std::size_t i = 1; i < report.left_out.size(); ++i) {
+      words += (i + 1 < report.left_out.size() ? ", " : " and ") + report.left_out[i];
+    }
+    lines.push_back(file.string() + ": leaves out " + words);
+  }
+  if (report.origin != Vec3d{}) {
+    std::string line = file.string() + ": written less";
+    for (int i = 0; i < 3; ++i) line += " " + in_all_digits(report.origin[i]);
+    lines.push_back(line + ", as floats would lose too much so far from the origin");
+  }
+  return lines;
+}
+
 Json measured_json(const Comparison& c) {
   const Spread& to = c.distance.a_to_b;
   const Spread& from = c.distance.b_to_a;

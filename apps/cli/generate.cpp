@@ -2,10 +2,10 @@
 #include "crease/generate.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/fields.h"
 #include "cli/number_check.h"
 #include "cli/output.h"
 #include "cli/text.h"
-#include "crease/export.h"
 
 #include <filesystem>
 #include <memory>
@@ -20,13 +20,13 @@ struct GenerateArguments {
   CityOptions city;
 };
 
-Result<Report> run_generate(const GenerateArguments& options, const Common&) {
+Result<Report> run_generate(const GenerateArguments& options, const Common& common) {
   const Stopwatch watch;
   const Status writable = check_output(options.output, kMeshEndings, "shapes are", {});
   if (!writable.ok()) return writable.failure();
   const Mesh mesh = generate_city(options.city);
   if (interrupted()) return interrupted_failure();
-  const Status written = export_mesh(mesh, options.output);
+  const Result<ExportReport> written = write_mesh(mesh, options.output, common);
   if (!written.ok()) return written.failure();
 
   Report report;
@@ -34,6 +34,7 @@ Result<Report> run_generate(const GenerateArguments& options, const Common&) {
                  {"seed", options.city.seed},         {"triangles", mesh.triangle_count()},
                  {"vertices", mesh.vertex_count()},   {"parts", mesh.parts.size()},
                  {"seconds", watch.seconds()}};
+  report.json.update(to_json(*written));
   report.text = options.output.string() + ": " + grouped(mesh.triangle_count()) + " triangles, " +
                 grouped(mesh.vertex_count()) + " vertices, " + grouped(mesh.parts.size()) +
                 " parts, " + in_seconds(watch.seconds());

@@ -108,6 +108,7 @@ Result<Report> run_info(const InfoArguments& options, const Common& common) {
     decode.count_bits = true;
     const Result<DecodedModel> model = decode_model(file->blocks(), decode);
     if (!model.ok()) return model.failure();
+    if (!file->blocks().has_parts()) return file->blocks().read_parts().failure();
     report = file_report(*file, *model);
     const Result<std::vector<ImageEntry>> images = file->blocks().read_image_list();
     if (!images.ok()) return images.failure();

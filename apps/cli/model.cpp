@@ -194,6 +194,7 @@ Result<Model> ModelFile::load(const Detail& detail) const {
     if (detail.is_one_level) options.contracted_bands = 1;
   }
   if (detail.is_mesh_only) options.contracted_bands = 0;
+  options.part_names = detail.part_names;
   ViewParameters view;
   if (detail.view) {
     view.camera = *detail.view;
@@ -266,7 +267,7 @@ Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& opt
   if (is_crease_file(path)) {
     const Result<ModelFile> file = open_model(path, options, common);
     if (!file.ok()) return file.failure();
-    Result<Model> model = file->load({.is_mesh_only = true});
+    Result<Model> model = file->load({.is_mesh_only = true, .part_names = false});
     if (!model.ok()) return model.failure();
     return std::move(model->decoded.mesh);
   }

@@ -46,6 +46,8 @@ struct Detail {
   bool is_one_level = false;               // the finest of those alone
   std::optional<Camera> view{};            // the blocks that it needs
   bool is_mesh_only = false;               // the finest mesh of these blocks, and no level of it
+  // Without their names, which lie at the file's end, the mesh has no parts.
+  bool part_names = true;
 };
 
 // The coarsest band whose fine end has as many triangles: what is finer is not needed.
@@ -101,6 +103,7 @@ DecodeOptions decode_options(const Common& common);
 
 Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOptions& options,
                              const Common& common);
+// To measure and to draw: of a .crease without parts.
 Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& options,
                        const Common& common);
 

@@ -1,5 +1,8 @@
 #include "cli/output.h"
 
+#include "cli/console.h"
+#include "cli/fields.h"
+
 #include <algorithm>
 #include <system_error>
 
@@ -34,6 +37,15 @@ Status check_output(const std::filesystem::path& output, std::span<const std::st
                 output.string() + ": " + std::string(what) + " written as " + in_words(endings));
   }
   return keep_inputs(output, inputs);
+}
+
+Result<ExportReport> write_mesh(const Mesh& mesh, const std::filesystem::path& output,
+                                const Common& common, std::span<const std::string> lost) {
+  Result<ExportReport> written = export_mesh(mesh, output);
+  if (!written.ok()) return written;
+  written->left_out.insert(written->left_out.end(), lost.begin(), lost.end());
+  for (const std::string& line : lines_of(*written, output)) log(common, line);
+  return written;
 }
 
 Status keep_inputs(const std::filesystem::path& output,

@@ -1,8 +1,11 @@
-// What a command may write to.
+// What a command may write to, and meshes written there.
 //
 //   Status fine = check_output(options.output, kMeshEndings, "levels are", {&options.file, 1});
 #pragma once
 
+#include "cli/command.h"
+#include "crease/export.h"
+#include "crease/mesh.h"
 #include "crease/result.h"
 
 #include <filesystem>
@@ -26,5 +29,10 @@ Status keep_inputs(const std::filesystem::path& output,
 // `what` begins the message: "levels are".
 Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
                     std::string_view what, std::span<const std::filesystem::path> inputs);
+
+// export_mesh(), and what the file does not say is logged, `lost` with it: what the mesh lacks
+// already, in the words of ExportReport::left_out.
+Result<ExportReport> write_mesh(const Mesh& mesh, const std::filesystem::path& output,
+                                const Common& common, std::span<const std::string> lost = {});
 
 }  // namespace crease::cli

@@ -113,6 +113,7 @@ void Panels::add(Source source, const std::string& title, Json json, const Panel
   if (options.titles) panel.title = title;
   panel.level_share = share;
   panel.error_of_position = kept.errors;
+  panel.level_of_position = kept.levels;
   panels_.push_back(std::move(panel));
   json["title"] = title;
   json_.push_back(std::move(json));
@@ -136,18 +137,22 @@ void Panels::add_level(ProgressiveMesh mesh, const Mesh& full, std::size_t full_
       {{"triangles", triangles}, {"control", false}}, options, share);
 }
 
-void Panels::add_control(const Mesh& level, const std::string& name, const PanelOptions& options) {
+void Panels::add_control(const Mesh& level, const std::string& name, const PanelOptions& options,
+                         float share) {
   Source source;
   source.arrays = std::make_unique<MeshDrawArrays>(with_averaged_normals(level));
   add(std::move(source), name + ", one normal a vertex",
-      {{"triangles", level.triangle_count()}, {"control", true}}, options, 0.0f);
+      {{"triangles", level.triangle_count()}, {"control", true}}, options, share);
 }
 
 Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& options,
                         const Common& common) {
   const Result<ModelFile> file = open_model(path, options.read, common);
   if (!file.ok()) return file.failure();
-  Result<ViewedModel> model = load_viewed(*file, *options.view);
+  Detail detail{.part_names = false};
+  // What was not read has no errors and no levels.
+  if (!options.errors_of_positions && !options.levels_of_positions) detail.view = options.view;
+  Result<ViewedModel> model = load_viewed(*file, *options.view, detail);
   if (!model.ok()) return model.failure();
   bytes_read_ += model->bytes_read;
   const std::size_t full = file->triangle_count();
@@ -158,16 +163,19 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
   if (!images.ok()) return images.failure();
   source.images = *std::move(images);
   if (options.errors_of_positions) source.errors = errors_in_pixels(mesh, *options.view);
+  if (options.levels_of_positions) source.levels = mesh.level_of_position();
   const std::size_t triangles = mesh.triangle_count();
   const std::size_t coarsest = mesh.hierarchy().vertices.coarse_triangles().size();
   const std::string name = file->name();
   Mesh shown = options.control ? mesh.extract() : Mesh{};
   shown.images = source.images;
   add(std::move(source), name + ": " + grouped(triangles) + " of " + grouped(full) + " triangles",
-      {{"triangles", triangles}, {"full_triangles", full}, {"control", false}}, options,
-      level_share(full, coarsest, triangles));
-  if (options.control) add_control(shown, name, options);
-  columns_ = std::max(columns_, options.control ? 2 : 1);
+      {{"triangles", triangles},
+       {"full_triangles", full},
+       {"control", false},
+       {"camera", Json::parse(format_camera(*options.view))}},
+      options, level_share(full, coarsest, triangles));
+  if (options.control) add_control(shown, name, options, panels_.back().level_share);
   return Done{};
 }
 
@@ -185,8 +193,7 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
     const std::string name = path.filename().string();
     add(std::move(source), name + ": " + grouped(mesh->triangle_count()) + " triangles",
         {{"triangles", mesh->triangle_count()}, {"control", false}}, options, 0.0f);
-    if (options.control) add_control(*mesh, name, options);
-    columns_ = std::max(columns_, options.control ? 2 : 1);
+    if (options.control) add_control(*mesh, name, options, 0.0f);
     return Done{};
   }
 
@@ -195,7 +202,7 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
   const std::size_t full_count = file->triangle_count();
   const std::vector<LevelOptions> levels = levels_of(options, full_count);
   const auto needed = options.errors_of_positions ? std::nullopt : triangles_needed(levels);
-  Result<Model> model = file->load({.triangles = needed});
+  Result<Model> model = file->load({.triangles = needed, .part_names = false});
   if (!model.ok()) return model.failure();
   bytes_read_ += model->bytes_read;
   Result<std::vector<ImageFile>> images = file->images(model->decoded.mesh.materials);
@@ -204,22 +211,26 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
   const Mesh& full = model->decoded.mesh;
   const ProgressiveArraysPtr arrays =
       build_progressive_arrays(model->decoded.mesh, model->decoded.sequence);
-  std::vector<std::pair<std::string, Mesh>> controls;
+  struct Control {
+    std::string name;
+    Mesh mesh;
+    float level_share = 0;
+  };
+  std::vector<Control> controls;
   for (const LevelOptions& level : levels) {
     ProgressiveMesh mesh(arrays);
     const Result<Chosen> chosen = choose_level(mesh, full, level, common);
     if (!chosen.ok()) return chosen.failure();
     const std::string name = level_name(mesh, full_count);
     if (options.control) {
-      controls.emplace_back(name, mesh.extract());
-      controls.back().second.images = full.images;
+      controls.push_back({name, mesh.extract()});
+      controls.back().mesh.images = full.images;
     }
     add_level(std::move(mesh), full, full_count, name, options, common);
+    if (options.control) controls.back().level_share = panels_.back().level_share;
     if (interrupted()) return interrupted_failure();
   }
-  for (const auto& [name, mesh] : controls) add_control(mesh, name, options);
-  columns_ = std::max(columns_,
-                      static_cast<int>(levels.size() == 1 && options.control ? 2 : levels.size()));
+  for (const Control& c : controls) add_control(c.mesh, c.name, options, c.level_share);
   return Done{};
 }
 

@@ -6,6 +6,8 @@
 #include "crease/adaptive_mesh.h"
 #include "crease/render.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -23,9 +25,14 @@ struct PanelOptions {
   std::optional<Camera> view;  // instead of both: one panel, as fine as this camera needs it
   bool control = false;        // after the levels, each again with one averaged normal a vertex
   bool titles = true;
-  // For Coloring::Error: measured distances; of a view, pixels on its screen.
-  bool errors_of_positions = false;
+  // For Coloring::Error: measured distances; of a view, pixels on its screen. For Coloring::Level.
+  bool errors_of_positions = false, levels_of_positions = false;
   ReadOptions read;
+
+  std::size_t level_count() const { return std::max<std::size_t>(1, ratios.size()); }
+  std::size_t panel_count() const { return level_count() * (control ? 2 : 1); }  // of a file
+  // So that each control stands below its level, and a single one beside it.
+  std::size_t control_columns() const { return level_count() == 1 ? 2 : level_count(); }
 };
 
 class Panels {
@@ -34,9 +41,7 @@ class Panels {
                   const Common& common);
 
   std::span<const Panel> list() const { return panels_; }
-  const Json& json() const { return json_; }  // one object a panel
-  // So that each control stands below its level.
-  int columns() const { return columns_; }
+  const Json& json() const { return json_; }                // one object a panel
   std::uint64_t bytes_read() const { return bytes_read_; }  // of .crease files
 
  private:
@@ -45,7 +50,7 @@ class Panels {
     std::unique_ptr<ProgressiveMesh> progressive;
     std::unique_ptr<MeshDrawArrays> arrays;
     std::unique_ptr<AdaptiveMesh> adaptive;
-    std::vector<float> errors;
+    std::vector<float> errors, levels;
     std::vector<ImageFile> images;
   };
   Status add_view(const std::filesystem::path& path, const PanelOptions& options,
@@ -53,14 +58,14 @@ class Panels {
   // `full` has the images.
   void add_level(ProgressiveMesh mesh, const Mesh& full, std::size_t full_count,
                  const std::string& name, const PanelOptions& options, const Common& common);
-  void add_control(const Mesh& level, const std::string& name, const PanelOptions& options);
+  void add_control(const Mesh& level, const std::string& name, const PanelOptions& options,
+                   float level_share);
   void add(Source source, const std::string& title, Json json, const PanelOptions& options,
            float level_share);
 
   std::deque<Source> sources_;
   std::vector<Panel> panels_;
   Json json_ = Json::array();
-  int columns_ = 0;
   std::uint64_t bytes_read_ = 0;
 };
 

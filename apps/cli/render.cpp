@@ -92,8 +92,18 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
   Result<RenderOptions> render = render_options(options);
   if (!render.ok()) return render.failure();
   options.panels.errors_of_positions = render->coloring == Coloring::Error;
-  if (!options.has_level())
-    options.panels.view = options.outside ? render->frustum : render->camera;
+  options.panels.levels_of_positions = render->coloring == Coloring::Level;
+  if (render->columns == 0 && options.panels.control) {
+    render->columns = static_cast<int>(options.panels.control_columns());
+  }
+  if (options.outside) {
+    options.panels.view = render->frustum;
+  } else if (render->camera && !options.has_level()) {
+    const std::size_t panel_count = options.files.size() * options.panels.panel_count();
+    Result<Camera> seen = camera_of_panel(panel_count, options.panels.titles, *render);
+    if (!seen.ok()) return seen.failure();
+    options.panels.view = *seen;
+  }
 
   Panels panels;
   for (const std::filesystem::path& file : options.files) {
@@ -102,7 +112,6 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
     if (interrupted()) return interrupted_failure();
   }
   render->on_note = [&common](const std::string& note) { log(common, note); };
-  if (render->columns == 0 && options.panels.control) render->columns = panels.columns();
   const Result<Image> image = render_panels(panels.list(), *render);
   if (!image.ok()) return image.failure();
   if (interrupted()) return interrupted_failure();

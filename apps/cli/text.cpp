@@ -74,6 +74,11 @@ std::string in_bytes(std::uint64_t bytes) {
 std::string in_length(double length) {
   return format("%.4g", length);
 }
+std::string in_all_digits(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
 std::string in_percent(double share) {
   return format("%.4g %%", 100 * share);
 }

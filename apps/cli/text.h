@@ -16,6 +16,7 @@ namespace crease::cli {
 std::string grouped(std::uint64_t count);   // 1 234 567
 std::string in_bytes(std::uint64_t bytes);  // 12.3 MB
 std::string in_length(double length);       // four significant digits
+std::string in_all_digits(double number);   // as many as it has
 std::string in_percent(double share);       // 0.2 -> "20 %"
 std::string in_seconds(double seconds);     // 1.23 s
 std::string in_degrees(double degrees);

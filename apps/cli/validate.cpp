@@ -40,7 +40,7 @@ Status check_model(const ModelHierarchy& model, Json& found) {
 
 Status validate_hierarchy(const ModelFile& file, Json& found, std::vector<std::string>& problems) {
   const Stopwatch watch;
-  const Result<ModelHierarchy> model = load_hierarchy(file, std::nullopt);
+  const Result<ModelHierarchy> model = load_hierarchy(file, {});
   if (!model.ok()) {
     if (model.failure().error == Error::NoTriangles) return Done{};
     return model.failure();

@@ -22,8 +22,8 @@ Result<Camera> read_camera(const std::filesystem::path& path) {
   return camera;
 }
 
-Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const std::optional<Camera>& view) {
-  Result<Model> model = file.load({.view = view});
+Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const Detail& detail) {
+  Result<Model> model = file.load(detail);
   if (!model.ok()) return model.failure();
   if (file.triangle_count() == 0) {
     return fail(Error::NoTriangles, file.blocks().source().name() + ": no triangles");
@@ -40,8 +40,8 @@ Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const std::optional
                         decoded.blocks.size()};
 }
 
-Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view) {
-  Result<ModelHierarchy> model = load_hierarchy(file, view);
+Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view, const Detail& detail) {
+  Result<ModelHierarchy> model = load_hierarchy(file, detail);
   if (!model.ok()) return model.failure();
   AdaptiveMesh mesh(std::move(model->hierarchy));
   mesh.update({.camera = view});

@@ -3,7 +3,7 @@
 //
 //   Result<Camera> camera = read_camera("camera.json");
 //   Result<ModelFile> file = open_model("city.obj", read, common);
-//   Result<ViewedModel> model = load_viewed(*file, *camera);
+//   Result<ViewedModel> model = load_viewed(*file, *camera, {.view = *camera});
 //   model->mesh.update({.camera = *camera});
 #pragma once
 
@@ -32,8 +32,7 @@ struct ModelHierarchy {
   std::size_t blocks_read = 0;
 };
 
-// Of the blocks that `view` needs; without one of all.
-Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const std::optional<Camera>& view);
+Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const Detail& detail);
 
 struct ViewedModel {
   AdaptiveMesh mesh;
@@ -41,6 +40,8 @@ struct ViewedModel {
   std::uint64_t bytes_read = 0;
   std::size_t blocks_read = 0;
 };
-Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view);
+// As fine as `view` needs it. With that view as its detail it is made of the blocks that it needs;
+// of all of them its errors and levels are known everywhere.
+Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view, const Detail& detail);
 
 }  // namespace crease::cli

@@ -89,6 +89,9 @@ class AdaptiveMesh {
 
   // Per position of the draw list its surface or line error, whichever is larger: for pictures.
   std::vector<float> error_of_position() const;
+  // And how coarse it is: 0 where the input's vertices stand, 1 where as many of them are one as in
+  // the coarsest cut on average, even steps for even factors. Time O(splits of the hierarchy).
+  std::vector<float> level_of_position() const;
 
   // What is active as a mesh of its own, all attribute layers, materials and parts; triangles in
   // the hierarchy's order. Time O(active).

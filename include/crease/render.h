@@ -41,7 +41,7 @@ enum class Coloring : std::uint8_t {
   // light.
   Shaded,
   Kind,   // SN, FN and NSN triangles in three colours, shaded
-  Level,  // by `Panel::level_share`
+  Level,  // by `Panel::level_of_position`, or `level_share`
   Error,  // by `Panel::error_of_position` on one scale for all panels (blue small, red large)
 };
 
@@ -49,6 +49,8 @@ struct Panel {
   DrawList list{};
   std::string title;      // drawn at the panel's top; empty: nothing
   float level_share = 0;  // for Coloring::Level: 0 full resolution .. 1 base
+  // The same for each position of the list, where levels differ; or empty.
+  std::span<const float> level_of_position{};
   // For Coloring::Error: one value per position of the list, in RenderOptions::error_unit; or
   // empty.
   std::span<const float> error_of_position{};
@@ -90,6 +92,12 @@ struct Image {
 // NotSupported when no EGL device can draw, saying what was tried, and with BadValue for a size or
 // a list that cannot be meant. Threads: call from any; an OpenGL context that is current stays so.
 Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& options);
+
+// What each of `panel_count` panels shows of `options.camera`, which must be there: a camera of the
+// panel's own shape, in its own pixels. A cut made for it is right everywhere in the picture.
+// Fails with BadValue for a size that cannot be meant.
+Result<Camera> camera_of_panel(std::size_t panel_count, bool has_titles,
+                               const RenderOptions& options);
 Status write_png(const Image& image, const std::filesystem::path& path);
 // The bytes that write_png() writes. Fails with BadValue for an image without all its pixels.
 Result<std::vector<std::byte>> encode_png(const Image& image);

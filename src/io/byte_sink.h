@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,10 +15,8 @@ namespace crease {
 
 class ByteSink {
  public:
-  void text(std::string_view s) {
-    const auto* bytes = reinterpret_cast<const std::byte*>(s.data());
-    bytes_.insert(bytes_.end(), bytes, bytes + s.size());
-  }
+  void bytes(std::span<const std::byte> b) { bytes_.insert(bytes_.end(), b.begin(), b.end()); }
+  void text(std::string_view s) { bytes(std::as_bytes(std::span(s))); }
   // The shortest text that reads back as the same number.
   template <typename Number>
   void number(Number x) {

@@ -2,8 +2,10 @@
 
 #include "base/output_file.h"
 #include "crease/write_file.h"
+#include "io/float_positions.h"
 #include "io/formats.h"
 #include "io/images.h"
+#include "io/left_out.h"
 
 #include <algorithm>
 #include <cctype>
@@ -89,14 +91,32 @@ Status export_obj(const Mesh& mesh, const std::filesystem::path& path) {
 
 }  // namespace
 
-Status export_mesh(const Mesh& mesh, const std::filesystem::path& path) {
+ExportReport export_report(const Mesh& mesh, std::string_view extension) {
+  const std::string ending = lower_case(std::string(extension));
+  ExportReport report;
+  report.left_out = left_out(mesh, ending);
+  if (ending == ".stl") {
+    report.origin = round_origin(mesh);
+    report.rounding = float_rounding(mesh, report.origin);
+  }
+  if (ending == ".glb") report.rounding = float_rounding(mesh, middle_origin(mesh));
+  return report;
+}
+
+Result<ExportReport> export_mesh(const Mesh& mesh, const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
-  if (lower_case(extension) == ".obj" && !mesh.materials.empty()) return export_obj(mesh, path);
+  if (lower_case(extension) == ".obj" && !mesh.materials.empty()) {
+    const Status written = export_obj(mesh, path);
+    if (!written.ok()) return written.failure();
+    return export_report(mesh, extension);
+  }
   const Result<std::vector<std::byte>> bytes = bytes_of(mesh, extension);
   if (!bytes.ok()) {
     return fail(bytes.failure().error, path.string() + ": " + bytes.failure().message);
   }
-  return write_file(path, *bytes);
+  const Status written = write_file(path, *bytes);
+  if (!written.ok()) return written.failure();
+  return export_report(mesh, extension);
 }
 
 }  // namespace crease

@@ -250,6 +250,12 @@ std::string shortest(double x) {
 
 }  // namespace
 
+void Rounded::tell(const std::string& layer, std::vector<std::string>& notes) const {
+  if (count == 0) return;
+  notes.push_back(std::to_string(count) + " values of '" + layer + "' rounded to floats, by " +
+                  shortest(most) + " at most");
+}
+
 Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const std::string& name) {
   Imported imported;
   Mesh& mesh = imported.mesh;

@@ -52,6 +52,12 @@ Result<RawMesh> read_off(const Source& source);
 Result<RawMesh> read_gltf(const Source& source);      // .gltf, .glb, .b3dm, told by the first bytes
 Result<RawMesh> read_cityjson(const Source& source);  // CityJSON and CityJSONSeq
 
+// The header of an STL written here; behind it, what was taken off all positions: " less X Y Z".
+inline constexpr std::string_view kStlHeader = "binary STL, written by crease";
+inline constexpr std::string_view kStlLess = " less";
+// The layer of its facets' attribute bytes.
+inline constexpr std::string_view kStlAttribute = "stl_attribute";
+
 // `mtl_name` is the material library that the OBJ refers to; empty: none.
 std::vector<std::byte> write_obj(const Mesh& mesh, std::string_view mtl_name);
 // `image_files`: what the mesh's images are called in the library.

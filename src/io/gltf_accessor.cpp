@@ -319,6 +319,17 @@ Result<GltfReader::Floats> GltfReader::given_as(const Floats& given, const Layou
   return floats;
 }
 
+// Of which some may be no floats.
+Result<GltfReader::Floats> GltfReader::large_integers(const Json& accessor, const Layout& layout,
+                                                      const std::string& place) {
+  const Result<std::vector<std::uint32_t>> values = read<std::uint32_t>(accessor, layout, place);
+  if (!values.ok()) return values.failure();
+  Floats floats{{}, layout.components, true};
+  floats.values.reserve(values->size());
+  for (const std::uint32_t x : *values) floats.values.push_back(floats.rounded.to_float(x));
+  return floats;
+}
+
 Result<GltfReader::Floats> GltfReader::floats(const Json& accessor_index,
                                               std::size_t min_components,
                                               std::size_t max_components,
@@ -337,6 +348,9 @@ Result<GltfReader::Floats> GltfReader::floats(const Json& accessor_index,
   }
   if (const auto given = given_floats_.find(*index); given != given_floats_.end()) {
     return given_as(given->second, *layout, here);
+  }
+  if (layout->component_type == kUnsignedInt && !layout->normalized) {
+    return large_integers(accessors[*index], *layout, here);
   }
   Result<std::vector<float>> values = read<float>(accessors[*index], *layout, here);
   if (!values.ok()) return values.failure();

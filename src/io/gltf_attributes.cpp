@@ -103,6 +103,7 @@ void GltfLayers::append(Layer& layer, const GltfReader::Floats& floats,
                         const std::vector<Transform>& transforms) {
   std::vector<float>& out = layer.raw.values;
   const std::size_t count = floats.count(), dimension = layer.raw.dimension;
+  layer.rounded.add(floats.rounded);
   for (const Transform& transform : transforms) {
     const std::size_t begin = out.size();
     out.resize(begin + count * dimension, fill_of(layer.raw));
@@ -183,6 +184,7 @@ void GltfLayers::finish(RawMesh& raw) {
         for (std::uint32_t v : triangle) layer.raw.of_corner.push_back(has_value[v] ? v : kNone);
       }
     }
+    layer.rounded.tell(layer.raw.name, raw.report.notes);
     raw.layers.push_back(std::move(layer.raw));
   }
   for (const auto& [semantic, count] : ignored_) {

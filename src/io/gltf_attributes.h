@@ -44,6 +44,7 @@ class GltfLayers {
   struct Layer {
     std::string semantic;  // "TEXCOORD_0"
     RawLayer raw;
+    Rounded rounded;
     std::vector<std::pair<std::size_t, std::size_t>> missing;  // ranges of vertices without a value
   };
 

@@ -58,6 +58,7 @@ class GltfReader {
     std::vector<float> values;
     std::size_t components = 0;  // a value
     bool integers = false;       // stored as integers and not normalized
+    Rounded rounded{};           // those of them
     std::size_t count() const { return components == 0 ? 0 : values.size() / components; }
   };
   Result<Floats> floats(const Json& accessor_index, std::size_t min_components,
@@ -105,6 +106,8 @@ class GltfReader {
   Result<std::span<const std::byte>> buffer(std::size_t index, const std::string& place);
   // What `range` has of its buffer: a bufferView, or the extension that compresses one.
   Result<std::span<const std::byte>> bytes_of(const Json& range, const std::string& place);
+  Result<Floats> large_integers(const Json& accessor, const Layout& layout,
+                                const std::string& place);
   Result<Floats> given_as(const Floats& given, const Layout& layout,
                           const std::string& place) const;
   Result<View> view_of(const Json& owner, const std::string& place, std::size_t count,

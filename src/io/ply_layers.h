@@ -20,6 +20,7 @@ struct PlyTarget {
 // The layers of one element, vertex or face, and where each property goes.
 struct PlyLayers {
   std::vector<RawLayer> layers;
+  std::vector<Rounded> rounded;    // of each; what colours and normals lose is not told
   std::vector<PlyTarget> targets;  // one a property
   std::vector<float> row;          // values of all layers, one layer after another
   std::vector<std::size_t> begin;  // of each layer in `row`
@@ -28,9 +29,10 @@ struct PlyLayers {
     begin.push_back(row.size());
     row.resize(row.size() + layer.dimension, 0.0f);
     layers.push_back(std::move(layer));
+    rounded.emplace_back();
   }
   void set(const PlyTarget& target, double x) {
-    row[begin[target.layer] + target.component] = static_cast<float>(x * target.scale);
+    row[begin[target.layer] + target.component] = rounded[target.layer].to_float(x * target.scale);
   }
   void keep_row() {
     for (std::size_t l = 0; l < layers.size(); ++l) {

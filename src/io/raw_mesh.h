@@ -16,7 +16,10 @@
 #include "crease/mesh.h"
 #include "crease/vec.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -52,6 +55,29 @@ inline RawLayer texcoord_layer(std::string name, RawLayer::Per per) {
 inline RawLayer color_layer(RawLayer::Per per, std::uint32_t dimension) {
   return {"color", AttributeRole::Color, Interpolation::Linear, per, dimension, {}, {}};
 }
+
+// Numbers of a file that are no floats, which the values of a layer are: a whole number beyond
+// 2^24, most doubles.
+struct Rounded {
+  std::size_t count = 0;
+  double most = 0;  // that one of them is off by
+
+  float to_float(double x) {
+    const auto rounded = static_cast<float>(x);
+    const double off = std::abs(static_cast<double>(rounded) - x);
+    if (off > 0 && std::isfinite(off)) {  // others are bad values
+      ++count;
+      most = std::max(most, off);
+    }
+    return rounded;
+  }
+  void add(const Rounded& other) {
+    count += other.count;
+    most = std::max(most, other.most);
+  }
+  // For the notes of an import, if there are any.
+  void tell(const std::string& layer, std::vector<std::string>& notes) const;
+};
 
 struct RawMesh {
   std::vector<Vec3d> positions;  // stored vertices, model units

@@ -6,6 +6,7 @@
 #include "io/ply_body.h"
 #include "io/ply_header.h"
 #include "io/ply_layers.h"
+#include "io/ply_names.h"
 
 #include <algorithm>
 #include <array>
@@ -392,7 +393,16 @@ class PlyReader {
     raw_.report.notes.push_back("colours divided by 255");
   }
 
+  static void tell_rounded(const PlyLayers& from, ImportReport& report) {
+    for (std::size_t l = 0; l < from.layers.size(); ++l) {
+      if (from.layers[l].role != AttributeRole::Other) continue;
+      from.rounded[l].tell(from.layers[l].name, report.notes);
+    }
+  }
+
   void finish() {
+    tell_rounded(vertices_, raw_.report);
+    tell_rounded(faces_, raw_.report);
     // Vertices' normals and colours go before faces'. Faces that strips made have no values.
     for (RawLayer& layer : vertices_.layers) {
       scale_float_colors(layer);
@@ -412,7 +422,7 @@ class PlyReader {
         layer.name = "face_" + layer.name;
         layer.role = AttributeRole::Other;
       }
-      if (take_material_index(layer)) continue;
+      if (take_index(layer)) continue;
       raw_.layers.push_back(std::move(layer));
     }
     if (!uv_.empty()) {
@@ -431,43 +441,43 @@ class PlyReader {
     }
   }
 
-  // "comment TextureFile NAME", as MeshLab writes; "comment material INDEX NAME", as crease writes.
-  std::vector<Material> materials_named_in_comments(std::string_view word) const {
-    std::vector<Material> materials;
-    for (const std::string& comment : header_.comments) {
-      Line line{comment.data(), comment.data() + comment.size(), 0};
-      if (line.word() != word) continue;
-      if (word == "TextureFile") {
-        std::string name(line.rest());
-        materials.push_back({name, {1, 1, 1, 1}, name});
-      } else if (std::int64_t index;
-                 line.integer(index) && index == static_cast<std::int64_t>(materials.size())) {
-        materials.push_back({std::string(line.rest()), {1, 1, 1, 1}, {}});
-      }
+  // Of each triangle, by its face's value, if all are below `count`; else empty.
+  template <typename Id>
+  std::vector<Id> ids_of_triangles(const RawLayer& layer, std::size_t count) const {
+    for (float x : layer.values) {
+      if (!(x >= 0) || x >= static_cast<float>(count)) return {};
     }
-    return materials;
+    std::vector<Id> ids;
+    for (std::uint32_t f : raw_.face_of_triangle) {
+      ids.push_back(Id{static_cast<std::uint32_t>(layer.values[f])});
+    }
+    return ids;
   }
 
-  // An integer per face that the comments give names for.
-  bool take_material_index(const RawLayer& layer) {
-    const bool is_index = layer.name == "material_index", is_texture = layer.name == "texnumber";
-    if (!is_index && !is_texture) return false;
+  // An integer per face that the comments give names for. Where materials are told, the numbers of
+  // their textures say nothing new.
+  bool take_index(const RawLayer& layer) {
+    if (layer.name == kPartIndex) {
+      std::vector<std::string> parts = parts_in(header_.comments);
+      raw_.part_of_triangle = ids_of_triangles<PartId>(layer, parts.size());
+      if (raw_.part_of_triangle.empty()) return false;
+      raw_.parts = std::move(parts);
+      return true;
+    }
+    const bool is_index = layer.name == kMaterialIndex;
+    if (!is_index && layer.name != kTextureIndex) return false;
+    if (!is_index && !raw_.materials.empty()) return true;
     std::vector<Material> materials =
-        materials_named_in_comments(is_index ? "material" : "TextureFile");
-    for (float x : layer.values) {
-      if (!(x >= 0) || x >= static_cast<float>(materials.size())) return false;
-    }
+        is_index ? materials_in(header_.comments) : textures_in(header_.comments);
+    raw_.material_of_triangle = ids_of_triangles<MaterialId>(layer, materials.size());
+    if (raw_.material_of_triangle.empty()) return false;
     raw_.materials = std::move(materials);
-    raw_.material_of_triangle.clear();
-    for (std::uint32_t f : raw_.face_of_triangle) {
-      raw_.material_of_triangle.push_back(MaterialId{static_cast<std::uint32_t>(layer.values[f])});
-    }
     return true;
   }
 
   void use_only_texture() {
     if (!raw_.materials.empty()) return;
-    std::vector<Material> textures = materials_named_in_comments("TextureFile");
+    std::vector<Material> textures = textures_in(header_.comments);
     if (textures.size() != 1) return;
     raw_.materials = std::move(textures);
     raw_.material_of_triangle.assign(raw_.triangles.size(), MaterialId{0});

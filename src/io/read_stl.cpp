@@ -26,6 +26,20 @@ double f32_at(std::span<const std::byte> bytes, std::size_t offset) {
   return static_cast<double>(std::bit_cast<float>(u32_at(bytes, offset)));
 }
 
+// What the writer here took off all positions (write_stl.cpp); of other files zero.
+Vec3d origin_in(std::string_view header) {
+  if (!header.starts_with(kStlHeader)) return {};
+  header.remove_prefix(kStlHeader.size());
+  if (!header.starts_with(kStlLess)) return {};
+  header.remove_prefix(kStlLess.size());
+  Line line{header.data(), header.data() + header.size()};
+  Vec3d origin;
+  for (int i = 0; i < 3; ++i) {
+    if (!line.number(origin[i])) return {};
+  }
+  return origin;
+}
+
 void add_triangle(RawMesh& raw) {
   const auto first = static_cast<std::uint32_t>(raw.positions.size() - 3);
   raw.triangles.push_back({first, first + 1, first + 2});
@@ -36,7 +50,7 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
   raw.report.format = "binary STL";
   raw.positions.reserve(3 * facet_count);
   raw.triangles.reserve(facet_count);
-  RawLayer attribute{"stl_attribute",
+  RawLayer attribute{std::string(kStlAttribute),
                      AttributeRole::Other,
                      Interpolation::Categorical,
                      RawLayer::Per::Face,
@@ -44,12 +58,14 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
                      {},
                      {}};
   bool has_attribute = false;
+  const Vec3d origin = origin_in(source.text().substr(0, kHeaderBytes - 4));
+  if (origin != Vec3d{}) raw.report.notes.push_back("moved by what its header says it is less");
   for (std::size_t f = 0; f < facet_count; ++f) {
     const std::size_t facet = kHeaderBytes + kFacetBytes * f;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t at = facet + 12 + 12 * c;
-      const Vec3d p{f32_at(source.bytes, at), f32_at(source.bytes, at + 4),
-                    f32_at(source.bytes, at + 8)};
+      const Vec3d p = origin + Vec3d{f32_at(source.bytes, at), f32_at(source.bytes, at + 4),
+                                     f32_at(source.bytes, at + 8)};
       if (!is_position(p)) {
         return fail_at_byte(Error::BadValue, source, at,
                             "corner of facet " + std::to_string(f) + " is " + fault_of(p));

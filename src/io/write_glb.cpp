@@ -1,6 +1,7 @@
 // GLB: one primitive for every part and material, split vertices, floats around one translation,
 // images behind them.
 #include "crease/export.h"
+#include "io/float_positions.h"
 #include "io/formats.h"
 #include "io/glb_materials.h"
 #include "io/split_vertices.h"
@@ -110,20 +111,6 @@ AttributeLayer flat_normals(const Mesh& mesh) {
   return layer;
 }
 
-// Zero where floats hold every position exactly, else the middle of the bounding box.
-Vec3d origin_of(const Mesh& mesh) {
-  Vec3d low = mesh.positions[0], high = low;
-  bool exact = true;
-  for (const Vec3d& p : mesh.positions) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-      exact = exact && double(float(p[k])) == p[k];
-    }
-  }
-  return exact ? Vec3d{} : low + (high - low) * 0.5;
-}
-
 class GlbWriter {
  public:
   // Adds a mesh and returns its root node.
@@ -138,7 +125,7 @@ class GlbWriter {
     for (const AttributeLayer& layer : mesh.layers) layers.push_back(&layer);
     const SplitVertices split = split_vertices(mesh, layers);
     const std::vector<std::size_t> streams = streams_of(layers);
-    const Vec3d origin = origin_of(mesh);
+    const Vec3d origin = middle_origin(mesh);
     const std::vector<std::size_t> materials = materials_.add(mesh);
 
     Json root = Json::object(), children = Json::array();

@@ -1,5 +1,6 @@
 #include "io/byte_sink.h"
 #include "io/formats.h"
+#include "io/left_out.h"
 #include "io/split_vertices.h"
 
 #include <algorithm>
@@ -8,12 +9,6 @@
 namespace crease {
 
 namespace {
-
-const AttributeLayer* layer_with(const Mesh& mesh, AttributeRole role) {
-  const auto found = std::find_if(mesh.layers.begin(), mesh.layers.end(),
-                                  [&](const AttributeLayer& layer) { return layer.role == role; });
-  return found == mesh.layers.end() ? nullptr : &*found;
-}
 
 void write_values(ByteSink& out, std::string_view word, const AttributeLayer& layer) {
   for (std::size_t i = 0; i < layer.value_count(); ++i) {
@@ -45,8 +40,8 @@ std::vector<std::byte> write_obj(const Mesh& mesh, std::string_view mtl_name) {
   ByteSink out;
   out.reserve(mesh.vertex_count() * 40 + mesh.triangle_count() * 40);
   const AttributeLayer* normals = mesh.normals();
-  const AttributeLayer* texcoords = layer_with(mesh, AttributeRole::TexCoord);
-  const AttributeLayer* colors = layer_with(mesh, AttributeRole::Color);
+  const AttributeLayer* texcoords = first_layer(mesh, AttributeRole::TexCoord);
+  const AttributeLayer* colors = first_layer(mesh, AttributeRole::Color);
   const std::vector<const AttributeLayer*> splitting =
       colors ? std::vector<const AttributeLayer*>{colors} : std::vector<const AttributeLayer*>{};
   const SplitVertices split = split_vertices(mesh, splitting);

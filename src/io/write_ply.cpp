@@ -1,8 +1,9 @@
 // Binary little-endian PLY: doubles for positions, split vertices for hard edges, a face property
-// for each layer with one value a triangle, and the materials as an index that comments give names
-// to.
+// for each layer with one value a triangle, and materials and parts as indices that comments give
+// names to.
 #include "io/byte_sink.h"
 #include "io/formats.h"
+#include "io/ply_names.h"
 #include "io/split_vertices.h"
 
 #include <algorithm>
@@ -102,7 +103,8 @@ bool has_role_before(const std::vector<PlyLayer>& plans, const AttributeLayer& l
 // Names that a reader gives a meaning of their own.
 bool is_meaningful(std::string_view name) {
   constexpr std::string_view kNames[] = {
-      "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "alpha", "s", "t", "material_index"};
+      "x",    "y",     "z", "nx", "ny",           "nz",       "red",        "green",
+      "blue", "alpha", "s", "t",  kMaterialIndex, kPartIndex, kTextureIndex};
   return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
@@ -142,23 +144,29 @@ std::vector<std::byte> write_ply(const Mesh& mesh) {
   }
   const SplitVertices split = split_vertices(mesh, splitting);
   const bool has_materials = !mesh.material_of_triangle.empty();
+  const bool has_parts = !mesh.part_of_triangle.empty();
+  const PlyTextures textures(has_materials ? std::span(mesh.materials)
+                                           : std::span<const Material>{});
 
   ByteSink out;
   out.reserve(1024 + split.count() * 48 + mesh.triangle_count() * 17);
   out.text("ply\nformat binary_little_endian 1.0\ncomment written by crease\n");
-  for (std::size_t m = 0; has_materials && m < mesh.materials.size(); ++m) {
-    std::string name = mesh.materials[m].name;
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    out.text("comment material " + std::to_string(m) + " " + name + "\n");
-  }
+  if (has_materials) write_material_comments(out, mesh.materials, textures);
+  if (has_parts) write_part_comments(out, mesh.parts);
   out.text("element vertex " + std::to_string(split.count()) + "\n");
   out.text("property double x\nproperty double y\nproperty double z\n");
   for (const PlyLayer& plan : of_vertex) write_properties(out, plan);
   out.text("element face " + std::to_string(mesh.triangle_count()) + "\n");
   out.text("property list uchar uint vertex_indices\n");
   for (const PlyLayer& plan : of_face) write_properties(out, plan);
-  if (has_materials) out.text("property int material_index\n");
+  const auto int_property = [&](std::string_view name) {
+    out.text("property int ");
+    out.text(name);
+    out.text("\n");
+  };
+  if (has_materials) int_property(kMaterialIndex);
+  if (textures.need_numbers()) int_property(kTextureIndex);
+  if (has_parts) int_property(kPartIndex);
   out.text("end_header\n");
 
   for (std::size_t s = 0; s < split.count(); ++s) {
@@ -172,8 +180,13 @@ std::vector<std::byte> write_ply(const Mesh& mesh) {
     for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) out.u32(split.of_corner[corner]);
     for (const PlyLayer& plan : of_face) write_value(out, plan, plan.layer->of_corner[3 * t]);
     if (has_materials) {
-      out.u32(static_cast<std::uint32_t>(index_of(mesh.material_of_triangle[t])));
+      const std::size_t material = index_of(mesh.material_of_triangle[t]);
+      out.u32(static_cast<std::uint32_t>(material));
+      if (textures.need_numbers()) {
+        out.u32(static_cast<std::uint32_t>(textures.of_material[material]));
+      }
     }
+    if (has_parts) out.u32(static_cast<std::uint32_t>(index_of(mesh.part_of_triangle[t])));
   }
   return out.take();
 }

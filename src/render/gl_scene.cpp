@@ -47,13 +47,13 @@ void add_attribute(GLuint location, const GlArray& array, int components) {
 
 }  // namespace
 
-GlScene::GlScene(const DrawList& list, std::span<const float> errors, GlMaterialsPtr materials,
+GlScene::GlScene(const DrawList& list, std::span<const float> scalars, GlMaterialsPtr materials,
                  GLenum usage)
     : origin_(list.origin),
       box_(box_of_corners(list)),
       positions_(upload(list.positions, GL_RGB32F, usage)),
       vertex_normals_(upload(list.vertex_normals, GL_RGB32F, usage)),
-      errors_(upload(errors, GL_R32F, usage)),
+      scalars_(upload(scalars, GL_R32F, usage)),
       materials_(materials ? std::move(materials) : std::make_shared<GlMaterials>()),
       no_attributes_(GlVertexArray::make()),
       sn_(upload_part(list.sn, usage)),
@@ -82,7 +82,7 @@ void GlScene::connect(Part& part, TriangleKind kind) const {
   add_attribute(attribute::Position, positions_, 3);
   // The buffer of SN normals is shorter than that of positions; only SN triangles may read it.
   if (kind == TriangleKind::SN) add_attribute(attribute::Normal, vertex_normals_, 3);
-  add_attribute(attribute::Error, errors_, 1);
+  add_attribute(attribute::Scalar, scalars_, 1);
 }
 
 void GlScene::connect_all() {
@@ -111,9 +111,9 @@ std::size_t GlScene::update(const DrawList& list, const DrawChanges& changes) {
   return bytes;
 }
 
-std::size_t GlScene::set_errors(std::span<const float> errors) {
-  const Range all{0, std::uint32_t(errors.size())};
-  const std::size_t bytes = refresh(errors_, errors, GL_R32F, std::span(&all, 1));
+std::size_t GlScene::set_scalars(std::span<const float> scalars) {
+  const Range all{0, std::uint32_t(scalars.size())};
+  const std::size_t bytes = refresh(scalars_, scalars, GL_R32F, std::span(&all, 1));
   connect_all();
   return bytes;
 }
@@ -125,7 +125,7 @@ DrawRanges GlScene::all() const {
 }
 
 std::size_t GlScene::bytes() const {
-  std::size_t bytes = positions_.bytes + vertex_normals_.bytes + errors_.bytes;
+  std::size_t bytes = positions_.bytes + vertex_normals_.bytes + scalars_.bytes;
   for (const Part* part : {&sn_, &fn_, &nsn_}) {
     bytes += part->indices.bytes + part->normals.bytes + part->materials.bytes +
              part->colors.bytes + part->texcoords.bytes;
@@ -161,8 +161,9 @@ ProgramKey GlScene::key_for(const Part& part, TriangleKind kind, const DrawStyle
     key.materials = has_materials;
   } else if (has_materials) {
     key.albedo = AlbedoSource::Materials;
-  } else if (style.coloring == Coloring::Error && !style.surface && errors_) {
-    key.albedo = AlbedoSource::Errors;
+  } else if (!own_colors && !style.surface && scalars_) {
+    if (style.coloring == Coloring::Error) key.albedo = AlbedoSource::Errors;
+    if (style.coloring == Coloring::Level) key.albedo = AlbedoSource::Levels;
   }
   // FN triangles are indexed, and each fragment fetches its triangle's normal: vertices are worked
   // out once and not once a triangle (bench_flat_normals; Berlin on a GPU 6.3 to 2.1 ms a frame).
@@ -188,7 +189,10 @@ void GlScene::set_uniforms(const Program& program, TriangleKind kind, const Draw
   if (style.coloring == Coloring::Level) albedo = level_color(style.level_share);
   const Color linear = linear_from_srgb(style.surface.value_or(albedo));
   set(program.albedo, {linear[0], linear[1], linear[2]});
-  if (program.error_scale >= 0) glUniform1f(program.error_scale, 1 / style.error_full);
+  if (program.scalar_scale >= 0) {
+    const bool is_error = style.coloring == Coloring::Error;
+    glUniform1f(program.scalar_scale, is_error ? 1 / style.error_full : 1.0f);
+  }
   if (program.line_px >= 0) glUniform1f(program.line_px, style.line_px);
 }
 
@@ -212,7 +216,7 @@ Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind
     bind_texels(part.texcoords, unit::CornerTexcoords);
     materials_->bind_textures(unit::Textures);
   }
-  bind_texels(errors_, unit::Errors);
+  bind_texels(scalars_, unit::Scalars);
 
   const GLsizei corner_count = GLsizei(3 * range.count);
   if (key.pulled) {

@@ -20,14 +20,15 @@ namespace crease {
 
 class GlScene {
  public:
-  // `errors` has one value per position, or none. `materials`: those of the list, which are filled
-  // with its base colours if nobody has done so. `usage`: GL_DYNAMIC_DRAW for who calls update().
-  GlScene(const DrawList& list, std::span<const float> errors, GlMaterialsPtr materials = nullptr,
+  // `scalars` has one value per position, or none: what Coloring::Error or Coloring::Level paints.
+  // `materials`: those of the list, which are filled with its base colours if nobody has done so.
+  // `usage`: GL_DYNAMIC_DRAW for who calls update().
+  GlScene(const DrawList& list, std::span<const float> scalars, GlMaterialsPtr materials = nullptr,
           GLenum usage = GL_STATIC_DRAW);
 
   // `list` is the one of the constructor after `changes`. Returns the bytes uploaded.
   std::size_t update(const DrawList& list, const DrawChanges& changes);
-  std::size_t set_errors(std::span<const float> errors);  // the same
+  std::size_t set_scalars(std::span<const float> scalars);  // the same
 
   // Into the bound framebuffer: all of it, or some triangles.
   Status draw(ProgramCache& programs, const DrawPass& pass, const DrawStyle& style) const;
@@ -41,7 +42,7 @@ class GlScene {
  private:
   struct Part {
     GlArray indices, normals, materials, colors, texcoords;
-    GlVertexArray indexed;  // positions, SN normals and errors as attributes
+    GlVertexArray indexed;  // positions, SN normals and scalars as attributes
     std::size_t triangle_count = 0;
   };
   static Part upload_part(const DrawPart& part, GLenum usage);
@@ -55,7 +56,7 @@ class GlScene {
 
   Vec3d origin_;
   Box box_;
-  GlArray positions_, vertex_normals_, errors_;
+  GlArray positions_, vertex_normals_, scalars_;
   GlMaterialsPtr materials_;
   GlVertexArray no_attributes_;
   Part sn_, fn_, nsn_;

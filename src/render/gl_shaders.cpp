@@ -40,12 +40,12 @@ centroid out vec3 v_color;
 uniform samplerBuffer corner_colors;
 #endif
 
-#if ALBEDO == ERRORS
-centroid out float v_error;
+#if SCALARS
+centroid out float v_scalar;
 #if PULLED
-uniform samplerBuffer errors;
+uniform samplerBuffer scalars;
 #else
-layout(location = 2) in float a_error;
+layout(location = 2) in float a_scalar;
 #endif
 #endif
 
@@ -84,10 +84,10 @@ void main() {
 
 #if ALBEDO == CORNERS
   v_color = texelFetch(corner_colors, gl_VertexID).rgb;
-#elif ALBEDO == ERRORS && PULLED
-  v_error = texelFetch(errors, vertex).r;
-#elif ALBEDO == ERRORS
-  v_error = a_error;
+#elif SCALARS && PULLED
+  v_scalar = texelFetch(scalars, vertex).r;
+#elif SCALARS
+  v_scalar = a_scalar;
 #endif
 
 #if MATERIALS && PULLED
@@ -135,9 +135,9 @@ uniform int first_triangle;
 uniform vec3 albedo;
 #elif ALBEDO == CORNERS
 centroid in vec3 v_color;
-#elif ALBEDO == ERRORS
-centroid in float v_error;
-uniform float error_scale;
+#elif SCALARS
+centroid in float v_scalar;
+uniform float scalar_scale;
 #endif
 #if MATERIALS && PULLED
 flat in vec3 v_material;
@@ -179,8 +179,8 @@ float line_cover() {
 #endif
 
 vec3 surface_color() {
-#if ALBEDO == ERRORS
-  return error_color(clamp(v_error * error_scale, 0, 1));
+#if SCALARS
+  return color_on_scale(clamp(v_scalar * scalar_scale, 0, 1));
 #elif ALBEDO == UNIFORM
   return albedo;
 #else
@@ -220,7 +220,7 @@ void main() {
   float key = pow(0.5 + 0.5 * dot(n, key_light), 2.3);
   float head = max(dot(n, head_light), 0);
   vec3 lights = ambient + key * vec3(0.86, 0.84, 0.80) + head * 0.08;
-#if ALBEDO == ERRORS
+#if SCALARS
   lights = mix(vec3(1), lights, 0.6);  // form enough, and the scale can still be read
 #endif
   vec3 half_way = normalize(key_light + head_light);
@@ -236,17 +236,17 @@ void main() {
 }
 )";
 
-std::string error_function() {
-  std::string text = "vec3 error_color(float share) {\n  const vec3 stops[" +
-                     std::to_string(kErrorStopCount) + "] = vec3[](";
-  for (std::size_t i = 0; i < kErrorStopCount; ++i) {
-    const Color c = linear_from_srgb(kErrorStops[i]);
+std::string scale_function(std::span<const ColorSrgb> scale) {
+  std::string text = "vec3 color_on_scale(float share) {\n  const vec3 stops[" +
+                     std::to_string(scale.size()) + "] = vec3[](";
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    const Color c = linear_from_srgb(scale[i]);
     char stop[96];
     std::snprintf(stop, sizeof stop, "%s\n    vec3(%.6f, %.6f, %.6f)", i == 0 ? "" : ",",
                   double(c[0]), double(c[1]), double(c[2]));
     text += stop;
   }
-  const std::string last = std::to_string(kErrorStopCount - 1);
+  const std::string last = std::to_string(scale.size() - 1);
   return text + ");\n  float at = share * " + last + ".0;\n  int i = min(int(at), " + last +
          " - 1);\n  return mix(stops[i], stops[i + 1], at - float(i));\n}\n";
 }
@@ -260,17 +260,18 @@ std::string preamble(const ProgramKey& key) {
          define("TRIANGLE", int(NormalSource::PerTriangle)) +
          define("CORNER", int(NormalSource::PerCorner)) +
          define("UNIFORM", int(AlbedoSource::Uniform)) +
-         define("CORNERS", int(AlbedoSource::Corners)) +
-         define("ERRORS", int(AlbedoSource::Errors)) + define("NORMALS", int(key.normals)) +
-         define("ALBEDO", int(key.albedo)) + define("MATERIALS", materials) +
-         define("TEXTURES", key.textures) + define("WIREFRAME", key.wireframe) +
-         define("PULLED", key.pulled);
+         define("CORNERS", int(AlbedoSource::Corners)) + define("SCALARS", key.has_scalars()) +
+         define("NORMALS", int(key.normals)) + define("ALBEDO", int(key.albedo)) +
+         define("MATERIALS", materials) + define("TEXTURES", key.textures) +
+         define("WIREFRAME", key.wireframe) + define("PULLED", key.pulled);
 }
 
 Result<Program> build_program(const ProgramKey& key) {
   const std::string head = preamble(key);
+  const std::span<const ColorSrgb> scale =
+      key.albedo == AlbedoSource::Levels ? std::span<const ColorSrgb>(kLevelStops) : kErrorStops;
   Result<GlProgram> linked =
-      link_program(head + kVertexShader, head + error_function() + kFragmentShader);
+      link_program(head + kVertexShader, head + scale_function(scale) + kFragmentShader);
   if (!linked.ok()) return linked.failure();
   Program p;
   p.program = std::move(*linked);
@@ -286,7 +287,7 @@ Result<Program> build_program(const ProgramKey& key) {
   set_unit("materials", unit::Materials);
   set_unit("material_colors", unit::MaterialColors);
   set_unit("corner_colors", unit::CornerColors);
-  set_unit("errors", unit::Errors);
+  set_unit("scalars", unit::Scalars);
   set_unit("corner_texcoords", unit::CornerTexcoords);
   static_assert(kTextureArrays == 4);
   set_unit("textures_0", unit::Textures);
@@ -296,7 +297,7 @@ Result<Program> build_program(const ProgramKey& key) {
   p.clip_from_list = glGetUniformLocation(id, "clip_from_list");
   p.eye_in_list = glGetUniformLocation(id, "eye_in_list");
   p.albedo = glGetUniformLocation(id, "albedo");
-  p.error_scale = glGetUniformLocation(id, "error_scale");
+  p.scalar_scale = glGetUniformLocation(id, "scalar_scale");
   p.first_triangle = glGetUniformLocation(id, "first_triangle");
   p.key_light = glGetUniformLocation(id, "key_light");
   p.head_light = glGetUniformLocation(id, "head_light");

@@ -21,6 +21,7 @@ enum class AlbedoSource : std::uint8_t {
   Materials,  // by the triangle's material
   Corners,    // a colour per corner, times the material if there are any
   Errors,     // by a scalar per position, through the error scale
+  Levels,     // the same through the scale of levels
 };
 
 struct ProgramKey {
@@ -33,6 +34,9 @@ struct ProgramKey {
   // attributes though positions are shared. Otherwise drawn indexed, positions being attributes.
   bool pulled = false;
 
+  bool has_scalars() const {
+    return albedo == AlbedoSource::Errors || albedo == AlbedoSource::Levels;
+  }
   auto operator<=>(const ProgramKey&) const = default;
 };
 
@@ -52,20 +56,20 @@ enum : int {
   Materials,
   MaterialColors,
   CornerColors,
-  Errors,
+  Scalars,
   CornerTexcoords,
   Textures,  // kTextureArrays of them
 };
 }  // namespace unit
 // Attribute locations when not pulled.
 namespace attribute {
-enum : GLuint { Position, Normal, Error };
+enum : GLuint { Position, Normal, Scalar };
 }  // namespace attribute
 
 struct Program {
   GlProgram program;
   // Uniform locations, -1 where the program has no use for one.
-  GLint clip_from_list = -1, eye_in_list = -1, albedo = -1, error_scale = -1;
+  GLint clip_from_list = -1, eye_in_list = -1, albedo = -1, scalar_scale = -1;
   GLint first_triangle = -1;  // of the range that is drawn
   GLint key_light = -1, head_light = -1, up = -1, line_px = -1;
 };

@@ -82,10 +82,11 @@ ColorSrgb kind_color(TriangleKind kind) {
   return {};
 }
 
+const std::array<ColorSrgb, kLevelStopCount> kLevelStops{
+    {{122, 209, 160}, {72, 172, 170}, {62, 122, 168}, {84, 84, 158}, {108, 50, 128}}};
+
 ColorSrgb level_color(float share) {
-  static constexpr ColorSrgb kStops[] = {
-      {122, 209, 160}, {72, 172, 170}, {62, 122, 168}, {84, 84, 158}, {108, 50, 128}};
-  return color_between(kStops, share);
+  return color_between(kLevelStops, share);
 }
 
 const std::array<ColorSrgb, kErrorStopCount> kErrorStops{{{49, 80, 168},

@@ -30,6 +30,8 @@ inline constexpr ColorSrgb kDefaultSurface{224, 217, 207};  // warm light grey
 ColorSrgb kind_color(TriangleKind kind);
 
 // 0: full resolution, green-blue; 1: base, dark violet.
+inline constexpr std::size_t kLevelStopCount = 5;
+extern const std::array<ColorSrgb, kLevelStopCount> kLevelStops;
 ColorSrgb level_color(float share);
 
 // 0: blue, 1: red.

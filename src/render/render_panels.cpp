@@ -1,3 +1,4 @@
+#include "base/assert.h"
 #include "crease/render.h"
 #include "render/fit_camera.h"
 #include "render/frustum.h"
@@ -71,8 +72,14 @@ Status check_panel(const Panel& panel, int max_texel_count) {
         check_part(list, list.nsn, 3 * list.nsn.triangle_count(), list.positions.size(), "NSN")}) {
     if (!status.ok()) return status;
   }
-  if (!panel.error_of_position.empty() && panel.error_of_position.size() != list.positions.size()) {
+  const auto is_one_each = [&](std::span<const float> of_position) {
+    return of_position.empty() || of_position.size() == list.positions.size();
+  };
+  if (!is_one_each(panel.error_of_position)) {
     return fail(Error::BadValue, "errors are not one a position");
+  }
+  if (!is_one_each(panel.level_of_position)) {
+    return fail(Error::BadValue, "levels are not one a position");
   }
   const std::size_t largest = std::max({list.positions.size(), list.sn.indices.size(),
                                         list.fn.indices.size(), list.nsn.indices.size()});
@@ -264,6 +271,35 @@ GlMaterialsPtr upload_materials(const DrawList& list, const GlLimits& gl,
   return materials;
 }
 
+// `scene` is looked at where there is no camera.
+Result<Layout> lay_out_panels(std::size_t panel_count, bool has_titles, Scene scene,
+                              const RenderOptions& options) {
+  if (panel_count == 0) return fail(Error::BadValue, "no panel to draw");
+  if (options.width_px < 1 || options.height_px < 1 || options.width_px > kMaxSide ||
+      options.height_px > kMaxSide) {
+    return fail(Error::BadValue, "a picture of " + std::to_string(options.width_px) + " x " +
+                                     std::to_string(options.height_px) +
+                                     " pixels; each side is 1 to " + std::to_string(kMaxSide));
+  }
+  Layout layout =
+      make_layout({.panel_count = panel_count,
+                   .width_px = options.width_px,
+                   .height_px = options.height_px,
+                   .columns = options.columns,
+                   .content_aspect =
+                       options.camera ? double(options.camera->width_px) / options.camera->height_px
+                                      : projected_aspect(scene, options.up),
+                   .titles = has_titles,
+                   .legend = options.coloring != Coloring::Shaded});
+  const PixelRect& size = layout.views.front();
+  if (size.width < 1 || size.height < 1) {
+    return fail(Error::BadValue, std::to_string(panel_count) + " panels do not fit into " +
+                                     std::to_string(options.width_px) + " x " +
+                                     std::to_string(options.height_px) + " pixels");
+  }
+  return layout;
+}
+
 Camera choose_camera(Scene scene, const RenderOptions& options, int width_px, int height_px) {
   if (options.camera) return *options.camera;
   if (options.frustum) return fit_outside(scene, *options.frustum, width_px, height_px);
@@ -272,36 +308,27 @@ Camera choose_camera(Scene scene, const RenderOptions& options, int width_px, in
 
 }  // namespace
 
+Result<Camera> camera_of_panel(std::size_t panel_count, bool has_titles,
+                               const RenderOptions& options) {
+  CREASE_ASSERT(options.camera);
+  const Result<Layout> layout = lay_out_panels(panel_count, has_titles, {}, options);
+  if (!layout.ok()) return layout.failure();
+  return camera_for_shape(*options.camera, layout->views.front().width,
+                          layout->views.front().height);
+}
+
 Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& options) {
-  if (panels.empty()) return fail(Error::BadValue, "no panel to draw");
-  if (options.width_px < 1 || options.height_px < 1 || options.width_px > kMaxSide ||
-      options.height_px > kMaxSide) {
-    return fail(Error::BadValue, "a picture of " + std::to_string(options.width_px) + " x " +
-                                     std::to_string(options.height_px) +
-                                     " pixels; each side is 1 to " + std::to_string(kMaxSide));
-  }
   std::vector<std::vector<Vec3f>> points;
   for (const Panel& panel : panels) points.push_back(used_positions(panel.list));
   std::vector<PointSet> scene;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     scene.push_back({panels[i].list.origin, points[i]});
   }
-  const Layout layout = make_layout(
-      {.panel_count = panels.size(),
-       .width_px = options.width_px,
-       .height_px = options.height_px,
-       .columns = options.columns,
-       .content_aspect = options.camera
-                             ? double(options.camera->width_px) / options.camera->height_px
-                             : projected_aspect(scene, options.up),
-       .titles = std::ranges::any_of(panels, [](const Panel& p) { return !p.title.empty(); }),
-       .legend = options.coloring != Coloring::Shaded});
-  const PixelRect& size = layout.views.front();
-  if (size.width < 1 || size.height < 1) {
-    return fail(Error::BadValue, std::to_string(panels.size()) + " panels do not fit into " +
-                                     std::to_string(options.width_px) + " x " +
-                                     std::to_string(options.height_px) + " pixels");
-  }
+  const bool has_titles =
+      std::ranges::any_of(panels, [](const Panel& p) { return !p.title.empty(); });
+  const Result<Layout> layout = lay_out_panels(panels.size(), has_titles, scene, options);
+  if (!layout.ok()) return layout.failure();
+  const PixelRect& size = layout->views.front();
   const Camera camera = choose_camera(scene, options, size.width, size.height);
   const std::vector<Segment> lines =
       options.frustum ? frustum_lines(scene, *options.frustum) : std::vector<Segment>{};
@@ -327,9 +354,9 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
     if (!sound.ok()) {
       return fail(sound.failure().error, panel_name(i, panels[i]) + ": " + sound.failure().message);
     }
-    fill_rect(image, layout.titles[i], kPageColor);
-    draw_title(image, panels[i].title, layout.titles[i], layout.title_px, kTextColor);
-    fill_background(image, layout.views[i]);
+    fill_rect(image, layout->titles[i], kPageColor);
+    draw_title(image, panels[i].title, layout->titles[i], layout->title_px, kTextColor);
+    fill_background(image, layout->views[i]);
     const DrawStyle style{.coloring = options.coloring,
                           .wireframe = options.wireframe,
                           .ambient_occlusion = options.ambient_occlusion,
@@ -340,15 +367,18 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
     if (i == 0 || !has_same_materials(panels[i].list, panels[i - 1].list)) {
       materials = upload_materials(panels[i].list, gl->limits(), options);
     }
-    const GlScene on_gpu(panels[i].list, panels[i].error_of_position, materials);
-    const Status drawn =
-        draw_view(image, layout.views[i], on_gpu, lines, camera, style, *target, tile_px, programs);
+    const GlScene on_gpu(panels[i].list,
+                         options.coloring == Coloring::Level ? panels[i].level_of_position
+                                                             : panels[i].error_of_position,
+                         materials);
+    const Status drawn = draw_view(image, layout->views[i], on_gpu, lines, camera, style, *target,
+                                   tile_px, programs);
     if (!drawn.ok()) return drawn.failure();
   }
-  for (const PixelRect& separator : layout.separators) {
+  for (const PixelRect& separator : layout->separators) {
     fill_rect(image, separator, kSeparatorColor);
   }
-  draw_legend(image, layout.legend, legend_content(panels, options, scale));
+  draw_legend(image, layout->legend, legend_content(panels, options, scale));
   return image;
 }
 

@@ -1,6 +1,7 @@
 #include "render/transform.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace crease {
 
@@ -32,6 +33,16 @@ View make_view(const Camera& camera, double aspect) {
   view.tan_half_height = tan_half * std::max(1.0, camera_aspect / aspect);
   view.tan_half_width = view.tan_half_height * aspect;
   return view;
+}
+
+Camera camera_for_shape(const Camera& camera, int width_px, int height_px) {
+  Camera shaped = camera;
+  shaped.width_px = width_px;
+  shaped.height_px = height_px;
+  const View view = make_view(camera, double(width_px) / height_px);
+  const double fov_deg = degrees(2 * std::atan(view.tan_half_height));
+  shaped.vertical_fov_deg = std::max(camera.vertical_fov_deg, fov_deg);
+  return shaped;
 }
 
 DepthRange depth_range(const View& view, const Vec3d& low, const Vec3d& high) {

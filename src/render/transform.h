@@ -35,6 +35,9 @@ struct Window {
 // another axis.
 View make_view(const Camera& camera, double aspect);
 
+// What make_view() shows of the camera in a picture of so many pixels, as a camera of that shape.
+Camera camera_for_shape(const Camera& camera, int width_px, int height_px);
+
 // The distances between which all points lie, the near one never closer than 1/20,000 of the far
 // one: inside a scene that costs the first 5 cm of a kilometre.
 DepthRange depth_range(const View& view, const Vec3d& low, const Vec3d& high);

@@ -8,9 +8,40 @@
 #include "runtime/refiner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace crease {
+
+namespace {
+
+// How many leaves there are under a node, of those that have wedges. A leaf's wedges begin where a
+// root's do, or those of some v_u.
+class LeafCounts {
+ public:
+  explicit LeafCounts(const VertexHierarchy& h) {
+    std::vector<char> is_begin(h.wedge_count() + 1, 0);
+    for (const WedgeId begin : h.root_wedges) is_begin[index_of(begin)] = 1;
+    root_count_ = static_cast<float>(std::count(is_begin.begin(), is_begin.end() - 1, 1));
+    for (std::size_t s = 0; s < h.split_count(); ++s) is_begin[index_of(h.second_wedge[s])] = 1;
+    is_begin.back() = 0;
+    for (const char bit : is_begin) begins_.push_back(bit != 0);
+  }
+
+  std::uint32_t between(WedgeId begin, WedgeId end) const {
+    return begins_.rank(index_of(end)) - begins_.rank(index_of(begin));
+  }
+  // Of the roots that have wedges. 1 for a model without any.
+  float mean_of_roots() const {
+    return root_count_ > 0 ? static_cast<float>(begins_.set_count()) / root_count_ : 1.0f;
+  }
+
+ private:
+  RankedBits begins_;  // per wedge: it is a leaf's first one; and one more
+  float root_count_ = 0;
+};
+
+}  // namespace
 
 struct AdaptiveMesh::Impl {
   explicit Impl(std::shared_ptr<const MeshHierarchy> given)
@@ -87,6 +118,19 @@ std::vector<float> AdaptiveMesh::error_of_position() const {
     errors.push_back(error);
   }
   return errors;
+}
+
+std::vector<float> AdaptiveMesh::level_of_position() const {
+  const LeafCounts leaves(impl_->hierarchy->vertices);
+  const float coarsest = std::log(leaves.mean_of_roots());
+  std::vector<float> levels;
+  levels.reserve(impl_->cut.vertices().size());
+  for (const ActiveVertex& v : impl_->cut.vertices()) {
+    const bool is_coarse = v.node != kNoNode && v.split != kNoSplit && coarsest > 0;
+    const auto count = static_cast<float>(is_coarse ? leaves.between(v.begin, v.end) : 1);
+    levels.push_back(count > 1 ? std::min(1.0f, std::log(count) / coarsest) : 0.0f);
+  }
+  return levels;
 }
 
 Mesh AdaptiveMesh::extract() const {

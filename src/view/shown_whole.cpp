@@ -145,7 +145,7 @@ class ShownVertices final : public ShownWhole {
     was_moving_ = facts.is_moving;
     if (facts.has_changed) {
       facts.uploaded_bytes = scene_.update(mesh_->draw_list(), mesh_->changes());
-      has_errors_ = false;
+      painted_ = ViewColoring::Shaded;
     }
     facts.triangles = mesh_->triangle_count();
     facts.error_pixels = worst_error(camera, settings);
@@ -158,11 +158,8 @@ class ShownVertices final : public ShownWhole {
 
   Result<DrawCount> draw(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
                          const ViewSettings& settings, const Camera& cut_camera) override {
-    const VertexHierarchy& vertices = mesh_->hierarchy().vertices;
-    style = styled(style, settings.coloring,
-                   share_of(vertices.triangles.size(), vertices.coarse_triangles().size(),
-                            mesh_->triangle_count()));
-    if (settings.coloring == ViewColoring::Error) set_errors(cut_camera);
+    style = styled(style, settings.coloring, 0);  // levels are by position
+    set_scalars(settings.coloring, cut_camera);
     style.error_full = float(2 * settings.pixels);
     return draw_scene(programs, pass, style);
   }
@@ -192,8 +189,17 @@ class ShownVertices final : public ShownWhole {
     return in_pixels(mesh_->error(), camera, std::max(distance_to(box_, camera.position), 1e-9));
   }
 
-  void set_errors(const Camera& camera) {
-    if (has_errors_ && camera == errors_camera_) return;
+  // What `coloring` paints; errors are in pixels of `camera`.
+  void set_scalars(ViewColoring coloring, const Camera& camera) {
+    const bool by_error = coloring == ViewColoring::Error;
+    if (!by_error && coloring != ViewColoring::Level) return;
+    if (coloring == painted_ && (!by_error || camera == errors_camera_)) return;
+    scene_.set_scalars(by_error ? errors_in_pixels(camera) : mesh_->level_of_position());
+    errors_camera_ = camera;
+    painted_ = coloring;
+  }
+
+  std::vector<float> errors_in_pixels(const Camera& camera) const {
     const DrawList list = mesh_->draw_list();
     std::vector<float> errors = mesh_->error_of_position();
     for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -201,16 +207,14 @@ class ShownVertices final : public ShownWhole {
       const Vec3d to = list.origin + Vec3d{p.x, p.y, p.z} - camera.position;
       errors[i] = float(double(errors[i]) / pixel_size(camera, std::max(length(to), 1e-12)));
     }
-    scene_.set_errors(errors);
-    errors_camera_ = camera;
-    has_errors_ = true;
+    return errors;
   }
 
   std::unique_ptr<AdaptiveMesh> mesh_;
   const std::size_t hierarchy_bytes_;
   FrameTime time_;
   bool was_moving_ = false;
-  bool has_errors_ = false;
+  ViewColoring painted_ = ViewColoring::Shaded;  // what the scene's scalars are for; or none
   Camera errors_camera_;
 };
 

@@ -261,6 +261,63 @@ class Commands(tool.Case):
             self.assertIsNone(level["error_measured"])
             self.assertEqual(self.json("info", out)["triangles"], level["triangles"], extension)
 
+    def test_an_stl_far_from_the_origin_says_what_it_is_written_less(self):
+        def far(extension, *, at=(390000.1, 5820000.2, 0)):
+            lines = tool.TETRAHEDRON.splitlines()
+            for i, line in enumerate(lines):
+                if line.startswith("v "):
+                    lines[i] = "v " + " ".join(str(float(x) + o)
+                                               for x, o in zip(line.split()[1:], at))
+            model = self.write("far.obj", "\n".join(lines) + "\n")
+            return self.run_tool("extract", model, "-o", self.path("far" + extension), "--json")
+
+        stl = far(".stl")
+        made = json.loads(stl.stdout)
+        self.assertEqual(made["origin"], [390001, 5820001, 1])
+        self.assertLess(made["rounding"], 1e-6)
+        self.assertIn("far.stl: written less 390001 5820001 1,", stl.stderr)
+        low = self.json("info", self.path("far.stl"))["bounds"]["low"]
+        for x, expected in zip(low, (390000.1, 5820000.2, 0)):
+            self.assertAlmostEqual(x, expected, 5)
+        for other in (far(".ply"), far(".glb"), far(".stl", at=(2, 3, 4))):
+            self.assertEqual(json.loads(other.stdout)["origin"], [0, 0, 0])
+            self.assertNotIn("written less", other.stderr)
+
+    def test_numbers_that_are_no_floats_are_told(self):
+        model = self.write("ids.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                           "property float y\nproperty float z\nelement face 1\n"
+                           "property list uchar int vertex_indices\nproperty int id\nend_header\n"
+                           "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 123456789\n")
+        made = self.run_tool("build", model, "-o", self.path("ids.crease"), "--json")
+        note = "1 values of 'id' rounded to floats, by 3 at most"
+        self.assertIn(note, json.loads(made.stdout)["import"]["notes"])
+        self.assertIn(note, made.stderr)
+
+    def test_what_an_output_leaves_out_is_told(self):
+        parts = self.json("info", self.built())["parts"]
+
+        def left_out(name, model=self.built(), *options):
+            made = self.run_tool("extract", model, "-o", self.path(name), "--json", *options)
+            return json.loads(made.stdout)["left_out"], made.stderr
+
+        for name in ("a.ply", "a.obj", "a.glb"):
+            words, log = left_out(name)
+            self.assertEqual(words, [])
+            self.assertNotIn("leaves out", log)
+            self.assertEqual(self.json("info", self.path(name))["parts"], parts)
+        words, log = left_out("a.stl")
+        self.assertEqual((words[0], words[-1]), ("normals", f"parts ({parts})"))
+        self.assertIn("a.stl: leaves out normals, ", log)
+        # Part names lie at the end of the file.
+        whole = pathlib.Path(self.built()).read_bytes()
+        cut = self.write("cut.crease", whole[:-1])
+        view = self.camera("near.json", [60, -60, 40])
+        for options in (("--triangles", 500, "--samples", 0), ("--view", view, "--samples", 0),
+                        ("--levels", 2)):
+            words, log = left_out("b.glb", cut, *map(str, options))
+            self.assertEqual(words, [f"parts ({parts})"])
+            self.assertIn("cut.crease: the names of its parts are missing: the file was cut", log)
+
     def test_an_ending_may_be_in_capitals(self):
         model = self.write("t.obj", tool.TETRAHEDRON)
         for command, name in (("build", "A.CREASE"), ("extract", "A.GLB"), ("extract", "A.Obj"),
@@ -350,7 +407,7 @@ class Commands(tool.Case):
         out = self.path("view.png")
         for source in (self.built(), self.city()):
             seen = self.json("extract", source, "-o", self.path("seen.ply"), "--view", near)
-            picture = self.json("render", source, "-o", out, "--view", near)
+            picture = self.json("render", source, "-o", out, "--view", near, "--no-titles")
             self.assertEqual(png_size(out), (640, 480))
             self.assertEqual(len(picture["panels"]), 1)
             self.assertEqual(picture["panels"][0]["triangles"], seen["triangles"])
@@ -362,10 +419,30 @@ class Commands(tool.Case):
                       "--size", "200x100")
             self.assertEqual(png_size(out), (200, 100))
 
+    def test_a_view_is_refined_for_what_its_panel_shows(self):
+        near = self.camera("near.json", [60, -60, 40])
+
+        def panel(*options):
+            return self.json("render", self.built(), "-o", self.path("view.png"), "--view", near,
+                             *options)["panels"][0]
+
+        own = panel("--no-titles")
+        self.assertEqual(own["camera"]["viewport"], [640, 480])
+        wide = panel("--no-titles", "--size", "1600x480")  # shows more
+        self.assertGreater(wide["triangles"], own["triangles"])
+        small = panel("--no-titles", "--size", "320x240")  # its pixels are larger
+        self.assertLess(small["triangles"], own["triangles"])
+        for options in (("--size", "1600x480"), ("--control", "--color", "kind"), ("--control",)):
+            shown = panel(*options)
+            camera = self.write("panel.json", json.dumps(shown["camera"]))
+            self.assertNotEqual(shown["camera"]["viewport"], [640, 480])
+            seen = self.json("extract", self.built(), "-o", self.path("seen.ply"), "--view", camera)
+            self.assertEqual(shown["triangles"], seen["triangles"], options)
+
     def test_render_from_outside_shows_the_same_triangles_another_way(self):
         near = self.camera("near.json", [60, -60, 40])
         pictures = {}
-        for options in ((), ("--outside",), ("--outside", "--color", "shaded"),
+        for options in (("--no-titles",), ("--outside",), ("--outside", "--color", "shaded"),
                         ("--outside", "--no-wireframe")):
             out = self.path("picture.png")
             made = self.json("render", self.city(), "-o", out, "--view", near, *options)

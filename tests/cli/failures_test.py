@@ -125,11 +125,16 @@ class Failures(tool.Case):
 
     def test_2_a_file_cut_anywhere_is_refused(self):
         whole = pathlib.Path(self.built(1500)).read_bytes()
-        for share in (0, 0.01, 0.3, 0.6, 0.99):
+        for share in (0, 0.01, 0.3, 0.6, 0.9):  # behind its blocks are names alone
             cut = self.write("cut.crease", whole[:int(share * len(whole))])
             self.fails(2, "extract", cut, "-o", self.path("x.ply"))
         cut = self.write("cut.crease", whole[:-1])
         self.fails(2, "info", cut)
+        second = tool.SQUARE.format(z=1).replace("1 2 3", "5 6 7").replace("1 3 4", "5 7 8")
+        parts = self.write("parts.obj", "o a\n" + tool.SQUARE.format(z=0) + "o b\n" + second)
+        self.json("build", parts, "-o", self.path("parts.crease"))
+        whole = pathlib.Path(self.path("parts.crease")).read_bytes()
+        self.assertIn("part names", self.fails(2, "info", self.write("cut.crease", whole[:-1]))["message"])
 
     def test_3_not_supported(self):
         self.fails(3, "extract", self.city(), "-o", self.path("x.fbx"))

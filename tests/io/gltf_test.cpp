@@ -517,4 +517,14 @@ TEST_CASE("glTF: broken real files are refused with their place") {
   }
 }
 
+TEST_CASE("whole numbers that are no floats are rounded and told") {
+  GltfBuilder b;
+  const std::size_t positions = b.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  const std::size_t ids = b.add<std::uint32_t>({16777216, 16777217, 4294967295u}, "SCALAR");
+  b.primitive({{"POSITION", positions}, {"_ID", ids}});
+  const Imported in = import_text(b.glb(), "a.glb");
+  CHECK(in.report.notes ==
+        std::vector<std::string>{"2 values of 'ID' rounded to floats, by 1 at most"});
+}
+
 }  // namespace crease

@@ -266,5 +266,23 @@ TEST_CASE("counts beyond the file's size take no memory") {
   CHECK(refusal_of(list, "a.ply").find("a list longer than the file") != std::string::npos);
 }
 
+TEST_CASE("numbers that are no floats are rounded and told") {
+  const Imported in = import_text(
+      header(
+          "property double quality\nproperty double nx\nproperty double ny\nproperty double nz\n",
+          "property int id\nproperty double time\n") +
+          "0 0 0 0.5 0 0.6 0.8\n1 0 0 0.25 0 0.6 0.8\n0 1 0 1e300 0 0.6 0.8\n"
+          "3 0 1 2 123456789 1500000000.123\n",
+      "a.ply");
+  const auto told = [&](const char* note) {
+    return std::ranges::count(in.report.notes, std::string(note)) == 1;
+  };
+  CHECK(told("1 values of 'id' rounded to floats, by 3 at most"));
+  CHECK(told("1 values of 'time' rounded to floats, by 0.123 at most"));
+  CHECK(in.report.notes.size() == 2);  // 0.5 is a float, and normals have their own precision
+  CHECK(in.report.bad_attribute_values == 1);
+  CHECK(value_at(*layer_named(in.mesh, "id"), 0)[0] == 123456792.0f);
+}
+
 }  // namespace
 }  // namespace crease

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -115,7 +116,76 @@ TEST_CASE("colours, texture coordinates and materials come back") {
     CHECK(got.materials[index_of(got.material_of_triangle[0])].name == "red");
     CHECK(got.materials[index_of(got.material_of_triangle[1])].name == "blue");
   }
-  CHECK(back(mesh, ".obj").mesh.parts == std::vector<std::string>{"first", "second"});
+  for (const char* extension : {".obj", ".ply", ".glb"}) {
+    CHECK(back(mesh, extension).mesh.parts == std::vector<std::string>{"first", "second"});
+  }
+}
+
+TEST_CASE("a PLY holds parts, base colours and which texture each material has") {
+  Mesh mesh = coloured_square();
+  mesh.parts = {"north wall", "\\ 2\nlines"};
+  mesh.materials[0].base_color = {0.25f, 0.1f, 1, 0.5f};
+  for (const bool has_texture : {false, true}) {
+    CAPTURE(has_texture);
+    if (has_texture) mesh.materials[1].base_color_texture = "bricks of 3.png";
+    const Mesh got = back(mesh, ".ply").mesh;
+    CHECK(got.materials == mesh.materials);
+    CHECK(got.material_of_triangle == mesh.material_of_triangle);
+    CHECK(got.parts == std::vector<std::string>{"north wall", "\\ 2 lines"});
+    CHECK(got.part_of_triangle == mesh.part_of_triangle);
+    CHECK(got.layers.size() == 3);  // no index is left over
+    const std::vector<std::byte> bytes = *export_bytes(mesh, ".ply");
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    CHECK((text.find("comment TextureFile bricks of 3.png\n") != text.npos) == has_texture);
+    CHECK((text.find("property int texnumber\n") != text.npos) == has_texture);
+  }
+  mesh.materials[0].base_color_texture = "bricks of 3.png";
+  const std::vector<std::byte> bytes = *export_bytes(mesh, ".ply");
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  CHECK(text.find("texnumber") == text.npos);  // the only texture is that of all
+  CHECK(back(mesh, ".ply").mesh.materials == mesh.materials);
+}
+
+TEST_CASE("what has no place in a format is told") {
+  using Words = std::vector<std::string>;
+  Mesh mesh = coloured_square();
+  CHECK(export_report(mesh, ".obj").left_out == Words{});
+  CHECK(export_report(mesh, ".ply").left_out == Words{});
+  CHECK(export_report(mesh, ".glb").left_out == Words{});
+  CHECK(export_report(mesh, ".stl").left_out == Words{"normals", "colours 'color'",
+                                                      "texture coordinates 'uv'", "materials (2)",
+                                                      "parts (2)"});
+  AttributeLayer heat{"heat", AttributeRole::Other, Interpolation::Linear, 1, {0.5f}, {}};
+  heat.of_corner.assign(6, AttributeId{0});
+  AttributeLayer second = mesh.layers[2];
+  second.name = "uv2";
+  mesh.layers.push_back(heat);
+  mesh.layers.push_back(second);
+  mesh.materials[0].base_color_texture = "bricks.png";
+  CHECK(export_report(mesh, ".OBJ").left_out == Words{"'heat'", "texture coordinates 'uv2'"});
+  CHECK(export_report(mesh, ".ply").left_out == Words{"the images that textures name"});
+  CHECK(export_report(mesh, ".glb").left_out == Words{});
+}
+
+TEST_CASE("attribute bytes of an STL come back") {
+  Mesh mesh = hard_box(1);
+  mesh.layers.push_back(
+      {"stl_attribute", AttributeRole::Other, Interpolation::Categorical, 1, {0, 65535, 12}, {}});
+  for (std::uint32_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
+    mesh.layers.back().of_corner.push_back(AttributeId{corner / 3 % 3});
+  }
+  CHECK(export_report(mesh, ".stl").left_out == std::vector<std::string>{"normals"});
+  const Mesh got = back(mesh, ".stl").mesh;
+  REQUIRE(got.layers.size() == 2);
+  for (std::size_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
+    const auto value = [&](const Mesh& m) {
+      return m.layers[1].value(m.layers[1].of_corner[corner])[0];
+    };
+    CHECK(value(got) == value(mesh));
+  }
+  mesh.layers.back().values[1] = 65536;  // has no place there
+  CHECK(export_report(mesh, ".stl").left_out.size() == 2);
+  CHECK(back(mesh, ".stl").mesh.layers.size() == 1);
 }
 
 TEST_CASE("categories of faces and other layers go through PLY") {
@@ -160,6 +230,68 @@ TEST_CASE("positions of city size keep every bit in OBJ and PLY") {
   }
 }
 
+// The largest distance of a vertex from the same one of `back`, which has `origin` added.
+double moved(const Mesh& mesh, const Mesh& back, const Vec3d& origin) {
+  REQUIRE(mesh.vertex_count() == back.vertex_count());
+  double most = 0;
+  for (const Vec3d& p : mesh.positions) {
+    double nearest = 1e300;
+    for (const Vec3d& q : back.positions) nearest = std::min(nearest, length(q + origin - p));
+    most = std::max(most, nearest);
+  }
+  return most;
+}
+
+TEST_CASE("an STL far from the origin is written less a round one, and the report says so") {
+  struct Case {
+    Vec3d at, origin;
+  };
+  const Case cases[] = {{{0, 0, 0}, {0, 0, 0}},
+                        {{9, -4, 2}, {0, 0, 0}},  // as parts of machines are: where they belong
+                        {{390123.0017, 5820456.0023, 1.1}, {390120, 5820460, 0}},
+                        {{-5e6, 1e6, 0}, {-5e6, 1e6, 0}}};
+  for (const Case& c : cases) {
+    CAPTURE(c.at.x);
+    Mesh mesh = hard_cylinder(24, 2);
+    for (Vec3d& p : mesh.positions) p += c.at;
+    const ExportReport report = export_report(mesh, ".stl");
+    CHECK(report.origin == c.origin);
+    CHECK(report.rounding < 4e-6);
+    CHECK(report.rounding > 0);
+    // Others do not read what the header says, and show it less the origin.
+    std::vector<std::byte> bytes = *export_bytes(mesh, ".stl");
+    CHECK(moved(mesh, back(mesh, ".stl").mesh, {}) ==
+          doctest::Approx(report.rounding).epsilon(0.01));
+    bytes[0] = std::byte{'B'};
+    const Mesh bare = import_bytes(bytes, "a.stl", {})->mesh;
+    CHECK(moved(mesh, bare, report.origin) == doctest::Approx(report.rounding).epsilon(0.01));
+    const ExportReport glb = export_report(mesh, ".GLB");
+    CHECK(glb.origin == Vec3d{});
+    CHECK(glb.rounding < 4e-7);
+    CHECK(moved(mesh, back(mesh, ".glb").mesh, {}) <= glb.rounding + 1e-9);
+    CHECK(export_report(mesh, ".ply").rounding == 0);
+  }
+  Mesh mesh = hard_box(1);
+  for (Vec3d& p : mesh.positions) p = p * 1e-7 + Vec3d{0.25, 0, 0};
+  CHECK(export_report(mesh, ".stl").origin == Vec3d{0.25, 0, 0});
+  for (Vec3d& p : mesh.positions) p += Vec3d{3e6, 0, 0};
+  const std::vector<std::byte> bytes = *export_bytes(mesh, ".stl");
+  const std::string header(reinterpret_cast<const char*>(bytes.data()), 80);
+  CHECK(header.starts_with("binary STL, written by crease less 3000000.25 0 0  "));
+  for (const char* text : {"less", "less 1 2", "less nan 0 0", "less 1e31 0 0", "less x 0 0"}) {
+    CAPTURE(text);
+    std::string other = "binary STL, written by crease " + std::string(text);
+    other.resize(80, ' ');
+    std::vector<std::byte> file = bytes;
+    std::memcpy(file.data(), other.data(), other.size());
+    const Result<Imported> in = import_bytes(file, "a.stl", {});
+    const bool is_position = std::string_view(text).find("nan") == other.npos &&
+                             std::string_view(text).find("1e31") == other.npos;
+    CHECK(in.ok() == is_position);
+    if (in.ok()) CHECK(length(in->mesh.positions[0]) < 1);
+  }
+}
+
 TEST_CASE("a file appears with its material library, or not at all") {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / "crease_export_test";
@@ -176,10 +308,10 @@ TEST_CASE("a file appears with its material library, or not at all") {
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++files;
   CHECK(files == 2);
 
-  const Status nowhere = export_mesh(mesh, folder / "missing" / "level.ply");
+  const Result<ExportReport> nowhere = export_mesh(mesh, folder / "missing" / "level.ply");
   REQUIRE(!nowhere.ok());
   CHECK(nowhere.failure().error == Error::WriteFailed);
-  const Status unknown = export_mesh(mesh, folder / "level.3ds");
+  const Result<ExportReport> unknown = export_mesh(mesh, folder / "level.3ds");
   REQUIRE(!unknown.ok());
   CHECK(unknown.failure().error == Error::NotSupported);
   // A full device: nothing is left behind.

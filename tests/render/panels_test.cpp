@@ -88,6 +88,55 @@ TEST_CASE("a legend stands below where colours mean something") {
   }
 }
 
+// The picture of one panel among others.
+Image panel_of(const Image& image, const PixelRect& view) {
+  Image panel;
+  panel.width = view.width;
+  panel.height = view.height;
+  for (int y = 0; y < view.height; ++y) {
+    const auto row = image.rgba.begin() + 4 * (std::ptrdiff_t(view.y + y) * image.width + view.x);
+    panel.rgba.insert(panel.rgba.end(), row, row + 4 * view.width);
+  }
+  return panel;
+}
+
+TEST_CASE("a panel shows what the camera of its own shape sees") {
+  const DrawArrays cylinder(hard_cylinder(24, 4));
+  const Panel panels[] = {{.list = cylinder.list(), .title = "left"},
+                          {.list = cylinder.list(), .title = "right"}};
+  RenderOptions options = size(500, 300);
+  Camera camera;
+  camera.position = {1, -3, 2};
+  camera.width_px = 400;
+  camera.height_px = 300;
+  options.camera = camera;
+  for (const int columns : {1, 2}) {  // wider, and narrower than the camera's viewport
+    CAPTURE(columns);
+    options.columns = columns;
+    const Result<Image> image = render_panels(panels, options);
+    REQUIRE(image.ok());
+    const Result<Camera> seen = camera_of_panel(2, true, options);
+    REQUIRE(seen.ok());
+    const Layout layout = make_layout(
+        {.panel_count = 2, .width_px = 500, .height_px = 300, .columns = columns, .titles = true});
+    CHECK(seen->width_px == layout.views[1].width);
+    CHECK(seen->height_px == layout.views[1].height);
+    CHECK((seen->vertical_fov_deg > 45.01) == (columns == 2));
+    RenderOptions alone = size(seen->width_px, seen->height_px);
+    alone.camera = *seen;
+    const Image expected = draw(cylinder.list(), alone);
+    const Image got = panel_of(*image, layout.views[1]);
+    int apart = 0;
+    for (int y = 0; y < got.height; ++y) {
+      for (int x = 0; x < got.width; ++x) {
+        apart += difference(pixel_at(expected, x, y), pixel_at(got, x, y)) > 2;
+      }
+    }
+    CHECK(count_surface(got, {0, 0, got.width, got.height}) > 1000);
+    CHECK(apart == 0);
+  }
+}
+
 TEST_CASE("the same input gives the same picture") {
   const DrawArrays cylinder(hard_cylinder(24, 4));
   RenderOptions options = size(333, 222);

@@ -274,6 +274,26 @@ TEST_CASE("levels have their own colours") {
   }
 }
 
+TEST_CASE("where levels differ, each position has the colour of its own") {
+  const DrawArrays sphere(smooth_sphere(12, 24));
+  const DrawList list = sphere.list();
+  std::vector<float> levels;
+  for (const Vec3f& p : list.positions) levels.push_back(p.z + float(list.origin.z) > 0 ? 1 : 0);
+  RenderOptions options = look_at({0, -4, 0}, {0, 0, 0});
+  for (const bool wireframe : {false, true}) {  // indexed and pulled
+    options.wireframe = wireframe;
+    options.coloring = Coloring::Level;
+    const Panel panel{.list = list, .title = "", .level_share = 0.5f, .level_of_position = levels};
+    const Result<Image> image = render_panels(std::span(&panel, 1), options);
+    REQUIRE(image.ok());
+    CHECK(same_hue(pixel_at(*image, kSide / 2 + 6, kSide / 3), level_color(1)));
+    CHECK(same_hue(pixel_at(*image, kSide / 2 + 6, 2 * kSide / 3), level_color(0)));
+  }
+  levels.pop_back();
+  const Panel panel{.list = list, .title = "", .level_of_position = levels};
+  CHECK(!render_panels(std::span(&panel, 1), options).ok());
+}
+
 TEST_CASE("materials colour triangles, colours of corners are blended") {
   Mesh mesh = quad([](MeshBuilder& b, std::array<VertexId, 4> v) {
     b.quad(v, b.normal({0, -1, 0}));

@@ -11,9 +11,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <random>
+#include <set>
 
 namespace crease {
 namespace {
@@ -154,6 +156,58 @@ TEST_CASE("real models are restored by full refinement, and copies follow what c
       check_draw_list(mesh);
       mesh.set_error(-1);
       check_full(c, mesh.extract());
+    }
+  }
+}
+
+// Where a wedge's corners stand when exactly the vertices with larger errors are split.
+NodeId standing(const VertexHierarchy& h, WedgeId wedge, float error) {
+  NodeId node = h.root_of(wedge);
+  for (SplitId s = h.split_of(node); s != kNoSplit; s = h.split_of(node)) {
+    const SplitBounds& bounds = h.bounds[index_of(s)];
+    if (std::max(bounds.surface.value(), bounds.line.value()) <= error) break;
+    node = h.child(s, h.goes_to_second(s, wedge));
+  }
+  return node;
+}
+
+std::map<NodeId, std::size_t> leaf_counts(const VertexHierarchy& h, float error) {
+  std::map<NodeId, std::set<NodeId>> leaves;
+  for (std::uint32_t i = 0; i < h.wedge_count(); ++i) {
+    leaves[standing(h, WedgeId{i}, error)].insert(standing(h, WedgeId{i}, -1));
+  }
+  std::map<NodeId, std::size_t> counts;
+  for (const auto& [node, below] : leaves) counts[node] = below.size();
+  return counts;
+}
+
+TEST_CASE("a position's level tells how many of the input's vertices stand there") {
+  for (const ZooMesh& z : mesh_zoo()) {
+    if (z.mesh.triangle_count() > (kSanitized ? 200 : 3000)) continue;
+    CAPTURE(z.name);
+    const HierarchyCase c = simplified_case(z.mesh);
+    const float infinite = std::numeric_limits<float>::infinity();
+    const std::map<NodeId, std::size_t> roots = leaf_counts(c.hierarchy.vertices, infinite);
+    std::size_t leaf_count = 0;
+    for (const auto& [root, count] : roots) leaf_count += count;
+    const double mean = double(leaf_count) / double(std::max<std::size_t>(1, roots.size()));
+    AdaptiveMesh mesh(share(c));
+    for (const float error : {infinite, 0.3f, 0.03f, 0.0f, -1.0f}) {
+      CAPTURE(error);
+      mesh.set_error(error);
+      std::vector<double> expected, got;
+      for (const auto& [node, count] : leaf_counts(c.hierarchy.vertices, error)) {
+        if (count > 1) expected.push_back(std::min(1.0, std::log(double(count)) / std::log(mean)));
+      }
+      for (const float level : mesh.level_of_position()) {
+        if (level > 0) got.push_back(level);
+      }
+      CHECK(mesh.level_of_position().size() == mesh.draw_list().positions.size());
+      std::sort(expected.begin(), expected.end());
+      std::sort(got.begin(), got.end());
+      REQUIRE(got.size() == expected.size());
+      for (std::size_t i = 0; i < got.size(); ++i) CHECK(std::abs(got[i] - expected[i]) < 1e-5);
+      if (error < 0) CHECK(got.empty());
     }
   }
 }

@@ -29,7 +29,7 @@ bool report(const Failure& failure) {
 }
 
 bool write(const Mesh& mesh, const std::filesystem::path& path) {
-  const Status done = export_mesh(mesh, path);
+  const Result<ExportReport> done = export_mesh(mesh, path);
   return done.ok() || report(done.failure());
 }
 
