@@ -20,6 +20,11 @@ constexpr double kFlatLineCosine = 0.866;  // 30 degrees
 // agree, so only a line can hold the edge.
 constexpr double kFoldCosine = 0.5;
 
+// Normals of an edge's two sides that differ by this, 17 degrees, or more make a whole line of it,
+// and smaller differences by their square: every corner may have noise, and a surface full of lines
+// could not be simplified.
+constexpr double kCreaseChord = 0.3;
+
 // The ways along a triangle's sides, each followed by its opposite.
 struct EndsOfWay {
   std::uint32_t corner, other_corner;
@@ -277,42 +282,55 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
   }
 }
 
-// Whether an edge is a border, a crease, or where more than two sheets meet.
-inline bool PatchSimplifier::is_line(Index v, const Edge& edge) const {
-  if (edge.triangle_count != 2) return true;
-  const Index w = edge.other, t = triangle_of(edge.corner[0]), u = triangle_of(edge.corner[1]);
-  if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) {
-    return true;
+inline double PatchSimplifier::square_of_difference(const Wedge& a, const Wedge& b) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double d = double(a.value[i]) - double(b.value[i]);
+    sum += d * d;
   }
+  return sum;
+}
+
+// How much of a line an edge is, 0 to 1: a border, a crease, or where more than two sheets meet.
+inline double PatchSimplifier::line_weight(Index v, const Edge& edge) const {
+  if (edge.triangle_count != 2) return 1;
+  const Index w = edge.other, t = triangle_of(edge.corner[0]), u = triangle_of(edge.corner[1]);
+  if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) return 1;
   // Sides that run through the edge in the same direction are inside out to each other.
   const auto runs_to_w = [&](int side) {
     const Index from = edge.corner[side], to = edge.other_corner[side];
     return to == from + 1 || to + 2 == from;
   };
   const double bend = dot(facing_[t].normal, facing_[u].normal);
-  if (runs_to_w(0) == runs_to_w(1) ? bend > kFoldCosine : bend < -kFoldCosine) return true;
-  if (!several_wedges_[v] && !several_wedges_[w]) return false;
+  if (runs_to_w(0) == runs_to_w(1) ? bend > kFoldCosine : bend < -kFoldCosine) return 1;
+  if (!several_wedges_[v] && !several_wedges_[w]) return 0;
+  double weight = 0;
   for (std::size_t l = 0; l < layer_count(); ++l) {
-    const std::vector<Index>& wedge_at = wedge_of_corner_[l];
-    if (wedge_at[edge.corner[0]] == wedge_at[edge.corner[1]] &&
-        wedge_at[edge.other_corner[0]] == wedge_at[edge.other_corner[1]]) {
+    const WorkLayer& layer = work_->layers[l];
+    const Index *at = wedge_of_corner_[l].data(), *from = edge.corner, *to = edge.other_corner;
+    if (at[from[0]] == at[from[1]] && at[to[0]] == at[to[1]]) continue;
+    if (!layer.is_normal) {
+      weight = std::max(weight, layer.line_weight);
       continue;
     }
-    const bool facets =
-        work_->layers[l].is_normal && (flat_[t] || derived_[t]) && (flat_[u] || derived_[u]);
-    if (!facets || bend < kFlatLineCosine) return true;
+    const bool facets = (flat_[t] || derived_[t]) && (flat_[u] || derived_[u]);
+    if (facets && bend >= kFlatLineCosine) continue;
+    const Wedge* wedges = wedges_[l].data();
+    const double chord2 = std::max(square_of_difference(wedges[at[from[0]]], wedges[at[from[1]]]),
+                                   square_of_difference(wedges[at[to[0]]], wedges[at[to[1]]]));
+    weight = std::max(weight, std::min(1.0, chord2 / (kCreaseChord * kCreaseChord)));
   }
-  return false;
+  return weight;
 }
 
 // The plane through edge a-b at a right angle to the triangle (Garland 1999, boundary constraints).
-inline void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
+inline void PatchSimplifier::add_line(Index a, Index b, Index triangle, double share) {
   const Vec3d edge = positions_[b] - positions_[a];
   const Vec3d across = cross(edge, facing_[triangle].normal);  // as long as the edge: its weight
-  const double weight = dot(across, across);
+  const double weight = share * dot(across, across);
   if (weight == 0) return;
   Quadric plane;
-  plane.add_plane(across, -dot(across, positions_[a]), 1);
+  plane.add_plane(across, -dot(across, positions_[a]), share);
   plane.weight = weight;
   for (Index v : {a, b}) {
     if (line_of_vertex_[v] == kNone) {
@@ -323,15 +341,15 @@ inline void PatchSimplifier::add_line(Index a, Index b, Index triangle) {
   }
 }
 
-inline void PatchSimplifier::add_lines(Index v, const Edge& edge) {
+inline void PatchSimplifier::add_lines(Index v, const Edge& edge, double share) {
   if (edge.triangle_count <= 2) {
     for (Index i = 0; i < edge.triangle_count; ++i)
-      add_line(v, edge.other, triangle_of(edge.corner[i]));
+      add_line(v, edge.other, triangle_of(edge.corner[i]), share);
     return;
   }
   for (Index corner : corners_of(v)) {
     const Index t = triangle_of(corner);
-    if (has_corner_at(t, edge.other)) add_line(v, edge.other, t);
+    if (has_corner_at(t, edge.other)) add_line(v, edge.other, t, share);
   }
 }
 
@@ -394,7 +412,8 @@ CREASE_WIDE void PatchSimplifier::load_edges() {
       const Index w = edge.other;
       if (vertices_[v].locked && vertices_[w].locked) continue;
       if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
-      if (is_line(v, edge)) add_lines(v, edge);
+      const double weight = line_weight(v, edge);
+      if (weight > 0) add_lines(v, edge, weight);
     }
   }
 }

@@ -144,9 +144,10 @@ class PatchSimplifier {
   void load_quadrics();
   void gather_edge_sides();
   void load_edges();
-  bool is_line(Index v, const Edge& edge) const;
-  void add_lines(Index v, const Edge& edge);
-  void add_line(Index a, Index b, Index triangle);
+  static double square_of_difference(const Wedge& a, const Wedge& b);
+  double line_weight(Index v, const Edge& edge) const;
+  void add_lines(Index v, const Edge& edge, double share);
+  void add_line(Index a, Index b, Index triangle, double share);
 
   // virtual_pairs.cpp
   void find_virtual_pairs();

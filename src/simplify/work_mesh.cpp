@@ -7,6 +7,25 @@ namespace crease::simplification {
 
 namespace {
 
+// Seams are lines where they are few: that is what tells a chart's border from values by triangle
+// or corner, with which a surface full of lines could not be simplified. All of their weight they
+// have up to the first share of corners off their vertex's value, and the least from the second on.
+constexpr double kFewSeams = 0.2, kManySeams = 0.35, kLeastSeam = 0.01;
+
+double weight_of_seams(const Mesh& mesh, const AttributeLayer& layer) {
+  std::vector<std::uint32_t> first(mesh.vertex_count(), kNone);
+  std::size_t off = 0;
+  for (std::size_t corner = 0; corner < layer.of_corner.size(); ++corner) {
+    std::uint32_t& at_vertex = first[index_of(mesh.triangles[corner / 3][corner % 3])];
+    const auto id = static_cast<std::uint32_t>(layer.of_corner[corner]);
+    if (at_vertex == kNone) at_vertex = id;
+    off += at_vertex != id;
+  }
+  const double share = double(off) / double(std::max<std::size_t>(1, layer.of_corner.size()));
+  const double many = std::clamp((share - kFewSeams) / (kManySeams - kFewSeams), 0.0, 1.0);
+  return 1 + many * (kLeastSeam - 1);
+}
+
 void add_layers(const Mesh& mesh, WorkMesh& work) {
   for (const AttributeLayer& source : mesh.layers) {
     WorkLayer layer;
@@ -16,6 +35,7 @@ void add_layers(const Mesh& mesh, WorkMesh& work) {
     layer.steers = layer.blends && source.role != AttributeRole::Other;
     layer.is_direction = source.interpolation == Interpolation::Direction;
     layer.is_normal = source.role == AttributeRole::Normal;
+    if (!layer.is_normal) layer.line_weight = weight_of_seams(mesh, source);
     layer.of_corner.reserve(source.of_corner.size());
     for (AttributeId a : source.of_corner) layer.of_corner.push_back(static_cast<std::uint32_t>(a));
     work.layers.push_back(std::move(layer));

@@ -21,8 +21,9 @@ struct WorkLayer {
   bool steers = false;  // counts in the cost: normals, texture coordinates, colours
   bool is_direction = false;
   bool is_normal = false;
-  double length_per_unit = 0;            // what one unit of the attribute is worth as a distance,
-                                         // grid units; set anew in every band
+  double line_weight = 1;      // of an edge at whose sides it differs, as a crease; not of normals
+  double length_per_unit = 0;  // what one unit of the attribute is worth as a distance,
+                               // grid units; set anew in every band
   std::vector<std::uint32_t> of_corner;  // 3 a triangle, input values then new ones
   std::vector<float> new_values;
 

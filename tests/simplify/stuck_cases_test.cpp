@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <string>
 
 using namespace crease;
 
@@ -81,6 +82,31 @@ Mesh quartered(const Mesh& mesh) {
   return fine;
 }
 
+// A layer with a value of its own for every triangle or, of two numbers, for every corner's place
+// in its triangle's chart.
+AttributeLayer value_a_triangle(const Mesh& mesh, AttributeRole role, std::uint8_t dimension) {
+  AttributeLayer layer{.name = "own",
+                       .role = role,
+                       .interpolation = Interpolation::Linear,
+                       .dimension = dimension,
+                       .values = {},
+                       .of_corner = {}};
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      const bool is_chart = role == AttributeRole::TexCoord;
+      if (is_chart || c == 0) {
+        for (std::uint32_t i = 0; i < dimension; ++i) {
+          const std::uint32_t mixed = (t * 3 + i) * 2654435761u;  // Knuth's multiplicative hash
+          const float corner = is_chart && c == i + 1 ? 0.01f : 0.0f;
+          layer.values.push_back(static_cast<float>(mixed >> 8) * 0x1p-24f + corner);
+        }
+      }
+      layer.of_corner.push_back(AttributeId{static_cast<std::uint32_t>(layer.value_count() - 1)});
+    }
+  }
+  return layer;
+}
+
 // Edges by how many triangles meet there.
 std::map<std::size_t, std::size_t> edges_by_valence(const Mesh& mesh) {
   std::map<std::pair<VertexId, VertexId>, std::size_t> triangles_of_edge;
@@ -129,6 +155,32 @@ TEST_CASE("a box with half a degree of noise is a box once its normals are joine
   CHECK(reached.triangles == 12);
   CHECK(relative(reached.apart.distance.b_to_a.max, reached) < 1e-6);
   CHECK(reached.apart.normal_deviation.max < 1e-3);
+}
+
+// Noise of normals, values and charts by triangle: what differs at every edge makes no lines there.
+TEST_CASE("a box whose attributes differ at every edge keeps its shape") {
+  struct Case {
+    std::string what;
+    Mesh mesh;
+  };
+  Mesh numbered = hard_box(24), coloured = hard_box(24), charts = hard_box(24);
+  numbered.layers.push_back(value_a_triangle(numbered, AttributeRole::Other, 1));
+  coloured.layers.push_back(value_a_triangle(coloured, AttributeRole::Color, 3));
+  charts.layers.push_back(value_a_triangle(charts, AttributeRole::TexCoord, 2));
+  const Case cases[] = {{"corners' normals off by up to 0.02 degrees", noisy_box(24, 0.02)},
+                        {"corners' normals off by up to a degree", noisy_box(24, 1)},
+                        {"a number a triangle", std::move(numbered)},
+                        {"a colour a triangle", std::move(coloured)},
+                        {"a chart a triangle", std::move(charts)}};
+  for (const Case& c : cases) {
+    CAPTURE(c.what);
+    const Reached reached = reduce(c.mesh, 100);
+    CHECK(reached.triangles <= 100);
+    CHECK(reached.triangles >= 96);
+    CHECK(relative(reached.apart.distance.a_to_b.mean, reached) < 5e-4);
+    CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-2);
+    CHECK(reached.apart.normal_deviation.mean < 1);
+  }
 }
 
 TEST_CASE("crossing walls go down to what the joints need, and the joints stay whole") {
