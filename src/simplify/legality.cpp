@@ -156,21 +156,30 @@ CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& tar
 }
 
 // Vertices joined to both ends without a triangle over the pair: afterwards two sheets share an
-// edge there, or two triangles coincide.
+// edge there, or two triangles coincide. Where borders alone meet, a triangle at either end, a hole
+// closes, which costs no more than its borders say.
 inline double PatchSimplifier::coincidence_cost(Index a, Index b) {
-  const Index beside_a = ++mark_now_, told = ++mark_now_;
+  // Vertices by how many triangles of either end have them, one or several, and those that count.
+  const Index one_of_a = ++mark_now_, several_of_a = ++mark_now_, one_of_each = ++mark_now_,
+              told = ++mark_now_;
   for (std::size_t i = 0; i < ring_kept_; ++i) {
-    mark_[ring_[i].next] = mark_[ring_[i].previous] = beside_a;
+    for (Index v : {ring_[i].next, ring_[i].previous}) {
+      mark_[v] = mark_[v] < one_of_a ? one_of_a : several_of_a;
+    }
   }
   for (const Vanishing& vanishing : vanishing_) mark_[vanishing.third] = told;
   std::size_t shared = 0;
   Index culprit = kNone;
   for (std::size_t i = ring_kept_; i < ring_.size(); ++i) {
     for (Index v : {ring_[i].next, ring_[i].previous}) {
-      if (mark_[v] != beside_a) continue;
-      mark_[v] = told;
-      culprit = ring_[i].triangle;
-      ++shared;
+      Index& mark = mark_[v];
+      if (mark == one_of_a) {
+        mark = one_of_each;
+      } else if (mark == several_of_a || mark == one_of_each) {
+        mark = told;
+        culprit = ring_[i].triangle;
+        ++shared;
+      }
     }
   }
   if (shared == 0) return 0;

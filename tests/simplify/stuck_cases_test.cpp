@@ -183,6 +183,28 @@ TEST_CASE("a box whose attributes differ at every edge keeps its shape") {
   }
 }
 
+// A scan's: holes that are smaller than what the level shows close, where they once swelled.
+TEST_CASE("a sphere's pinholes close and its window stays") {
+  Mesh sphere = smooth_sphere(60, 60);
+  AttributeLayer& normals = sphere.layers[0];
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < sphere.triangle_count(); ++t) {
+    const Vec3d at = sphere.positions[index_of(sphere.triangles[t][0])];
+    if (t % 97 == 50 || length(at - Vec3d{0, 0.8, 0.6}) < 0.3) continue;
+    sphere.triangles[kept] = sphere.triangles[t];
+    std::copy_n(&normals.of_corner[3 * t], 3, &normals.of_corner[3 * kept]);
+    ++kept;
+  }
+  sphere.triangles.resize(kept);
+  normals.of_corner.resize(3 * kept);
+  REQUIRE(edges_by_valence(sphere)[1] > 150);
+  const Reached reached = reduce(sphere, kept / 20);
+  const std::size_t border = edges_by_valence(reached.mesh)[1];
+  CHECK(border >= 5);
+  CHECK(border <= 15);
+  CHECK(relative(reached.apart.distance.b_to_a.max, reached) < 0.03);
+}
+
 TEST_CASE("crossing walls go down to what the joints need, and the joints stay whole") {
   constexpr int kWalls = 4;
   const Mesh walls = crossing_walls(kWalls, 12);
