@@ -24,11 +24,12 @@ namespace crease::simplification {
 
 struct Steering {
   Placement placement = Placement::Optimal;
-  double cost_limit = 0;        // area * squared length, grid units
-  double virtual_distance = 0;  // grid units; pairs of parts nearer than this are candidates
-  double turn_distance = 0;     // grid units; see load_turns()
-  double line_weight = 1;       // of creases and borders beside surfaces
-  double pull = 1e-4;           // of the optimum towards the pair's middle, see Quadric::minimum
+  double cost_limit = 0;          // area * squared length, grid units
+  double virtual_distance = 0;    // grid units; pairs of parts nearer than this are candidates, if
+  std::uint32_t joins_below = 0;  // one of them has fewer triangles than this
+  double turn_distance = 0;       // grid units; see load_turns()
+  double line_weight = 1;         // of creases and borders beside surfaces
+  double pull = 1e-4;             // of the optimum towards the pair's middle, see Quadric::minimum
   // A place between the ends is taken if it is this much cheaper than the better end, and the
   // optimum if it is this much cheaper than either: a file needs about 5 bits more for the one and
   // 17 for the other.

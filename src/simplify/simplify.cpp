@@ -43,8 +43,10 @@ constexpr int kMostStalls = 3;
 constexpr double kNoLimit = 1e300;
 
 // Parts join (virtual pairs) when they have fewer triangles than this on average. To join two takes
-// no triangle away but moves both: while they have triangles to give, it only tears them.
-constexpr std::size_t kFewTriangles = 6;
+// no triangle away but moves both: while they have triangles to give, it only tears them. A part of
+// fewer than kCard has none to give, a tile of a roof or a leaf, and may join at any time: else
+// half a roof of tiles would be single triangles.
+constexpr std::uint32_t kFewTriangles = 6, kCard = 4;
 
 // Positions are rounded to the grid: this much surface error is not error, grid units.
 constexpr double kGridNoise = 0.6;
@@ -75,16 +77,16 @@ void find_parts(WorkMesh& work) {
   }
 }
 
-// Parts that have triangles. `part_of_vertex` leads to them at once.
-std::size_t count_live_parts(const WorkMesh& work) {
-  std::vector<char> seen(work.positions.size(), 0);
-  std::size_t count = 0;
+// The live triangles of each part, and how many parts have any. `part_of_vertex` leads to them at
+// once.
+std::size_t count_part_triangles(WorkMesh& work) {
+  std::vector<std::uint32_t>& count = work.triangles_of_part;
+  count.assign(work.positions.size(), 0);
+  std::size_t live_parts = 0;
   for (std::uint32_t t : work.live) {
-    char& part = seen[work.part_of_vertex[work.vertex_of_corner[3 * t]]];
-    count += part == 0;
-    part = 1;
+    live_parts += count[work.part_of_vertex[work.vertex_of_corner[3 * t]]]++ == 0;
   }
-  return count;
+  return live_parts;
 }
 
 // Area of the live triangles in space and, by layer, of their texture coordinates.
@@ -178,7 +180,7 @@ class Simplifier {
         for (std::uint32_t v = 0; v < work_.positions.size(); ++v) {
           work_.part_of_vertex[v] = part_of(work_.part_of_vertex, v);
         }
-        parts_join = before < kFewTriangles * count_live_parts(work_);
+        parts_join = before < kFewTriangles * count_part_triangles(work_);
       }
       Steering steering;
       steering.placement = options_.placement;
@@ -191,7 +193,8 @@ class Simplifier {
       if (!limits) limits.emplace(first_limit(steering, triangle_area));
       steering.cost_limit = last ? kNoLimit : limits->limit();
       const double step = last ? kNoLimit : std::sqrt(limits->limit() / (triangle_area * 6));
-      steering.virtual_distance = last || parts_join ? 2 * step : 0;
+      steering.virtual_distance = 2 * step;
+      steering.joins_below = last || parts_join ? kNone : kCard;
       steering.turn_distance = 4 * step;
       if (!run_pass(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");

@@ -82,12 +82,16 @@ class Cells {
 void PatchSimplifier::find_virtual_pairs() {
   const Index n = static_cast<Index>(vertices_.size());
   std::vector<Index> part(n);
-  bool several = false;
+  bool several = false, any_joins = false;
+  const auto joins = [&](Index v) {
+    return !vertices_[v].locked && work_->triangles_of_part[part[v]] < steering_.joins_below;
+  };
   for (Index v = 0; v < n; ++v) {
     part[v] = work_->part_of_vertex[vertices_[v].global];
     several = several || part[v] != part[0];
+    any_joins = any_joins || joins(v);
   }
-  if (!several) return;
+  if (!several || !any_joins) return;
 
   Vec3d low = positions_[0], high = low;
   for (const Vec3d& p : positions_) {
@@ -109,7 +113,7 @@ void PatchSimplifier::find_virtual_pairs() {
   const double limit2 = steering_.virtual_distance * steering_.virtual_distance;
   const std::size_t edge_count = pairs_.size();
   for (Index v = 0; v < n; ++v) {
-    if (vertices_[v].locked) continue;
+    if (!joins(v)) continue;
     int c[3];
     for (int i = 0; i < 3; ++i) c[i] = cells.coordinate(positions_[v], i);
     Index best = kNone;

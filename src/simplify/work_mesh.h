@@ -56,7 +56,8 @@ struct WorkMesh {
   std::vector<std::uint32_t> part_of_vertex;        // a vertex of the part: equal for vertices that
                                                     // triangles or contractions connect
   std::size_t part_count = 0;
-  std::vector<std::uint32_t> live;  // the triangles that are left, ascending
+  std::vector<std::uint32_t> triangles_of_part;  // by the part's vertex, at the pass's start
+  std::vector<std::uint32_t> live;               // the triangles that are left, ascending
   std::vector<WorkLayer> layers;
 };
 

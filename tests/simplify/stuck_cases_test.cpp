@@ -3,6 +3,7 @@
 #include "crease/compare.h"
 #include "crease/simplify.h"
 #include "mesh/normals.h"
+#include "support/mesh_builder.h"
 #include "support/mesh_zoo.h"
 #include "support/random_contractions.h"
 
@@ -181,6 +182,28 @@ TEST_CASE("a box whose attributes differ at every edge keeps its shape") {
     CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-2);
     CHECK(reached.apart.normal_deviation.mean < 1);
   }
+}
+
+// Each tile is a part of two triangles that has none to give: they have to join.
+TEST_CASE("a roof of tiles beside something larger stays a roof") {
+  constexpr int kTiles = 20;
+  MeshBuilder builder;
+  for (int y = 0; y < kTiles; ++y) {
+    for (int x = 0; x < kTiles; ++x) {  // a little apart, and not quite in one plane
+      builder.grid({x + 0.005, y + 0.005, 1e-3 * ((x + y) % 2)}, {0.99, 0, 0}, {0, 0.99, 0}, 1, 1);
+    }
+  }
+  builder.box({-10, 0, 0}, {-2, 8, 8}, 16);
+  const Mesh mesh = builder.take();
+  const Reached reached = reduce(mesh, mesh.triangle_count() / 20);
+  double area = 0;
+  for (const Triangle& t : reached.mesh.triangles) {
+    const auto at = [&](std::size_t c) { return reached.mesh.positions[index_of(t[c])]; };
+    if (at(0).x > -1) area += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+  }
+  CHECK(area > 0.95 * kTiles * kTiles);
+  CHECK(area < 1.05 * kTiles * kTiles);
+  CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 2e-3);
 }
 
 // A scan's: holes that are smaller than what the level shows close, where they once swelled.
