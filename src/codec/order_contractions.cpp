@@ -2,6 +2,7 @@
 
 #include "base/wide.h"
 #include "codec/contracting_patch.h"
+#include "codec/defer_folds.h"
 #include "codec/face_normals.h"
 #include "codec/patch_geometry.h"
 #include "codec/patch_lines.h"
@@ -25,7 +26,12 @@ constexpr double kLinearChord = 0.8;
 constexpr double kRoundingChord = 0.01;  // turns below this count less: grids round
 // What the area of a part that disappears counts: quadrics count it at each of its three corners.
 constexpr double kPartWeight = 3;
-constexpr double kMostCost = 1e300;  // of nonsense, that a hostile block may have
+// Between pairs that cost the same, in flat areas nothing, the shorter goes first, as in the
+// simplifier. Where more than a few of a block's do, their order says little of the simplifier's,
+// and triangles could fold over.
+constexpr double kLengthShare = 1e-8;
+constexpr std::size_t kFewOfThem = 8;  // one of so many
+constexpr double kMostCost = 1e300;    // of nonsense, that a hostile block may have
 
 using simplification::Quadric;
 
@@ -55,9 +61,11 @@ class CostEstimator {
                   const Vec3i& parent) {
     surface_[first].add(surface_[second]);
     const Quadric* const lines = lines_.join(first, second);
+    const Vec3d along = geometry_.place(second) - geometry_.place(first);
     const Vec3d at = geometry_.from_origin(parent);
     const double off = surface_[first].at(at), line_off = lines ? lines->at(at) : 0;
-    double cost = off + line_off;
+    const double tie = kLengthShare * dot(along, along) * surface_[first].weight;
+    double cost = off + line_off + tie;
     double surface = mean_distance(off, surface_[first].weight);
     const std::span<const std::uint32_t> vanished = patch.contract(first, second);
     const std::span<const std::uint32_t> around = patch.around(first);
@@ -83,8 +91,12 @@ class CostEstimator {
     own_ = {static_cast<float>(surface),
             static_cast<float>(lines ? mean_distance(line_off, lines->weight) : 0),
             std::max(wedges_.degrees(), turned(patch, vanished, first, parent)), wedges_.texture()};
+    flat_count_ += cost <= 2 * tie;
     return cost <= kMostCost ? cost : kMostCost;  // also if it is no number
   }
+
+  // Contractions so far that change nothing.
+  std::size_t flat_count() const { return flat_count_; }
 
   // Of the last contraction: see OrderedContraction.
   const LevelError& own() const { return own_; }
@@ -171,6 +183,7 @@ class CostEstimator {
   std::vector<Vec3i> positions_;  // for faces_
   LevelError own_;
   double turn_weight_ = 0;
+  std::size_t flat_count_ = 0;
 };
 
 }  // namespace
@@ -194,6 +207,7 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCodin
   std::stable_sort(
       order.begin(), order.end(),
       [](const OrderedContraction& a, const OrderedContraction& b) { return a.cost < b.cost; });
+  if (estimator.flat_count() > order.size() / kFewOfThem) order = defer_folds(block, order);
   return {std::move(order), estimator.take_wedges()};
 }
 

@@ -18,25 +18,41 @@ struct ScaledNormal {
   double size = 0;
 };
 
-// Places are about the first vertex of the patch, so that little is lost in differences.
-class PatchGeometry {
+// Where vertices stand, about the first one of the patch, so that little is lost in differences.
+class PatchPlaces {
  public:
-  explicit PatchGeometry(const PatchMesh& mesh) {
+  explicit PatchPlaces(const PatchMesh& mesh) {
     if (!mesh.positions.empty()) origin_ = real(mesh.positions[0]);
     places_.reserve(mesh.positions.size());
     for (const Vec3i& p : mesh.positions) places_.push_back(from_origin(p));
-    normals_.resize(mesh.triangles.size());
-    for (std::uint32_t t = 0; t < normals_.size(); ++t) find_normal(t, mesh.triangles[t]);
   }
 
   Vec3d from_origin(const Vec3i& p) const { return real(p) - origin_; }
   const Vec3d& place(std::uint32_t v) const { return places_[v]; }
   void move(std::uint32_t v, const Vec3d& to) { places_[v] = to; }
+  // As long as twice the triangle's area, along its normal.
+  Vec3d twice_area(const Corners& t) const {
+    return cross(place(t[1]) - place(t[0]), place(t[2]) - place(t[0]));
+  }
+
+ private:
+  static Vec3d real(const Vec3i& p) { return {double(p.x), double(p.y), double(p.z)}; }
+
+  Vec3d origin_;
+  std::vector<Vec3d> places_;  // per vertex
+};
+
+class PatchGeometry : public PatchPlaces {
+ public:
+  explicit PatchGeometry(const PatchMesh& mesh) : PatchPlaces(mesh) {
+    normals_.resize(mesh.triangles.size());
+    for (std::uint32_t t = 0; t < normals_.size(); ++t) find_normal(t, mesh.triangles[t]);
+  }
+
   // As it was when it was last asked to be found.
   const ScaledNormal& normal(std::uint32_t t) const { return normals_[t]; }
   void find_normal(std::uint32_t t, const Corners& corners) {
-    const Vec3d& p = place(corners[0]);
-    const Vec3d n = cross(place(corners[1]) - p, place(corners[2]) - p);
+    const Vec3d n = twice_area(corners);
     const double size = length(n);
     normals_[t] = {size > 0 ? n * (1 / size) : Vec3d{}, size};
   }
@@ -58,10 +74,6 @@ class PatchGeometry {
   }
 
  private:
-  static Vec3d real(const Vec3i& p) { return {double(p.x), double(p.y), double(p.z)}; }
-
-  Vec3d origin_;
-  std::vector<Vec3d> places_;          // per vertex
   std::vector<ScaledNormal> normals_;  // per triangle
 };
 
