@@ -22,13 +22,15 @@ struct BuildArguments {
   std::string memory = "0";
 };
 
-Result<Imported> import_inputs(const BuildArguments& options, const Common& common) {
+Result<Imported> import_inputs(const BuildArguments& options, const Precision& precision,
+                               const Common& common) {
   Result<ImportOptions> import = import_options(options.read, common);
   if (!import.ok()) return import.failure();
   Result<Imported> imported = options.inputs.size() == 1
                                   ? import_mesh(options.inputs.front(), *import)
                                   : import_meshes(options.inputs, *import);
   if (imported.ok()) {
+    tell_strays(*imported, precision);
     const std::string more = options.inputs.size() == 1
                                  ? ""
                                  : " and " + std::to_string(options.inputs.size() - 1) + " more";
@@ -77,7 +79,7 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
   if (!build.ok()) return build.failure();
   const Result<MemoryOption> memory = limit_memory(options.memory, options.output, common);
   if (!memory.ok()) return memory.failure();
-  Result<Imported> imported = import_inputs(options, common);
+  Result<Imported> imported = import_inputs(options, build->precision, common);
   if (!imported.ok()) return imported.failure();
   const double import_seconds = watch.seconds();
   const std::size_t triangles = imported->mesh.triangle_count();

@@ -10,6 +10,7 @@
 #include "crease/threads.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace crease::cli {
@@ -125,6 +126,26 @@ Result<BuildOptions> build_options(const ReadOptions& options, const Common& com
   return build;
 }
 
+void tell_strays(Imported& imported, const Precision& precision) {
+  if (precision.length > 0) return;  // the step is as asked for
+  const std::optional<Strays> strays = find_strays(imported.mesh);
+  if (!strays) return;
+  const double step = make_grid(imported.mesh, precision).step;
+  const double finest = 1.001 * finest_step(imported.mesh);  // as it is written, in four digits
+  const double wanted = std::ldexp(strays->longest_without, -precision.bits);
+  const bool can_be_had = wanted > finest;
+  std::string note =
+      grouped(strays->count) + " of " + grouped(imported.mesh.vertex_count()) +
+      " vertices are far from all others: the longest side is " + in_length(strays->longest) +
+      " with them and " + in_length(strays->longest_without) +
+      " without, so positions are on a grid with steps of " + in_length(step) + ". Take them away";
+  if (finest < step) {
+    note += ", or ask for shorter steps: --precision " + in_length(can_be_had ? wanted : finest);
+    note += can_be_had ? ", what the others would have" : ", the finest that there is with them";
+  }
+  imported.report.notes.push_back(note);
+}
+
 bool is_url(const std::filesystem::path& path) {
   return is_http_url(path.string());
 }
@@ -145,12 +166,14 @@ DecodeOptions decode_options(const Common& common) {
 
 namespace {
 
+// `build`: what it is imported for, or null.
 Result<Imported> import_and_report(const std::filesystem::path& path, const ReadOptions& options,
-                                   const Common& common) {
+                                   const Common& common, const BuildOptions* build) {
   Result<ImportOptions> import = import_options(options, common);
   if (!import.ok()) return import.failure();
   Result<Imported> imported = import_mesh(path, *import);
   wipe_progress_bar();
+  if (imported.ok() && build != nullptr) tell_strays(*imported, build->precision);
   if (imported.ok()) log(common, path.string() + ":\n" + lines_of(imported->report));
   return imported;
 }
@@ -248,7 +271,7 @@ Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOption
   }
   Result<BuildOptions> build = build_options(options, common);
   if (!build.ok()) return build.failure();
-  Result<Imported> imported = import_and_report(path, options, common);
+  Result<Imported> imported = import_and_report(path, options, common, &*build);
   if (!imported.ok()) return imported.failure();
   log(common, "  not a .crease file: built on the fly (crease build " + path.string() +
                   " -o MODEL.crease does it once)");
@@ -271,7 +294,7 @@ Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& opt
     if (!model.ok()) return model.failure();
     return std::move(model->decoded.mesh);
   }
-  Result<Imported> imported = import_and_report(path, options, common);
+  Result<Imported> imported = import_and_report(path, options, common, nullptr);
   if (!imported.ok()) return imported.failure();
   return std::move(imported->mesh);
 }

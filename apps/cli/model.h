@@ -40,6 +40,9 @@ void add_build_options(CLI::App& command, ReadOptions& options);
 Result<ImportOptions> import_options(const ReadOptions& options, const Common& common);
 Result<BuildOptions> build_options(const ReadOptions& options, const Common& common);
 
+// Tells in the report that few vertices make the grid coarse for all, and what can be done.
+void tell_strays(Imported& imported, const Precision& precision);
+
 // What to decode of a file.
 struct Detail {
   std::optional<std::size_t> triangles{};  // levels of so many and fewer; none: all

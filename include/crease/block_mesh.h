@@ -275,8 +275,10 @@ class BlockMesh {
   // By block: blocks of the cut of which levels are not known, or one that would do is not there,
   // or more is known since of finer blocks; in this order, and fine ones first.
   std::span<const BlockId> missing_levels() const;
-  // None where the block, or one that it needs, is not resident.
-  std::optional<BlockLevelsJob> levels_job(BlockId id) const;
+  // None where the block, or one that it needs, is not resident. What the meshes of other views
+  // know of finer blocks counts as well, so that they can share what comes of it.
+  std::optional<BlockLevelsJob> levels_job(BlockId id,
+                                           std::span<const BlockMesh> beside = {}) const;
   // As for blocks. What is not resident any more is let go.
   void insert(BlockLevelsPtr levels);
 

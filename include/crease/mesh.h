@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -118,9 +119,24 @@ struct Precision {
   int bits = 24;
 };
 
-// Fails with CommandLine where a length is so long that little would be left of the mesh: more than
-// a 16th of the longest side.
+// The shortest step that a grid of the mesh may have: 2^-30 of the longest side, and longer where
+// it lies so far from the origin that doubles tell no more apart.
+double finest_step(const Mesh& mesh);
+
+// Fails with CommandLine where a length is so long that little would be left of the mesh, more than
+// a 16th of the longest side; or shorter than finest_step().
 Status check_precision(const Mesh& mesh, const Precision& precision);
+
+// Few vertices far from all others, as a stray triangle has them. A grid's steps are a share of the
+// longest side, so they make it coarse for all.
+struct Strays {
+  std::size_t count = 0;
+  double longest = 0, longest_without = 0;  // side of the bounding box
+};
+
+// At most a thousandth of the vertices, or three, of 64 or more, without which the longest side is
+// less than a 16th. Time O(vertices).
+std::optional<Strays> find_strays(const Mesh& mesh);
 
 // The origin is the bounding box's centre, rounded to a multiple of the step, so that a grid of
 // whole millimetres stays on whole millimetres.

@@ -296,9 +296,15 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
     return fail(Error::NoTriangles, name + ": " + reason);
   }
   report.isolated_vertices = drop_isolated_vertices(mesh);
-  if (const double extent = longest_side(mesh.positions); extent < kMinExtent) {
+  const double extent = longest_side(mesh.positions);
+  if (extent < kMinExtent) {
     return fail(Error::BadValue, name + ": its longest side is " + shortest(extent) +
                                      ", which leaves no numbers to work with: scale it up");
+  }
+  if (extent < kLeastSeen || extent > kMostSeen) {
+    report.notes.push_back("its longest side is " + shortest(extent) +
+                           ": views of a camera tell errors of models between 1e-20 and 1e18 "
+                           "alone, and stay coarse; scale it");
   }
   drop_unused_parts(mesh);
   report.duplicate_triangles = count_duplicate_triangles(mesh);

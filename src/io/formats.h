@@ -44,6 +44,8 @@ const char* fault_of(const Vec3d& p);
 // The longest side of a model that has triangles, at least: errors and steps of a grid over it are
 // floats, and stay so.
 inline constexpr double kMinExtent = 1e-30;
+// Between these, squares of them are floats as well, which a view compares.
+inline constexpr double kLeastSeen = 1e-20, kMostSeen = 1e18;
 
 Result<RawMesh> read_obj(const Source& source);
 Result<RawMesh> read_ply(const Source& source);

@@ -1,9 +1,9 @@
 #include "crease/mesh.h"
+#include "mesh/box_of.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
 
 namespace crease {
@@ -14,34 +14,32 @@ Vec3i Grid::nearest(const Vec3d& p) const {
           static_cast<std::int32_t>(std::llround((p.z - origin.z) / step))};
 }
 
-namespace {
-
-struct Box {
-  Vec3d low, size;
-  double longest = 0;
-};
-
-Box box_of(const std::vector<Vec3d>& positions) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  if (positions.empty()) return {};
-  Vec3d low{kInf, kInf, kInf}, high{-kInf, -kInf, -kInf};
-  for (const Vec3d& p : positions) {
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
+double finest_step(const Mesh& mesh) {
+  const PointBox box = box_of(mesh.positions);
+  // Grid coordinates stay within 30 bits.
+  double step = box.longest / double(1 << 30);
+  // And doubles tell its points apart however far away they are.
+  for (int i = 0; i < 3; ++i) {
+    const double away = std::max(std::abs(box.low[i]), std::abs(box.low[i] + box.size[i]));
+    step = std::max(step, std::ldexp(away, -49));
   }
-  const Vec3d size = high - low;
-  return {low, size, std::max({size.x, size.y, size.z})};
+  return step;
 }
-
-}  // namespace
 
 Status check_precision(const Mesh& mesh, const Precision& precision) {
   constexpr double kFewestSteps = 16;
   const double longest = box_of(mesh.positions).longest;
-  if (!(longest > 0) || precision.length * kFewestSteps <= longest) return Done{};
   char text[200];
+  if (const double finest = finest_step(mesh); precision.length > 0 && precision.length < finest) {
+    const double rounded_up = finest * 1.001;  // so that it may be asked for as it is written
+    std::snprintf(
+        text, sizeof text,
+        "a precision of %g: the longest side is %g, and the finest grid of this model has "
+        "steps of %.4g",
+        precision.length, longest, rounded_up);
+    return fail(Error::CommandLine, text);
+  }
+  if (!(longest > 0) || precision.length * kFewestSteps <= longest) return Done{};
   std::snprintf(text, sizeof text,
                 "a precision of %g: the longest side is %g, of which that leaves next to nothing",
                 precision.length, longest);
@@ -59,13 +57,7 @@ Grid make_grid(const Mesh& mesh, const Precision& precision) {
   const auto [low, size, longest] = box_of(mesh.positions);
   Grid grid;
   grid.step = precision.length > 0 ? precision.length : longest / double(1 << precision.bits);
-  // Grid coordinates stay within 30 bits whatever length was asked for.
-  grid.step = std::max(grid.step, longest / double(1 << 30));
-  // And doubles tell its points apart however far away they are.
-  for (int i = 0; i < 3; ++i) {
-    const double away = std::max(std::abs(low[i]), std::abs(low[i] + size[i]));
-    grid.step = std::max(grid.step, std::ldexp(away, -49));
-  }
+  grid.step = std::max(grid.step, finest_step(mesh));
   if (!(grid.step > 0)) grid.step = 1;
   for (int i = 0; i < 3; ++i) {
     grid.origin[i] = std::round((low[i] + 0.5 * size[i]) / grid.step) * grid.step;

@@ -91,8 +91,8 @@ Camera fit(Scene scene, const Direction& direction, int width_px, int height_px)
     b_low = std::min(b_low, b);
   });
   double eye_back = std::max((r_high - r_low) / (2 * tan_x), (u_high - u_low) / (2 * tan_y));
-  const double smallest = std::max(1e-6 * (std::abs(eye_back) + std::abs(b_high)), 1e-9);
-  eye_back = std::max(eye_back, b_high + smallest);  // a single point
+  const double reach = std::abs(eye_back) + std::abs(b_high);
+  eye_back = std::max(eye_back, b_high + (reach > 0 ? 1e-6 * reach : 1.0));  // a single point
   camera.position = scene[0].origin + frame.right * ((r_high + r_low) / 2) +
                     frame.above * ((u_high + u_low) / 2) + frame.back * eye_back;
   camera.target = camera.position - frame.back * (eye_back - (b_low + b_high) / 2);

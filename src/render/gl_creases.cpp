@@ -20,7 +20,7 @@ uniform samplerBuffer ends;
 uniform mat4 clip_from_list;
 uniform vec3 eye_in_list;
 uniform vec2 half_viewport;
-uniform float near, half_px, towards_eye;
+uniform float near, half_px, towards_eye;  // near: as clip coordinates have it
 out float v_across;        // pixels from the middle
 flat out float v_strength;
 
@@ -104,7 +104,7 @@ class LinePainter {
     glBindVertexArray(no_attributes.id());
     glUniform1i(at("ends"), 0);
     glUniform2f(at("half_viewport"), float(viewport[2]) / 2, float(viewport[3]) / 2);
-    glUniform1f(at("near"), float(pass.depth.near));
+    glUniform1f(at("near"), float(unit_of(pass.depth) * pass.depth.near));
     glUniform1f(at("half_px"), kCreasePx * style.line_px / 2);
     const double of_height = pass.window.top - pass.window.bottom;
     const double pixel = 2 * pass.view.tan_half_height * of_height / std::max(1, viewport[3]);

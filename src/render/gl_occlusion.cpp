@@ -81,7 +81,7 @@ Status draw_occlusion(ProgramCache& programs, const GlTexture& depth, const Draw
   glBindTexture(GL_TEXTURE_2D, depth.id());
   glUniform1i(at("depths"), 0);
   glUniform4i(at("viewport"), viewport[0], viewport[1], viewport[2], viewport[3]);
-  const double n = pass.depth.near, f = pass.depth.far;
+  const double unit = unit_of(pass.depth), n = unit * pass.depth.near, f = unit * pass.depth.far;
   const double slope = (f - n) / (f * n);
   glUniform2f(at("inverse_distance"), float(style.reversed_depth ? slope : -slope),
               float(style.reversed_depth ? 1 / f : 1 / n));

@@ -179,6 +179,7 @@ void GlScene::set_uniforms(const Program& program, TriangleKind kind, const Draw
       clip_from_list(view, origin_, pass.depth, pass.window, style.reversed_depth);
   glUniformMatrix4fv(program.clip_from_list, 1, GL_FALSE, clip.data());
   set(program.eye_in_list, to_float(view.eye - origin_));
+  glUniform1f(program.unit, float(unit_of(pass.depth)));
   set(program.head_light, to_float(view.back));
   // Over the viewer's left shoulder, so that the sides of a box differ.
   const Vec3d key_light = view.back * 0.62 + view.above * 0.62 - view.right * 0.48;

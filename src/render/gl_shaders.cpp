@@ -12,6 +12,7 @@ namespace {
 constexpr const char* kVertexShader = R"(
 uniform mat4 clip_from_list;
 uniform vec3 eye_in_list;
+uniform float unit;  // as clip coordinates have it
 out vec3 v_from_eye;
 
 #if PULLED
@@ -105,7 +106,7 @@ void main() {
   v_corner = vec3(corner == 0, corner == 1, corner == 2);
 #endif
 
-  v_from_eye = position - eye_in_list;
+  v_from_eye = unit * (position - eye_in_list);
   gl_Position = clip_from_list * vec4(position, 1);
 }
 )";
@@ -296,6 +297,7 @@ Result<Program> build_program(const ProgramKey& key) {
   set_unit("textures_3", unit::Textures + 3);
   p.clip_from_list = glGetUniformLocation(id, "clip_from_list");
   p.eye_in_list = glGetUniformLocation(id, "eye_in_list");
+  p.unit = glGetUniformLocation(id, "unit");
   p.albedo = glGetUniformLocation(id, "albedo");
   p.scalar_scale = glGetUniformLocation(id, "scalar_scale");
   p.first_triangle = glGetUniformLocation(id, "first_triangle");

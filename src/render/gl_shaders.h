@@ -69,7 +69,7 @@ enum : GLuint { Position, Normal, Scalar };
 struct Program {
   GlProgram program;
   // Uniform locations, -1 where the program has no use for one.
-  GLint clip_from_list = -1, eye_in_list = -1, albedo = -1, scalar_scale = -1;
+  GLint clip_from_list = -1, eye_in_list = -1, unit = -1, albedo = -1, scalar_scale = -1;
   GLint first_triangle = -1;  // of the range that is drawn
   GLint key_light = -1, head_light = -1, up = -1, line_px = -1;
 };

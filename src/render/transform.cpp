@@ -58,6 +58,11 @@ DepthRange depth_range(const View& view, const Vec3d& low, const Vec3d& high) {
   return {std::max(near - margin, far / 20000), far};
 }
 
+double unit_of(const DepthRange& depth) {
+  constexpr int kMost = 126;  // what a float holds
+  return std::ldexp(1.0, std::clamp(-std::ilogb(depth.far), -kMost, kMost));
+}
+
 Matrix4f clip_from_list(const View& view, const Vec3d& origin, const DepthRange& depth,
                         const Window& window, bool reversed_depth) {
   const Vec3d shift = origin - view.eye;
@@ -76,12 +81,13 @@ Matrix4f clip_from_list(const View& view, const Vec3d& origin, const DepthRange&
   const double constant_z = (reversed_depth ? 1 : -2) * f * n / (f - n);
 
   const std::array<Vec3d, 4> rows{row_x, row_y, row_z, forward};
+  const double unit = unit_of(depth);
   Matrix4f m{};
   for (std::size_t r = 0; r < 4; ++r) {
-    m[0 + r] = float(rows[r].x);
-    m[4 + r] = float(rows[r].y);
-    m[8 + r] = float(rows[r].z);
-    m[12 + r] = float(dot(rows[r], shift) + (r == 2 ? constant_z : 0));
+    m[0 + r] = float(unit * rows[r].x);
+    m[4 + r] = float(unit * rows[r].y);
+    m[8 + r] = float(unit * rows[r].z);
+    m[12 + r] = float(unit * (dot(rows[r], shift) + (r == 2 ? constant_z : 0)));
   }
   return m;
 }

@@ -42,7 +42,12 @@ Camera camera_for_shape(const Camera& camera, int width_px, int height_px);
 // one: inside a scene that costs the first 5 cm of a kilometre.
 DepthRange depth_range(const View& view, const Vec3d& low, const Vec3d& high);
 
-// Depth from -1 at the near plane to 1, or reversed from 1 to 0.
+// The power of two that brings what lies within the range to lengths of 1 or so: floats of shaders
+// then hold squares and cubes of them, of a grain of 1e-20 as of a galaxy.
+double unit_of(const DepthRange& depth);
+
+// Clip coordinates are in those units. Depth from -1 at the near plane to 1, or reversed from 1 to
+// 0.
 Matrix4f clip_from_list(const View& view, const Vec3d& origin, const DepthRange& depth,
                         const Window& window, bool reversed_depth);
 

@@ -1,5 +1,6 @@
 #include "runtime/block_levels.h"
 
+#include "codec/checksum.h"
 #include "runtime/block_errors.h"
 #include "runtime/group_by_place.h"
 
@@ -211,6 +212,10 @@ BlockLevelsPtr BlockLevelsJob::run() const {
       result->list =
           make_level_list(data_->block->data(), data, data_->level, levels.all_done(data_->level));
     }
+  }
+  facts->roots = checksum(std::as_bytes(std::span(facts->of_root)));
+  for (const BlockLevelsJob::Data::Finer& finer : data_->finer) {
+    facts->finer.push_back({finer.block->id(), finer.facts->roots});
   }
   result->facts = std::move(facts);
   return std::make_shared<const BlockLevels>(std::move(result));

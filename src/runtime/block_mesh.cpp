@@ -332,7 +332,8 @@ std::span<const BlockId> BlockMesh::missing_levels() const {
   return impl_->missing_levels;
 }
 
-std::optional<BlockLevelsJob> BlockMesh::levels_job(BlockId id) const {
+std::optional<BlockLevelsJob> BlockMesh::levels_job(BlockId id,
+                                                    std::span<const BlockMesh> beside) const {
   auto data = std::make_unique<BlockLevelsJob::Data>();
   data->block = resident(id);
   if (!data->block) return std::nullopt;
@@ -341,9 +342,17 @@ std::optional<BlockLevelsJob> BlockMesh::levels_job(BlockId id) const {
     if (!impl_->resident[n]) return std::nullopt;
     data->needed.push_back(impl_->resident[n]);
   }
+  const auto add = [&](const BlockMesh& mesh, std::uint32_t finer) {
+    LevelFactsPtr facts = mesh.impl_->levels.facts(finer);
+    if (!facts) return false;
+    data->finer.push_back({mesh.impl_->resident[finer], std::move(facts)});
+    return true;
+  };
   for (const std::uint32_t finer : impl_->graph.dependents(block)) {
-    const LevelFactsPtr facts = impl_->levels.facts(finer);
-    if (facts && impl_->resident[finer]) data->finer.push_back({impl_->resident[finer], facts});
+    if (add(*this, finer)) continue;
+    for (const BlockMesh& other : beside) {
+      if (add(other, finer)) break;
+    }
   }
   data->level = impl_->levels.wanted(block);
   return BlockLevelsJob(std::move(data));

@@ -184,7 +184,7 @@ void BlockStreamer::Impl::make_levels(std::size_t view) {
   for (const BlockId id : meshes[view].missing_levels()) {
     if (making_levels.size() >= most) return;
     if (making_levels.contains(id)) continue;
-    if (std::optional<BlockLevelsJob> job = meshes[view].levels_job(id)) {
+    if (std::optional<BlockLevelsJob> job = meshes[view].levels_job(id, meshes)) {
       making_levels.insert(id);
       workers.add(*std::move(job));
     }

@@ -72,19 +72,21 @@ void LevelChoice::take(const BlockLevels& levels) {
   Entry& entry = entries_[block];
   State& state = states_[block];
   const BlockLevels::Data& data = levels.data();
-  if (!entry.facts || entry.facts->of_root != data.facts->of_root) {
-    // Lists of before are good still, but finer than they need be.
+  if (!entry.facts || entry.facts->finer != data.facts->finer) {
+    // Lists of before are right still, but finer than they need be; and what is shown of a view in
+    // the end does not depend on what was known first.
     discard_lists(entry);
     state.lists = 0;
-    for (const std::uint32_t coarser : graph_.dependencies(block)) {
-      if (coarser < states_.size()) states_[coarser].is_stale = true;
-    }
+    state.chosen = 0;
   }
   discard(entry.facts);
   entry.facts = data.facts;
   state.is_known = true;
   state.can_choose = !data.facts->of_root.empty() && !graph_.is_base(block);
-  state.is_stale = false;
+  state.is_stale = lacks_finer(block);
+  for (const std::uint32_t coarser : graph_.dependencies(block)) {
+    if (coarser < states_.size()) states_[coarser].is_stale = lacks_finer(coarser);
+  }
   look_at(block, *data.facts);
   if (data.list) {
     const auto level = static_cast<std::size_t>(data.list->level);
@@ -96,6 +98,19 @@ void LevelChoice::take(const BlockLevels& levels) {
   set_list(state, list_at(entry, state.shown));
   resized_.push_back(block);
   lists_have_changed_ = true;
+}
+
+// Something is known of finer blocks that the facts were made without. Jobs end in any order, and
+// one may have begun before what another one brought.
+bool LevelChoice::lacks_finer(std::uint32_t block) const {
+  if (!entries_[block].facts) return false;
+  const std::vector<KnownFiner>& known = entries_[block].facts->finer;
+  for (const std::uint32_t finer : graph_.dependents(block)) {
+    if (finer >= entries_.size() || !entries_[finer].facts) continue;
+    const KnownFiner now{BlockId{finer}, entries_[finer].facts->roots};
+    if (std::find(known.begin(), known.end(), now) == known.end()) return true;
+  }
+  return false;
 }
 
 void LevelChoice::discard_lists(Entry& entry) {
@@ -163,7 +178,7 @@ int LevelChoice::wanted_level(std::uint32_t block, const View& view) {
     return coarsest_right(looked, wrong, view.error, reaches, level,
                           whole.right_from(level, end, reaches));
   };
-  const int before = state.wanted;
+  const int before = state.chosen;
   const bool is_needed = before > 0 && is_still_wrong(looked.wrong_piece, before - 1, view.keep);
   // What is wrong at a level is so at the coarse end as well, unless it is inner.
   const bool is_above =
@@ -249,6 +264,7 @@ bool LevelChoice::choose(std::span<const std::uint32_t> cut, const ViewError& er
     const bool is_needed = state.needed_at == choices_;
     const int level = is_needed ? kFullLevel : wanted_level(block, view);
     state.wanted = static_cast<std::uint8_t>(level);
+    state.chosen = is_needed || !state.can_choose ? std::uint8_t(0) : state.wanted;
     has_changed |= show(block, level_at_hand(state, level));
     if (state.shown == 0) continue;
     for (const std::uint32_t needed : graph_.dependencies(block)) {
@@ -262,6 +278,7 @@ bool LevelChoice::choose_whole(std::span<const std::uint32_t> cut) {
   bool has_changed = begin_choice(cut);
   for (const std::uint32_t block : cut) {
     states_[block].wanted = kFullLevel;
+    states_[block].chosen = 0;
     has_changed |= show(block, kFullLevel);
   }
   return hide_others() || has_changed;
@@ -300,7 +317,7 @@ bool LevelChoice::hide_others() {
     State& state = states_[block];
     if (state.seen_at == choices_ || state.shown == 0) continue;
     change(block, 0);
-    state.wanted = 0;
+    state.wanted = state.chosen = 0;
     any = true;
   }
   return any;
@@ -335,6 +352,7 @@ std::size_t LevelChoice::bytes_of(std::uint32_t block) const {
   std::size_t bytes = 0;
   if (entry.facts) {
     bytes += sizeof(LevelFacts) + sizeof(RoundedError) * entry.facts->of_root.capacity() +
+             sizeof(KnownFiner) * entry.facts->finer.capacity() +
              sizeof(LevelSphere) * entry.facts->pieces.capacity() +
              sizeof(RoundedUp) * (entry.facts->left_in_piece.off.capacity() +
                                   entry.facts->left_in_piece.degrees.capacity());

@@ -66,6 +66,10 @@ class LevelChoice {
   int wanted(std::uint32_t block) const {
     return block < states_.size() ? states_[block].wanted : 0;
   }
+  // The level that hysteresis keeps.
+  int chosen(std::uint32_t block) const {
+    return block < states_.size() ? states_[block].chosen : 0;
+  }
   // As BlockMesh::missing_levels(), of those of the last choose().
   void list_missing(std::span<const std::uint32_t> cut, std::vector<BlockId>& missing) const;
   std::size_t bytes_of(std::uint32_t block) const;
@@ -84,10 +88,12 @@ class LevelChoice {
     std::uint64_t revision = 0;                // its own
     std::uint32_t needed_at = 0, seen_at = 0;  // the last choice that had it so
     std::uint8_t wanted = 0, shown = 0;
+    // What the last choice wanted by the block's own errors, as they are known now; or 0.
+    std::uint8_t chosen = 0;
     std::uint16_t lists = 0;  // a bit per level: its list is there
     bool is_known = false;
     bool can_choose = false;  // it is, and the block is not always whole
-    bool is_stale = false;    // finer blocks know more
+    bool is_stale = false;    // of finer blocks more is known now
   };
 
   // Of those that can choose, what mostly tells the level; the rest is in the facts.
@@ -111,6 +117,7 @@ class LevelChoice {
     if (pointer) unused_.push_back(std::exchange(pointer, nullptr));
   }
   void discard_lists(Entry& entry);
+  bool lacks_finer(std::uint32_t block) const;
   int wanted_level(std::uint32_t block, const View& view);
   static int coarsest_right(const Looked& looked, std::uint32_t& wrong_piece,
                             const ViewError& error, const ViewError::Reaches& reaches, int level,

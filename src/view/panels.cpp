@@ -158,8 +158,7 @@ void settings_panel(const PanelContent& content, ViewSettings& settings, SplitSe
   ImGui::Checkbox("wireframe", &settings.wireframe);
   ImGui::SameLine();
   ImGui::Checkbox("creases", &settings.creases);
-  ImGui::SameLine();
-  ImGui::Checkbox("ambient", &settings.ambient_occlusion);
+  ImGui::Checkbox("ambient occlusion", &settings.ambient_occlusion);
   pixels_slider(settings.pixels);
   degrees_slider(settings.degrees);
   budget_slider("triangles", "##triangles", settings.max_triangles, 1000, 10, 100'000,

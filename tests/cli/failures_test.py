@@ -30,6 +30,12 @@ class Failures(tool.Case):
         self.assertTrue(failed["error"]["message"])
         return failed["error"]
 
+    def test_a_length_that_no_grid_has_is_refused_and_the_finest_one_is_not(self):
+        model, out = self.write("square.obj", tool.SQUARE.format(z=0.123)), self.path("fine.crease")
+        refused = self.fails(1, "build", model, "-o", out, "--precision", "1e-12")
+        self.json("build", model, "-o", out, "--precision", refused["message"].split()[-1])
+        self.assertAlmostEqual(self.json("info", out)["precision"] * 2**30, 1, delta=0.01)
+
     def test_1_command_line(self):
         city = self.city()
         for arguments in ([], ["unknown"], ["build"], ["build", city], ["info"],

@@ -50,6 +50,23 @@ class Nasty(tool.Case):
                 if name in outcomes:
                     self.assertEqual(outcomes[name], status, name)
 
+    def test_a_triangle_far_away_from_all_others_is_told_with_what_it_costs(self):
+        far = "".join(f"v {x} {y} 900000\n" for x, y in ((0, 0), (1, 0), (0, 1)))
+        grid = "".join(f"v {i % 12} {i // 12} 0\n" for i in range(144))
+        faces = "".join(f"f {i + 4} {i + 5} {i + 16}\n" for i in range(132) if i % 12 < 11)
+        stray, out = self.write("stray.obj", far + grid + "f 1 2 3\n" + faces), self.path("a.crease")
+        notes = self.json("build", stray, "-o", out)["import"]["notes"]
+        self.assertEqual(len(notes), 1, notes)
+        step = self.json("info", out)["precision"]
+        for words in ("3 of 146 vertices", "9e+05", "11 without", f"steps of {step:.4g}"):
+            self.assertIn(words, notes[0])
+        finest = notes[0].split("--precision ")[1].split(",")[0]
+        self.assertLess(float(finest), step / 60)
+        self.assertEqual(self.json("build", stray, "-o", out, "--precision", finest)["import"]["notes"],
+                         [])
+        extracted = self.run_tool("extract", stray, "-o", self.path("a.ply"), "--ratio", "0.5")
+        self.assertIn(notes[0], extracted.stderr)
+
     def test_good_files_build_and_lose_nothing(self):
         for folder in ("cad", "attributes", "scan", "city"):
             for path in models(folder)[:6]:

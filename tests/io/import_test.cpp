@@ -14,7 +14,12 @@ TEST_CASE("a model that is too small for numbers is refused, a small one is not"
   const auto triangle = [](const std::string& side) {
     return "v 5 0 0\nv 5 " + side + " 0\nv 5 0 " + side + "\nf 1 2 3\n";
   };
-  CHECK(import_text(triangle("1e-30"), "a.obj").mesh.triangle_count() == 1);
+  const Imported small = import_text(triangle("1e-30"), "a.obj");
+  CHECK(small.mesh.triangle_count() == 1);
+  REQUIRE(small.report.notes.size() == 1);
+  CHECK(small.report.notes[0].starts_with("its longest side is 1e-30: views"));
+  CHECK(import_text(triangle("2e18"), "a.obj").report.notes.size() == 1);
+  CHECK(import_text(triangle("1e-19"), "a.obj").report.notes.empty());
   CHECK(refusal_of(triangle("1e-310"), "a.obj") ==
         "a.obj: its longest side is 1e-310, which leaves no numbers to work with: scale it up");
 }

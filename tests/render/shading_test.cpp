@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace crease {
@@ -349,6 +350,31 @@ TEST_CASE("a wireframe darkens the edges in front and shows none behind") {
     dark += darker({u, 0, one > other ? 0.5 * u : 0.5 + 0.45 * u}) > 60;
   }
   CHECK(dark <= 3);  // where the diagonal is crossed
+}
+
+// As large as 1e-30 or 1e27: squares of such lengths are no floats any more.
+TEST_CASE("a model has the same picture in whatever unit its lengths are") {
+  const auto picture_of = [](double unit, bool has_frustum) {
+    Mesh mesh = hard_box(3);
+    for (Vec3d& p : mesh.positions) p = p * unit;
+    const MeshDrawArrays arrays(mesh);
+    RenderOptions options = look_at(Vec3d{3, -4, 3} * unit, Vec3d{0.5, 0.5, 0.5} * unit);
+    options.ambient_occlusion = true;
+    options.wireframe = true;
+    if (has_frustum) {
+      options.frustum = options.camera;
+      options.camera.reset();
+    }
+    return draw(arrays.draw_list(), options);
+  };
+  for (const bool has_frustum : {false, true}) {
+    const Image picture = picture_of(1, has_frustum);
+    CHECK(roughness(picture, kSide) > 30);  // the box is there
+    for (const int exponent : {-100, -60, 60, 90}) {
+      CAPTURE(exponent);
+      CHECK(picture_of(std::ldexp(1.0, exponent), has_frustum).rgba == picture.rgba);
+    }
+  }
 }
 
 }  // namespace crease

@@ -191,14 +191,20 @@ class Screenshot(tool.Case):
         self.assertGreater(self.halves_differ("--split", "creases"), 0.01)
         self.assertGreater(self.halves_differ("--split", "color=kind,mode=linear"), 0.1)
 
+    def names_bytes(self, built):
+        """Those of the parts, which end a file without images (docs/format.md)."""
+        return int.from_bytes(built[112:120], "little")
+
     def test_what_cannot_be_opened_is_told_with_its_exit_status(self):
         out = self.path("none.png")
         built = pathlib.Path(self.built()).read_bytes()
+        blocks_end = len(built) - self.names_bytes(built)
         broken = [
             ("absent.crease", None, "no such file"),
             ("text.crease", b"no model at all" * 10, ".crease file"),
             ("cut.crease", built[:len(built) // 2], ""),
-            ("flipped.crease", built[:-300] + bytes(300), ""),
+            ("flipped.crease", built[:blocks_end - 300] + bytes(300) + built[blocks_end:],
+             "checksum differs"),
             ("wrong.obj", b"v 0 0 0\nf 1 2 3\n", "wrong.obj:2"),
         ]
         for name, content, words in broken:
@@ -209,6 +215,18 @@ class Screenshot(tool.Case):
                 self.assertIn(name, done.stderr)
                 self.assertIn(words, done.stderr)
                 self.assertFalse(os.path.exists(out))
+
+    def test_names_of_parts_that_are_broken_are_no_matter_for_a_picture(self):
+        built = pathlib.Path(self.built()).read_bytes()
+        names = self.names_bytes(built)
+        self.assertGreater(names, 0)
+        broken = self.write("nameless.crease", built[:-names] + bytes(names))
+        camera = self.camera([10, -30, 20], [0, 0, 0], 0.01)
+        pictures = [self.path("named.png"), self.path("nameless.png")]
+        for model, out in zip([self.built(), broken], pictures):
+            self.view(model, "--view", camera, "--screenshot", out)
+        named, nameless = [pathlib.Path(p).read_bytes() for p in pictures]
+        self.assertEqual(named, nameless)
 
     def test_command_lines_that_cannot_be_meant(self):
         self.view(self.built(), "--screenshot", self.path("a.jpg"), exit_status=3)

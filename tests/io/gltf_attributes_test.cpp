@@ -1,0 +1,156 @@
+// What vertices of a glTF carry, however it is stored, and materials.
+#include "crease/import.h"
+#include "io/gltf_triangle.h"
+#include "io/polygon_model.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+namespace {
+
+using Json = GltfBuilder::Json;
+
+std::vector<float> value_at(const Mesh& mesh, const std::string& layer, std::size_t t,
+                            std::size_t c) {
+  for (const AttributeLayer& l : mesh.layers) {
+    if (l.name != layer) continue;
+    const auto value = l.value(l.of_corner[3 * t + c]);
+    return {value.begin(), value.end()};
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("glTF: sparse accessors replace values, with a base and without") {
+  for (const bool has_base : {true, false}) {
+    GltfBuilder b;
+    const std::size_t where = b.add_view<std::uint16_t>({1, 2});
+    const std::size_t what = b.add_view<float>({5, 0, 0, 0, 7, 0});
+    Json accessor = {{"componentType", 5126},
+                     {"count", 3},
+                     {"type", "VEC3"},
+                     {"sparse",
+                      {{"count", 2},
+                       {"indices", {{"bufferView", where}, {"componentType", 5123}}},
+                       {"values", {{"bufferView", what}}}}}};
+    if (has_base) accessor["bufferView"] = b.add_view<float>({0, 0, 1, 9, 9, 9, 9, 9, 9});
+    b.primitive({{"POSITION", b.add_accessor(accessor)}});
+    const Mesh mesh = import_text(b.gltf(), "sparse.gltf").mesh;
+    CHECK(corner(mesh, 0, 0) == Vec3d{0, 0, has_base ? 1.0 : 0.0});
+    CHECK(corner(mesh, 0, 1) == Vec3d{5, 0, 0});
+    CHECK(corner(mesh, 0, 2) == Vec3d{0, 7, 0});
+  }
+}
+
+TEST_CASE("glTF: quantized attributes (KHR_mesh_quantization), interleaved") {
+  GltfBuilder b;
+  // A vertex of 20 bytes: position 3 shorts + 2 bytes, normal 4 bytes, uv 2 shorts, colour 4 bytes.
+  std::vector<std::uint8_t> bytes;
+  const auto put16 = [&](int value) {
+    bytes.push_back(static_cast<std::uint8_t>(value & 0xff));
+    bytes.push_back(static_cast<std::uint8_t>(value >> 8 & 0xff));
+  };
+  const int positions[3][3] = {{0, 0, 0}, {32767, 0, 0}, {0, -32767, 0}};
+  for (const auto& p : positions) {
+    for (int x : p) put16(x);
+    put16(0);
+    for (int n : {0, 0, -127, 0}) bytes.push_back(static_cast<std::uint8_t>(n));
+    put16(65535);
+    put16(0);
+    for (int c : {255, 0, 51, 255}) bytes.push_back(static_cast<std::uint8_t>(c));
+  }
+  const std::size_t view = b.add_view(bytes, 20);
+  const auto accessor = [&](std::size_t offset, int component, const char* type) {
+    return b.add_accessor({{"bufferView", view},
+                           {"byteOffset", offset},
+                           {"componentType", component},
+                           {"count", 3},
+                           {"type", type},
+                           {"normalized", true}});
+  };
+  b.primitive({{"POSITION", accessor(0, 5122, "VEC3")},
+               {"NORMAL", accessor(8, 5120, "VEC3")},
+               {"TEXCOORD_0", accessor(12, 5123, "VEC2")},
+               {"COLOR_0", accessor(16, 5121, "VEC4")}});
+  b.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+  const Mesh mesh = import_text(b.glb(), "quantized.glb").mesh;
+  CHECK(corner(mesh, 0, 1) == Vec3d{1, 0, 0});
+  CHECK(corner(mesh, 0, 2) == Vec3d{0, -1, 0});
+  CHECK(normal_at(mesh, 0, 0) == Vec3d{0, 0, -1});
+  CHECK(value_at(mesh, "uv", 0, 0) == std::vector<float>{1, 1});  // v 0 is the top: 1 with v up
+  CHECK(value_at(mesh, "color", 0, 0) == std::vector<float>{1, 0, 0.2f, 1});
+}
+
+TEST_CASE("glTF: further sets and attributes of one's own are carried") {
+  GltfBuilder b = one_triangle();
+  Json& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TEXCOORD_0"] = b.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
+  attributes["TEXCOORD_1"] = b.add<float>({0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f}, "VEC2");
+  attributes["_BATCHID"] = b.add<float>({4, 4, 4}, "SCALAR");
+  attributes["_TEMPERATURE"] = b.add<float>({20, 21, 22}, "SCALAR");
+  attributes["TANGENT"] = b.add<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, "VEC4");
+  const Imported imported = import_text(b.gltf(), "attributes.gltf");
+  const Mesh& mesh = imported.mesh;
+  CHECK(value_at(mesh, "uv", 0, 2) == std::vector<float>{0, 0});
+  CHECK(value_at(mesh, "uv1", 0, 0) == std::vector<float>{0.25f, 0.5f});
+  CHECK(value_at(mesh, "TEMPERATURE", 0, 1) == std::vector<float>{21});
+  const auto batch = std::ranges::find(mesh.layers, "BATCHID", &AttributeLayer::name);
+  REQUIRE(batch != mesh.layers.end());
+  CHECK(batch->interpolation == Interpolation::Categorical);
+  CHECK(has_note(imported.report, "TANGENT"));
+}
+
+TEST_CASE("glTF: primitives need not have the same attributes") {
+  GltfBuilder b;
+  const std::vector<float> above = {0, 0, 1, 1, 0, 1, 0, 1, 1};
+  b.primitive({{"POSITION", b.add(kTriangle, "VEC3")},
+               {"COLOR_0", b.add<float>({1, 0, 0, 1, 0, 0, 1, 0, 0}, "VEC3")}});
+  b.primitive({{"POSITION", b.add(above, "VEC3")},
+               {"NORMAL", b.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3")},
+               {"COLOR_0", b.add<float>({0, 1, 0, 0.5f, 0, 1, 0, 0.5f, 0, 1, 0, 0.5f}, "VEC4")}});
+  b.primitive({{"POSITION", b.add<float>({0, 0, 2, 0, 1, 2, 1, 0, 2}, "VEC3")}});
+  const Mesh mesh = import_text(b.glb(), "mixed.glb").mesh;
+  REQUIRE(mesh.triangle_count() == 3);
+  CHECK(value_at(mesh, "color", 0, 0) == std::vector<float>{1, 0, 0, 1});
+  CHECK(value_at(mesh, "color", 1, 0) == std::vector<float>{0, 1, 0, 0.5f});
+  CHECK(value_at(mesh, "color", 2, 0) == std::vector<float>{1, 1, 1, 1});
+  CHECK(normal_at(mesh, 1, 0).z == doctest::Approx(1));
+  CHECK(normal_at(mesh, 2, 0).z == doctest::Approx(-1));  // its own, flat
+}
+
+TEST_CASE("glTF: base colours and texture references of materials") {
+  GltfBuilder b = one_triangle();
+  b.json["meshes"][0]["primitives"][0]["material"] = 1;
+  b.primitive({{"POSITION", b.add<float>({0, 0, 1, 1, 0, 1, 0, 1, 1}, "VEC3")}});
+  b.json["materials"] = {
+      {{"name", "plain"}},
+      {{"name", "brick"},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}, {"baseColorTexture", {{"index", 0}}}}}}};
+  b.json["textures"] = {{{"source", 0}}};
+  b.json["images"] = {{{"uri", "brick.png"}}};
+  const Mesh mesh = import_text(b.gltf(), "materials.gltf").mesh;
+  REQUIRE(mesh.materials.size() == 3);
+  CHECK(mesh.materials[1].name == "brick");
+  CHECK(mesh.materials[1].base_color == std::array<float, 4>{0.5f, 0.25f, 0.125f, 1});
+  CHECK(mesh.materials[1].base_color_texture == "brick.png");
+  CHECK(mesh.material_of_triangle == std::vector<MaterialId>{MaterialId{1}, MaterialId{2}});
+}
+
+TEST_CASE("glTF: whole numbers that are no floats are rounded and told") {
+  GltfBuilder b;
+  const std::size_t positions = b.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  const std::size_t ids = b.add<std::uint32_t>({16777216, 16777217, 4294967295u}, "SCALAR");
+  b.primitive({{"POSITION", positions}, {"_ID", ids}});
+  const Imported in = import_text(b.glb(), "a.glb");
+  CHECK(in.report.notes ==
+        std::vector<std::string>{"2 values of 'ID' rounded to floats, by 1 at most"});
+}
+
+}  // namespace crease

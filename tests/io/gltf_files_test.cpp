@@ -1,0 +1,170 @@
+// Files: broken ones, those beside a glTF, real ones.
+#include "crease/import.h"
+#include "crease/shading.h"
+#include "io/gltf_triangle.h"
+#include "io/polygon_model.h"
+#include "support/shared_data.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+TEST_CASE("glTF: what cannot be meant is refused, with its place") {
+  const auto refused = [](const char* place, auto change) {
+    GltfBuilder b = one_triangle();
+    change(b);
+    const std::string message = refusal_of(b.gltf(), "bad.gltf");
+    CAPTURE(message);
+    CHECK(message.starts_with("bad.gltf: "));
+    CHECK(message.find(place) != std::string::npos);
+  };
+  refused("meshes: an object, as in glTF 1.0", [](GltfBuilder& b) {
+    b.json["meshes"] = {{"named", {{"primitives", nlohmann::json::array()}}}};
+  });
+  refused("nodes[1]", [](GltfBuilder& b) {  // a loop below a root
+    b.json["nodes"] = {{{"children", {1}}}, {{"children", {2}}}, {{"children", {1}}, {"mesh", 0}}};
+  });
+  refused("nodes[0].children[0]", [](GltfBuilder& b) { b.json["nodes"][0]["children"] = {7}; });
+  refused("nodes[0].mesh", [](GltfBuilder& b) { b.json["nodes"][0]["mesh"] = 3; });
+  refused("nodes[0].matrix", [](GltfBuilder& b) { b.json["nodes"][0]["matrix"] = {1, 2}; });
+  refused("attributes.POSITION", [](GltfBuilder& b) {
+    b.json["meshes"][0]["primitives"][0]["attributes"].erase("POSITION");
+  });
+  refused("attributes.POSITION", [](GltfBuilder& b) { b.json["accessors"][0]["count"] = 4; });
+  refused("attributes.POSITION", [](GltfBuilder& b) { b.json["accessors"][0]["type"] = "VEC2"; });
+  refused("attributes.POSITION",
+          [](GltfBuilder& b) { b.json["accessors"][0]["count"] = 18446744073709551615ull; });
+  refused("bufferViews[0]", [](GltfBuilder& b) { b.json["bufferViews"][0]["byteLength"] = 100; });
+  refused("byteStride", [](GltfBuilder& b) { b.json["bufferViews"][0]["byteStride"] = 4; });
+  refused("attributes.NORMAL", [](GltfBuilder& b) {
+    b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.add<float>({0, 0, 1}, "VEC3");
+  });
+  refused("indices[2]", [](GltfBuilder& b) {
+    b.json["meshes"][0]["primitives"][0]["indices"] = b.add<std::uint8_t>({0, 1, 3}, "SCALAR");
+  });
+  refused("primitives[0].material",
+          [](GltfBuilder& b) { b.json["meshes"][0]["primitives"][0]["material"] = 0; });
+  refused("primitives[0].mode",
+          [](GltfBuilder& b) { b.json["meshes"][0]["primitives"][0]["mode"] = 9; });
+  refused("values without data", [](GltfBuilder& b) {
+    b.json["accessors"][0] = {{"componentType", 5126}, {"count", 4000000000u}, {"type", "VEC3"}};
+  });
+  refused("multiply the file", [](GltfBuilder& b) {  // 20,000 nodes show 20,000 triangles each
+    std::vector<float> zeros(60'000);
+    b.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = b.add(zeros, "VEC3");
+    for (int i = 0; i < 20'000; ++i) b.json["nodes"][static_cast<std::size_t>(i)] = {{"mesh", 0}};
+  });
+  refused("extensionsRequired[1]", [](GltfBuilder& b) {
+    b.json["extensionsRequired"] = {"KHR_texture_transform", "KHR_meshopt_compression"};
+  });
+  refused("asset.version", [](GltfBuilder& b) { b.json["asset"]["version"] = "1.0"; });
+}
+
+TEST_CASE("glTF: a file cut anywhere is refused") {
+  const std::string whole = one_triangle().glb();
+  for (std::size_t cut = 0; cut < whole.size(); ++cut) {
+    const std::vector<char> part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(cut));
+    CHECK_FALSE(import_bytes(std::as_bytes(std::span(part)), "cut.glb", {}).ok());
+  }
+}
+
+TEST_CASE("glTF: buffers come from beside the file and from nowhere else") {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("crease_gltf_" + std::to_string(std::rand()));
+  std::filesystem::create_directories(folder / "inside" / "deep");
+  const GltfBuilder b = one_triangle();
+  const auto write = [](const std::filesystem::path& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+  };
+  write(folder / "secret.bin", b.binary());
+  write(folder / "inside" / "deep" / "a b.bin", b.binary());
+  const auto import_with = [&](const std::string& uri) {
+    const std::filesystem::path path = folder / "inside" / "model.gltf";
+    write(path, b.gltf_beside(uri));
+    return import_mesh(path, {});
+  };
+  CHECK(import_with("deep/a%20b.bin").ok());
+  std::filesystem::create_symlink(folder / "secret.bin", folder / "inside" / "link.bin");
+  for (const std::string& uri :
+       {std::string("../secret.bin"), std::string("deep/../../secret.bin"), std::string("link.bin"),
+        (folder / "secret.bin").string(), "file://" + (folder / "secret.bin").string(),
+        std::string("%2e%2e/secret.bin"), std::string("deep"), std::string("missing.bin")}) {
+    CAPTURE(uri);
+    const Result<Imported> in = import_with(uri);
+    REQUIRE_FALSE(in.ok());
+    CHECK(in.failure().message.find("buffers[0].uri") != std::string::npos);
+  }
+  // Without a folder there are no files.
+  CHECK(refusal_of(b.gltf_beside("deep/a%20b.bin"), "m.gltf").find("buffers[0].uri") !=
+        std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+// Counts from the table of an independent checker (README beside the models).
+TEST_CASE("glTF: real models have the counts of the independent table") {
+  struct Expected {
+    const char* name;
+    std::size_t triangles, vertices;
+    double sn_percent;
+    const char* layer;
+    std::size_t materials;
+  };
+  static constexpr Expected kExpected[] = {
+      {"cad/2cylinder_engine.glb.xz", 121'496 - 11'160, 60'041, 61, "normal", 34},
+      {"cad/building_blendswap.b3dm.xz", 66'094, 36'032, 1.4, "normal", 2},
+      {"attributes/corset.glb", 18'324, 9'774, 100, "uv", 1},
+      {"attributes/lantern.glb", 5'394, 2'737, 81, "uv", 1},
+      {"attributes/boombox.glb", 6'036, 3'133, 97, "uv", 1},
+      {"attributes/scallop_coloured_120k.glb.xz", 120'000, 60'002, 100, "color", 1},
+      {"nasty/everything_wrong_station.glb.xz", 10'483, 3'451, 0.3, "uv", 44},
+      {"nasty/parse_triangle_strips.gltf", 2'786, 1'476, 18, "normal", 1},
+      {"nasty/values_bad_normals.glb", 12, 8, 0, "normal", 1},
+  };
+  for (const Expected& expected : kExpected) {
+    const std::filesystem::path path = shared_model(expected.name);
+    if (path.empty()) continue;
+    CAPTURE(expected.name);
+    const Result<Imported> in = import_mesh(path, {});
+    REQUIRE(in.ok());
+    const Mesh& mesh = in->mesh;
+    CHECK(check_mesh(mesh).ok());
+    CHECK(mesh.triangle_count() == expected.triangles);
+    CHECK(mesh.vertex_count() == expected.vertices);
+    CHECK(mesh.materials.size() == expected.materials);
+    CHECK(std::ranges::count(mesh.layers, expected.layer, &AttributeLayer::name) == 1);
+    const ShadingKinds kinds = classify_shading(mesh);
+    const auto sn = std::ranges::count(kinds.of_vertex, VertexKind::SN);
+    CHECK(std::abs(100.0 * double(sn) / double(mesh.vertex_count()) - expected.sn_percent) < 0.6);
+  }
+}
+
+TEST_CASE("glTF: broken real files are refused with their place") {
+  static constexpr std::pair<const char*, const char*> kExpected[] = {
+      {"nasty/truncated_chunk.glb", "byte 8"},
+      {"nasty/truncated_by_one.glb", "byte 8"},
+      {"nasty/truncated_after_header.glb", "byte 12"},
+      {"nasty/parse_bad_json.glb", "byte 21"},
+      {"nasty/values_infinite.glb", "meshes[0].primitives[0].attributes.POSITION[0]"},
+      {"nasty/gltf_loop/node_loop_scene.gltf", "nodes[0]"},
+      {"nasty/gltf_noposition/primitive_no_position.gltf", "attributes.POSITION"},
+      {"nasty/gltf_oob/index_buffer_oob.gltf", "meshes[0].primitives[0].indices[5]"},
+  };
+  for (const auto& [name, place] : kExpected) {
+    const std::filesystem::path path = shared_model(name);
+    if (path.empty()) continue;
+    CAPTURE(name);
+    const Result<Imported> in = import_mesh(path, {});
+    REQUIRE_FALSE(in.ok());
+    CAPTURE(in.failure().message);
+    CHECK(in.failure().message.find(place) != std::string::npos);
+  }
+}
+
+}  // namespace crease
