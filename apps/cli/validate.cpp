@@ -54,6 +54,12 @@ Status validate_hierarchy(const ModelFile& file, Json& found, std::vector<std::s
   return Done{};
 }
 
+// Messages name the file where they come from afar; here it is said once, in front.
+std::string without_name(const std::string& message, const std::filesystem::path& file) {
+  const std::string name = file.string() + ": ";
+  return message.starts_with(name) ? message.substr(name.size()) : message;
+}
+
 // Of what is in the file, not of reaching it.
 bool is_of_content(Error error) {
   return error == Error::BadFormat || error == Error::BadChecksum || error == Error::Truncated;
@@ -70,7 +76,9 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
         options.file.string() + ": is no .crease file; crease info says what a mesh file holds");
   }
   std::vector<std::string> problems;
-  std::uint64_t bytes = 0;
+  std::error_code unknown;  // of a URL
+  std::uint64_t bytes = std::filesystem::file_size(options.file, unknown);
+  if (unknown) bytes = 0;
   Json hierarchy;
   const Result<ModelFile> file = open_model(options.file, {}, common);
   if (file.ok()) {
@@ -82,6 +90,7 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
     return file.failure();
   }
   if (interrupted()) return interrupted_failure();
+  for (std::string& problem : problems) problem = without_name(problem, options.file);
   if (problems.empty() && !options.file_only) {
     const Status done = validate_hierarchy(*file, hierarchy, problems);
     if (!done.ok()) return done.failure();
