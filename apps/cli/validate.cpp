@@ -90,7 +90,6 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
     return file.failure();
   }
   if (interrupted()) return interrupted_failure();
-  for (std::string& problem : problems) problem = without_name(problem, options.file);
   if (problems.empty() && !options.file_only) {
     const Status done = validate_hierarchy(*file, hierarchy, problems);
     if (!done.ok()) return done.failure();
@@ -109,10 +108,11 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
   }
   for (const std::string& problem : problems) {
     if (!report.text.empty()) report.text += "\n";
-    report.text += options.file.string() + ": " + problem;
+    report.text += options.file.string() + ": " + without_name(problem, options.file);
   }
   report.short_of = Error::Invalid;
-  report.shortfall = options.file.string() + ": not valid: " + problems.front();
+  report.shortfall =
+      options.file.string() + ": not valid: " + without_name(problems.front(), options.file);
   return report;
 }
 
