@@ -70,6 +70,10 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
   const Status writable = check_output(options.output, ending, "models are", options.inputs);
   if (!writable.ok()) return writable.failure();
   for (const std::filesystem::path& input : options.inputs) {
+    if (is_url(input)) {
+      return fail(Error::NotSupported,
+                  input.string() + ": is a URL; meshes are built of files of this machine");
+    }
     if (is_crease_file(input)) {
       return fail(Error::NotSupported,
                   input.string() + ": is built already; extract a mesh from it to build it anew");

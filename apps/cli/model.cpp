@@ -147,7 +147,13 @@ void tell_strays(Imported& imported, const Precision& precision) {
 }
 
 bool is_url(const std::filesystem::path& path) {
-  return is_http_url(path.string());
+  const std::string text = path.string();
+  const std::size_t scheme = text.find("://");
+  return scheme != 0 && scheme != text.npos &&
+         std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(scheme), [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                  c == '+' || c == '-' || c == '.';
+         });
 }
 
 bool is_crease_file(const std::filesystem::path& path) {
@@ -253,6 +259,10 @@ namespace {
 
 Result<BlockFile> open_crease_or_url(const std::filesystem::path& path) {
   if (!is_url(path)) return open_crease(path);
+  if (!is_http_url(path.string())) {
+    return fail(Error::NotSupported,
+                path.string() + ": only http:// and https:// are read, and files of this machine");
+  }
   HttpOptions options;
   options.stopped = interrupted;
   Result<ByteSourcePtr> source = open_http_source(path.string(), options);

@@ -95,7 +95,7 @@ class ModelFile {
   const Common* common_;
 };
 
-// http://... or https://...; such a FILE is a .crease.
+// SCHEME://..., of which http and https are read; such a FILE is a .crease.
 bool is_url(const std::filesystem::path& path);
 
 // Told from the first bytes, whatever the name. False as well when the file cannot be read.

@@ -45,8 +45,9 @@ Result<Report> run_serve(ServeArguments options, const Common& common) {
   }
   options.server.delay = std::chrono::milliseconds(options.delay_ms);
   options.server.on_request = [&common](const ServedRequest& request) {
-    log(common, std::to_string(request.status) + " " + request.method + " " + request.path +
-                    (request.range.empty() ? "" : " " + request.range) + ": " +
+    const std::string asked =
+        request.method + " " + request.path + (request.range.empty() ? "" : " " + request.range);
+    log(common, std::to_string(request.status) + " " + without_controls(asked) + ": " +
                     in_bytes(request.bytes));
   };
   const Result<std::unique_ptr<FileServer>> server =

@@ -89,6 +89,18 @@ std::string in_degrees(double degrees) {
   return format("%.3g deg", degrees);
 }
 
+std::string without_controls(std::string_view text) {
+  std::string shown;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    // U+0080 to U+009F are controls as well; in UTF-8 their second byte is their number.
+    const bool is_second = i > 0 && text[i - 1] == '\xc2' && byte >= 0x80 && byte < 0xa0;
+    shown += byte < 0x20 || byte == 0x7f || is_second ? format("\\x%02x", byte)
+                                                      : std::string(1, text[i]);
+  }
+  return shown;
+}
+
 std::optional<double> parse_number(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -21,6 +21,9 @@ std::string in_percent(double share);       // 0.2 -> "20 %"
 std::string in_seconds(double seconds);     // 1.23 s
 std::string in_degrees(double degrees);
 
+// What a terminal would obey, in text from elsewhere, as \x1b and the like.
+std::string without_controls(std::string_view text);
+
 // The whole text as a finite number, or nothing.
 std::optional<double> parse_number(std::string_view text);
 

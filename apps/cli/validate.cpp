@@ -54,6 +54,12 @@ Status validate_hierarchy(const ModelFile& file, Json& found, std::vector<std::s
   return Done{};
 }
 
+// Messages name the file where they come from afar; here it is said once, in front.
+std::string without_name(const std::string& message, const std::filesystem::path& file) {
+  const std::string name = file.string() + ": ";
+  return message.starts_with(name) ? message.substr(name.size()) : message;
+}
+
 // Of what is in the file, not of reaching it.
 bool is_of_content(Error error) {
   return error == Error::BadFormat || error == Error::BadChecksum || error == Error::Truncated;
@@ -70,7 +76,9 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
         options.file.string() + ": is no .crease file; crease info says what a mesh file holds");
   }
   std::vector<std::string> problems;
-  std::uint64_t bytes = 0;
+  std::error_code unknown;  // of a URL
+  std::uint64_t bytes = std::filesystem::file_size(options.file, unknown);
+  if (unknown) bytes = 0;
   Json hierarchy;
   const Result<ModelFile> file = open_model(options.file, {}, common);
   if (file.ok()) {
@@ -100,10 +108,11 @@ Result<Report> run_validate(const ValidateArguments& options, const Common& comm
   }
   for (const std::string& problem : problems) {
     if (!report.text.empty()) report.text += "\n";
-    report.text += options.file.string() + ": " + problem;
+    report.text += options.file.string() + ": " + without_name(problem, options.file);
   }
   report.short_of = Error::Invalid;
-  report.shortfall = options.file.string() + ": not valid: " + problems.front();
+  report.shortfall =
+      options.file.string() + ": not valid: " + without_name(problems.front(), options.file);
   return report;
 }
 

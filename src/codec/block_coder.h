@@ -183,8 +183,9 @@ class BlockCoder {
   struct LayerModels {
     std::array<std::array<AdaptiveBit, kBends>, 3> is_uniform;
     std::array<std::array<std::array<AdaptiveBit, kBends>, 2>, 4> same_as;
-    std::array<SignedModel, 4> residual;
-    std::array<std::array<AdaptiveBit, 2>, 2> is_kept;  // by whether the vertex stays, is new
+    std::array<SignedModel, 4> residual, residual_in_grains;  // by component
+    std::array<AdaptiveBit, 2> is_of_grain;                   // by whether what is expected is
+    std::array<std::array<AdaptiveBit, 2>, 2> is_kept;        // by whether the vertex stays, is new
     DirectionModel direction{false}, corner_direction{true};
   };
   struct Normals {  // of a vertex, at a layer of directions; zero where there is none

@@ -9,6 +9,17 @@
 
 namespace crease::codec {
 
+// The multiple of the grain that is nearest to a code, in grains; of two the greater.
+inline std::int32_t nearest_grain(std::int32_t code, std::int32_t grain) {
+  const std::int64_t raised = std::int64_t(code) + grain / 2;
+  return static_cast<std::int32_t>(raised / grain - (raised % grain < 0));
+}
+
+// Goes round at 2^32, so that no bytes overflow it.
+inline std::int32_t wrapped_product(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) * static_cast<std::uint32_t>(b));
+}
+
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_layer(const BlockLayer& layer, std::vector<CodedValue>& values,
                                           std::size_t l) {
@@ -342,7 +353,24 @@ CodedValue BlockCoder<Coder, Guide>::code_value(const BlockLayer& layer, LayerMo
                                                 const CodedValue& value,
                                                 const CodedValue& predicted) {
   CodedValue result{};
-  for (std::size_t k = 0; k < std::size_t(layer.dimension); ++k) {
+  const std::size_t dimension = std::size_t(layer.dimension);
+  const auto is_of_grain = [&](const CodedValue& code) {
+    for (std::size_t k = 0; k < dimension; ++k) {
+      if (code[k] % layer.grains[k] != 0) return false;
+    }
+    return true;
+  };
+  if (layer.has_grain() &&
+      coder_.bit(models.is_of_grain[is_of_grain(predicted)], is_of_grain(value))) {
+    for (std::size_t k = 0; k < dimension; ++k) {
+      const std::int32_t grain = layer.grains[k], expected = nearest_grain(predicted[k], grain);
+      const std::int32_t step = wrapped_difference(value[k] / grain, expected);
+      result[k] = wrapped_product(
+          wrapped_sum(expected, code_signed(coder_, models.residual_in_grains[k], step)), grain);
+    }
+    return result;
+  }
+  for (std::size_t k = 0; k < dimension; ++k) {
     if (layer.is_raw) {
       const std::uint32_t bits = static_cast<std::uint32_t>(value[k]);
       const std::uint32_t high = coder_.uniform(1u << 16, bits >> 16);

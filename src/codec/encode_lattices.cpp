@@ -11,7 +11,8 @@ std::vector<std::byte> encode_lattices(std::span<const LayerCoding> codings) {
       out.f32(lattice.divisor);
       out.u32(static_cast<std::uint32_t>(lattice.low));
       out.u32(static_cast<std::uint32_t>(lattice.high));
-      out.u32(static_cast<std::uint32_t>(lattice.palette.size()));
+      out.u16(static_cast<std::uint16_t>(lattice.palette.size()));
+      out.u16(static_cast<std::uint16_t>(lattice.grain - 1));
       out.f32s(lattice.palette);
     }
   }

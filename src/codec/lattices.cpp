@@ -14,12 +14,15 @@ bool is_lattice(const NumberLattice& lattice) {
   if (lattice.low > lattice.high || lattice.low < -kMostCode || lattice.high > kMostCode) {
     return false;
   }
+  if (lattice.grain < 1 || lattice.low % lattice.grain != 0 || lattice.high % lattice.grain != 0) {
+    return false;
+  }
   if (lattice.palette.empty()) return std::isfinite(lattice.divisor) && lattice.divisor > 0;
   for (std::size_t i = 0; i < lattice.palette.size(); ++i) {
     if (!std::isfinite(lattice.palette[i])) return false;
     if (i > 0 && !(lattice.palette[i - 1] < lattice.palette[i])) return false;
   }
-  return lattice.palette.size() == std::size_t(lattice.high - lattice.low) + 1;
+  return lattice.palette.size() == std::size_t((lattice.high - lattice.low) / lattice.grain) + 1;
 }
 
 // The largest quotient must be finite as well.
@@ -32,7 +35,8 @@ NumberLattice decode_lattice(ByteReader& in) {
   lattice.divisor = in.f32();
   lattice.low = static_cast<std::int32_t>(in.u32());
   lattice.high = static_cast<std::int32_t>(in.u32());
-  const std::uint32_t entries = in.u32();
+  const std::uint32_t entries = in.u16();
+  lattice.grain = in.u16() + 1;
   if (entries > in.remaining() / 4) {
     lattice = {};
     lattice.divisor = 0;  // no lattice

@@ -74,10 +74,14 @@ void LayerValues::read(const codec::CodedValue& code, std::span<float> value) co
 }
 
 codec::BlockLayer LayerValues::in_block(bool is_normal) const {
-  return {.dimension = sextant_ ? 1 : static_cast<int>(dimension_),
-          .is_normal = is_normal,
-          .octahedral_bits = octahedral_ ? coding_.bits : 0,
-          .is_raw = sextant_ || coding_.kind == LayerCoding::Kind::Exact};
+  codec::BlockLayer layer{.dimension = sextant_ ? 1 : static_cast<int>(dimension_),
+                          .is_normal = is_normal,
+                          .octahedral_bits = octahedral_ ? coding_.bits : 0,
+                          .is_raw = sextant_ || coding_.kind == LayerCoding::Kind::Exact};
+  for (std::size_t k = 0; k < coding_.components.size(); ++k) {
+    layer.grains[k] = coding_.components[k].grain;
+  }
+  return layer;
 }
 
 codec::BlockCoding block_coding(std::span<const LayerSchema> layers,

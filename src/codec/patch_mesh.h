@@ -56,6 +56,9 @@ struct BlockLayer {
   bool is_normal = false;   // triangles may be derived
   int octahedral_bits = 0;  // u and v of an OctahedralCode, so many bits each; 0: no direction
   bool is_raw = false;      // all 32 bits of every component, with no order among them
+  std::array<std::int32_t, 4> grains{1, 1, 1, 1};  // by component: NumberLattice::grain
+
+  bool has_grain() const { return grains != std::array<std::int32_t, 4>{1, 1, 1, 1}; }
 };
 
 struct BlockCoding {

@@ -1,6 +1,7 @@
 #include "http/transport.h"
 
 #include "base/assert.h"
+#include "http/url.h"
 
 #include <curl/curl.h>
 
@@ -123,7 +124,7 @@ struct Transport::State {
 Transport::Transport(std::string url, const HttpOptions& options)
     : state_(std::make_unique<State>()) {
   start_curl();
-  state_->url = std::move(url);
+  state_->url = url_to_ask(url);
   state_->options = options;
   state_->multi = curl_multi_init();
   CREASE_ASSERT(state_->multi != nullptr);

@@ -52,10 +52,9 @@ std::vector<float> few_values(std::span<const float> values) {
   return distinct;
 }
 
-}  // namespace
-
-NumberLattice fit_lattice(std::span<const float> values, int bits) {
-  CREASE_ASSERT(bits >= 1 && bits <= kMaxLatticeBits);
+// The coarsest that has all values exactly, if there is one in about 2^bits steps, or as said above
+// (3).
+NumberLattice fit_input(std::span<const float> values, int bits) {
   if (values.empty()) return {};
   const auto [low_at, high_at] = std::minmax_element(values.begin(), values.end());
   const float low = *low_at, high = *high_at;
@@ -88,6 +87,28 @@ NumberLattice fit_lattice(std::span<const float> values, int bits) {
     return {.divisor = 1, .low = 0, .high = last, .palette = std::move(few)};
   }
   return fine;
+}
+
+// The same values in grains, until blends have about 2^bits steps.
+void add_grain(NumberLattice& lattice, int bits) {
+  constexpr std::int32_t kMost = 1 << (kMaxCodeBits - 1);
+  const float most_divisor = power_of_two(kMaxExponent);
+  while (lattice.low < lattice.high && lattice.high - lattice.low < (1 << bits) - 1) {
+    if (lattice.low < -kMost || lattice.high > kMost || lattice.divisor >= most_divisor) break;
+    lattice.low *= 2;
+    lattice.high *= 2;
+    lattice.grain *= 2;
+    if (lattice.palette.empty()) lattice.divisor *= 2;
+  }
+}
+
+}  // namespace
+
+NumberLattice fit_lattice(std::span<const float> values, int bits, int blend_bits) {
+  CREASE_ASSERT(bits >= 1 && bits <= kMaxLatticeBits && blend_bits <= bits);
+  NumberLattice lattice = fit_input(values, bits);
+  add_grain(lattice, blend_bits);
+  return lattice;
 }
 
 }  // namespace crease

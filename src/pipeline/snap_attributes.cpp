@@ -103,17 +103,24 @@ std::string in_words(const LayerCoding& coding) {
   std::string words;
   for (const NumberLattice& lattice : coding.components) {
     char text[48];
+    const double steps = double(lattice.divisor) / double(lattice.grain);  // a unit
     if (!lattice.palette.empty()) {
       std::snprintf(text, sizeof text, "%zu values", lattice.palette.size());
-    } else if (lattice.divisor >= 1) {
-      std::snprintf(text, sizeof text, "steps of 1/%g", double(lattice.divisor));
+    } else if (steps >= 1) {
+      std::snprintf(text, sizeof text, "steps of 1/%g", steps);
     } else {
-      std::snprintf(text, sizeof text, "steps of %g", 1 / double(lattice.divisor));
+      std::snprintf(text, sizeof text, "steps of %g", 1 / steps);
     }
     if (words.ends_with(text)) continue;
     words += (words.empty() ? "" : ", ") + std::string(text);
   }
   return words;
+}
+
+// Texture coordinates: a quarter of the steps asked for is what is left of their waver, and finer
+// ones cost more than they gain. Colours: bytes, whose range is seldom whole, are fine enough.
+int blend_bits(AttributeRole role, int bits) {
+  return role == AttributeRole::TexCoord ? bits - 2 : std::min(bits, 7);
 }
 
 LayerCoding lattice_coding(const AttributeLayer& layer, int bits) {
@@ -123,7 +130,7 @@ LayerCoding lattice_coding(const AttributeLayer& layer, int bits) {
     for (std::size_t i = 0; i < component.size(); ++i) {
       component[i] = layer.values[i * layer.dimension + k];
     }
-    coding.components.push_back(fit_lattice(component, bits));
+    coding.components.push_back(fit_lattice(component, bits, blend_bits(layer.role, bits)));
   }
   return coding;
 }

@@ -2,8 +2,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace crease {
 
@@ -42,6 +49,37 @@ struct SyntaxListener : nlohmann::json_sax<Json> {
 std::string with_article(const char* type) {
   const std::string name(type);
   return (name == "object" || name == "array" ? "an " : name == "null" ? "" : "a ") + name;
+}
+
+constexpr std::array<std::string_view, 6> kFields{"position",     "target",   "up",
+                                                  "vertical_fov", "viewport", "pixels"};
+
+// How many letters to insert, leave out or replace.
+std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);  // from what of `a` came so far to each start of `b`
+  std::iota(row.begin(), row.end(), std::size_t(0));
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t replaced = diagonal + (a[i] != b[k]);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({replaced, diagonal + 1, row[k] + 1});
+    }
+  }
+  return row.back();
+}
+
+// A misspelt field would be its default in silence.
+Status check_fields(const Json& object) {
+  for (const auto& [key, value] : object.items()) {
+    if (std::ranges::find(kFields, key) != kFields.end()) continue;
+    const std::string_view nearest = *std::ranges::min_element(
+        kFields, {}, [&](std::string_view field) { return edits_between(key, field); });
+    return bad(Error::BadFormat, "\"" + key.substr(0, 40) +
+                                     "\" is no field of it; the nearest is \"" +
+                                     std::string(nearest) + "\"");
+  }
+  return Done{};
 }
 
 // Each read_* leaves the default where the field is absent.
@@ -114,7 +152,7 @@ Result<Camera> parse_camera(std::string_view json) {
   }
   Camera camera;
   for (const Status& status :
-       {read_vector(object, "position", true, camera.position),
+       {check_fields(object), read_vector(object, "position", true, camera.position),
         read_vector(object, "target", true, camera.target),
         read_vector(object, "up", false, camera.up), read_viewport(object, camera),
         read_number(object, "vertical_fov", 0, 180, camera.vertical_fov_deg),

@@ -234,8 +234,13 @@ class Failures(tool.Case):
                                exit_status=6)
             self.assertFalse(result["ok"])
             self.assertTrue(result["errors"][0])
-        self.assertFalse(self.json("validate", self.write("cut.crease", bytes(whole[:-9])),
-                                   exit_status=6)["ok"])
+        for part in (whole[:-9], whole[:100], whole + b"more"):
+            file = self.write("cut.crease", bytes(part))
+            result = self.json("validate", file, exit_status=6)
+            self.assertFalse(result["ok"])
+            self.assertEqual(result["bytes"], len(part))
+            text = self.run_tool("validate", file, exit_status=6).stdout
+            self.assertEqual(text.count(file), 1)
 
     def test_a_failed_command_leaves_the_old_output_and_nothing_else(self):
         out = self.write("old.crease", "precious")

@@ -6,6 +6,7 @@ import os
 import shutil
 import signal
 import subprocess
+import urllib.error
 import urllib.request
 
 import tool
@@ -39,11 +40,24 @@ class Serve(tool.Case):
                 with urllib.request.urlopen(url + "?json") as answer:
                     listed = json.load(answer)
                 self.assertEqual([f["name"] for f in listed["files"]], ["city.crease"])
+                with contextlib.suppress(urllib.error.HTTPError):
+                    urllib.request.urlopen(url + "%1b%5b31mred")
                 process.send_signal(number)
                 out, err = process.communicate()
                 self.assertEqual(process.returncode, 130)
                 self.assertEqual(out, "")
+                self.assertNotIn("\x1b", err)
                 self.assertIn("200 GET /", err)
+
+    def test_urls_are_taken_as_they_are_copied_and_other_schemes_refused(self):
+        os.rename(self.built(), self.path("a \u00e4.crease"))
+        with self.served("--quiet") as (url, _):
+            there = self.json("info", "HTTP" + url[4:] + "a \u00e4.crease")
+            here = self.json("info", self.path("a \u00e4.crease"))
+            self.assertEqual(there["triangles"], here["triangles"])
+        for command in (("info",), ("validate",), ("build", "-o", self.path("x.crease"))):
+            failed = self.json(*command, "ftp://host/a.crease", exit_status=3)
+            self.assertEqual(failed["error"]["name"], "NotSupported")
 
     def test_a_level_of_a_url_is_that_of_the_file_and_reads_what_it_needs(self):
         model = self.built(40000)

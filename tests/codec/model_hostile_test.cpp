@@ -1,6 +1,8 @@
 // Bytes that are not what a build wrote: an error that says where, or a model that holds every
 // invariant.
+#include "codec/encode_lattices.h"
 #include "codec/encoded_model.h"
+#include "codec/lattices.h"
 #include "codec/repair_checksums.h"
 #include "crease/build_hierarchy.h"
 #include "support/sanitized.h"
@@ -102,6 +104,25 @@ TEST_CASE("a failure names the block") {
     CHECK(model.failure().message.find("block " + std::to_string(index_of(entry.id))) !=
           std::string::npos);
   }
+}
+
+TEST_CASE("a lattice whose ends or entries are not those of its grain is refused") {
+  const std::vector<LayerSchema> layers{
+      {"uv", AttributeRole::TexCoord, Interpolation::Linear, 1, AttributeCoding::Lattice, 12}};
+  const auto is_read = [&](NumberLattice lattice) {
+    const std::vector<LayerCoding> codings{{LayerCoding::Kind::Lattice, 12, {std::move(lattice)}}};
+    const Result<std::vector<LayerCoding>> read = decode_codings(layers, encode_lattices(codings));
+    if (read.ok()) CHECK(*read == codings);
+    return read.ok();
+  };
+  CHECK(is_read({.divisor = 64, .low = -8, .high = 64, .palette = {}, .grain = 8}));
+  CHECK(!is_read({.divisor = 64, .low = -7, .high = 64, .palette = {}, .grain = 8}));
+  CHECK(!is_read({.divisor = 64, .low = -8, .high = 63, .palette = {}, .grain = 8}));
+  CHECK(is_read({.divisor = 1, .low = 0, .high = 16, .palette = {1, 2, 4}, .grain = 8}));
+  CHECK(!is_read({.divisor = 1, .low = 0, .high = 16, .palette = {1, 2}, .grain = 8}));
+  CHECK(!is_read({.divisor = 1, .low = 0, .high = 16, .palette = {1, 2, 4, 5}, .grain = 8}));
+  CHECK(!is_read({.divisor = 1, .low = 0, .high = 16, .palette = {1, 4, 2}, .grain = 8}));
+  CHECK(is_read({.divisor = 1, .low = 0, .high = 1 << 20, .palette = {}, .grain = 1 << 16}));
 }
 
 TEST_CASE("no more memory than allowed") {

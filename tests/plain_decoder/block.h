@@ -5,6 +5,7 @@
 #include "plain_decoder/bits.h"
 #include "plain_decoder/octahedral.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,7 +20,8 @@ struct BlockLayer {
   Kind kind = Kind::Floats;
   int bits = 0;
   std::size_t dimension = 1;
-  bool is_normal = false;  // of role 0
+  bool is_normal = false;                          // of role 0
+  std::array<std::int32_t, 4> grains{1, 1, 1, 1};  // of the lattices
 
   std::size_t numbers() const { return kind == Kind::Sextant ? 1 : dimension; }  // of a code
 };

@@ -219,19 +219,22 @@ Lattice read_lattice(Reader& in) {
   lattice.divisor = in.f32();
   lattice.least = in.i32();
   lattice.greatest = in.i32();
-  const std::uint32_t entries = in.u32();
+  const std::uint32_t entries = in.u16();
+  lattice.grain = in.u16() + 1;
   demand(std::isfinite(lattice.divisor) && lattice.divisor > 0, "a divisor");
   demand(-kMost <= lattice.least && lattice.least <= lattice.greatest && lattice.greatest <= kMost,
          "the codes of a lattice");
+  demand(lattice.least % lattice.grain == 0 && lattice.greatest % lattice.grain == 0,
+         "ends that are no multiples of the grain");
   for (std::uint32_t i = 0; i < entries; ++i) {
     const float entry = in.f32();
     demand(std::isfinite(entry), "an entry that is not finite");
     demand(i == 0 || lattice.entries.back() < entry, "entries that do not ascend");
     lattice.entries.push_back(entry);
   }
-  demand(
-      entries == 0 || std::int64_t(entries) == std::int64_t(lattice.greatest) - lattice.least + 1,
-      "not an entry for every code");
+  demand(entries == 0 || std::int64_t(entries - 1) * lattice.grain ==
+                             std::int64_t(lattice.greatest) - lattice.least,
+         "not an entry for every multiple of the grain");
   if (entries == 0) {
     for (const std::int32_t code : {lattice.least, lattice.greatest}) {
       demand(std::isfinite(float(code) / lattice.divisor), "a value that is not finite");

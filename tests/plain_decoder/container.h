@@ -61,6 +61,7 @@ struct Lattice {
   float divisor = 1;
   std::int32_t least = 0, greatest = 0;
   std::vector<float> entries;
+  std::int32_t grain = 1;
 };
 
 struct Entry {

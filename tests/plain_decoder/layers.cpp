@@ -36,7 +36,8 @@ class LayerReader {
 
   BitsBy<2> have_one_code_, is_kept_;
   BitsBy<3> is_like_;
-  std::array<Signed, 4> difference_;
+  BitsBy<1> is_of_grain_;
+  std::array<Signed, 4> difference_, difference_in_grains_;
 };
 
 bool LayerReader::had_code(std::uint32_t corner) const {
@@ -161,6 +162,21 @@ Code LayerReader::read_code_of_vertex(std::uint32_t v, const std::vector<std::ui
 // "New code".
 Code LayerReader::read_new_code(const Code& expected) {
   Code code{};
+  bool has_grain = false, expects_grain = true;
+  for (std::size_t k = 0; k < layer_.numbers(); ++k) {
+    has_grain = has_grain || layer_.grains[k] > 1;
+    expects_grain = expects_grain && expected[k] % layer_.grains[k] == 0;
+  }
+  if (has_grain && is_of_grain_[{expects_grain}].read(in_)) {
+    for (std::size_t k = 0; k < layer_.numbers(); ++k) {
+      const std::int64_t grain = layer_.grains[k], raised = expected[k] + grain / 2;
+      const std::int64_t nearest = raised / grain - (raised % grain < 0 ? 1 : 0);
+      const std::int64_t grains =
+          sum_of(static_cast<std::int32_t>(nearest), difference_in_grains_[k].read(in_));
+      code[k] = static_cast<std::int32_t>(static_cast<std::uint32_t>(grains * grain));
+    }
+    return code;
+  }
   for (std::size_t k = 0; k < layer_.numbers(); ++k) {
     if (layer_.kind == BlockLayer::Kind::Lattice) {
       code[k] = sum_of(expected[k], difference_[k].read(in_));

@@ -48,13 +48,17 @@ void check_block(const Model& model, const Entry& entry, const Block& block,
 
 }  // namespace
 
-BlockSchema block_schema(const Container& container) {
+BlockSchema block_schema(const Container& container,
+                         const std::vector<std::vector<Lattice>>& lattices) {
   constexpr std::array<BlockLayer::Kind, 4> kKinds{
       BlockLayer::Kind::Floats, BlockLayer::Kind::Lattice, BlockLayer::Kind::Octahedral,
       BlockLayer::Kind::Sextant};
   BlockSchema schema;
   for (const Layer& layer : container.head.layers) {
-    schema.layers.push_back({kKinds[layer.coding], layer.bits, layer.dimension, layer.role == 0});
+    BlockLayer& of_block = schema.layers.emplace_back(
+        BlockLayer{kKinds[layer.coding], layer.bits, layer.dimension, layer.role == 0});
+    const std::vector<Lattice>& of_layer = lattices[schema.layers.size() - 1];
+    for (std::size_t k = 0; k < of_layer.size(); ++k) of_block.grains[k] = of_layer[k].grain;
   }
   const auto at_least_1 = [](std::size_t n) { return n > 0 ? static_cast<std::uint32_t>(n) : 1; };
   schema.materials = at_least_1(container.materials.size());
@@ -66,8 +70,8 @@ Model decode_model(const Bytes& file) {
   Model model;
   model.container = read_container(file);
   check_order(model.container);
-  model.schema = block_schema(model.container);
   model.lattices = read_lattices(model.container.head.layers, model.container.tables);
+  model.schema = block_schema(model.container, model.lattices);
   const std::vector<Entry>& entries = model.container.entries;
   const std::vector<Band>& bands = model.container.head.bands;
   std::vector<End> fine_ends;  // of the band before

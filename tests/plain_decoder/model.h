@@ -38,6 +38,7 @@ struct Model {
 Model decode_model(const Bytes& file);
 
 // What blocks have to know of the layers, materials and parts.
-BlockSchema block_schema(const Container& container);
+BlockSchema block_schema(const Container& container,
+                         const std::vector<std::vector<Lattice>>& lattices);
 
 }  // namespace plain

@@ -20,6 +20,7 @@ using codec::DecodedBlock;
 struct Shape {
   std::uint32_t vertices = 20, triangles = 60, materials = 1, parts = 1, labels = 1;
   std::int32_t extent = 1000;   // of coordinates
+  std::int32_t grain = 1;       // of the lattice's second component
   bool has_directions = false;  // a second layer, of octahedral codes
 };
 
@@ -45,7 +46,10 @@ codec::BlockPlan random_plan(std::mt19937_64& random, const Shape& shape) {
   }
   mesh.values.resize(1);
   for (std::uint32_t i = 0; i < 3 * shape.triangles; ++i) {
-    mesh.values[0].push_back({std::int32_t(random() % 3), std::int32_t(random()), 0, 0});
+    const auto any = std::int32_t(random());
+    const std::int32_t of_grain = any - any % shape.grain;
+    mesh.values[0].push_back(
+        {std::int32_t(random() % 3), random() % 2 == 0 ? any : of_grain, 0, 0});
   }
   return plan;
 }
@@ -53,12 +57,14 @@ codec::BlockPlan random_plan(std::mt19937_64& random, const Shape& shape) {
 // A layer of lattice codes, of two components, and perhaps one of directions.
 codec::BlockCoding coding_of(const Shape& shape) {
   codec::BlockCoding coding{{{.dimension = 2}}, shape.materials, shape.parts};
+  coding.layers[0].grains[1] = shape.grain;
   if (shape.has_directions) coding.layers.push_back({.dimension = 3, .octahedral_bits = 10});
   return coding;
 }
 plain::BlockSchema schema_of(const Shape& shape) {
   using Kind = plain::BlockLayer::Kind;
   plain::BlockSchema schema{{{Kind::Lattice, 8, 2, false}}, shape.materials, shape.parts};
+  schema.layers[0].grains[1] = shape.grain;
   if (shape.has_directions) schema.layers.push_back({Kind::Octahedral, 10, 3, false});
   return schema;
 }
@@ -110,6 +116,15 @@ TEST_CASE("both decoders find more labels than boxes are kept") {
   for (const std::uint32_t labels : {2u, 256u, 257u, 600u, 4'000'000'000u}) {
     INFO(labels);
     const Shape shape{.vertices = 50, .triangles = kSanitized ? 600u : 2000u, .labels = labels};
+    check_base(random_plan(random, shape), shape);
+  }
+}
+
+TEST_CASE("both decoders find codes in grains and between them") {
+  std::mt19937_64 random(7);
+  for (const std::int32_t grain : {2, 3, 64, 65'536}) {
+    INFO(grain);
+    const Shape shape{.grain = grain};
     check_base(random_plan(random, shape), shape);
   }
 }

@@ -317,8 +317,11 @@ TEST_CASE("any number is a value, the same in both") {
   std::mt19937_64 random(1);
   std::vector<NumberLattice> numbers(3, {.divisor = 255, .low = -3, .high = 900, .palette = {}});
   numbers[1] = {.divisor = 1, .low = -1, .high = 2, .palette = {-2.5f, 0, 0.1f, 7}};
+  numbers[2] = {.divisor = 1, .low = -15, .high = 30, .palette = {-2.5f, 0, 0.1f, 7}, .grain = 15};
   std::vector<plain::Lattice> lattices;
-  for (const NumberLattice& n : numbers) lattices.push_back({n.divisor, n.low, n.high, n.palette});
+  for (const NumberLattice& n : numbers) {
+    lattices.push_back({n.divisor, n.low, n.high, n.palette, n.grain});
+  }
   const auto check = [&](const LayerCoding& coding, plain::BlockLayer::Kind kind) {
     const LayerValues values(coding, 3);
     std::size_t different = 0;

@@ -21,7 +21,11 @@ std::vector<float> octahedral_value(const Code& code, int bits) {
 float lattice_value(std::int32_t code, const Lattice& lattice) {
   const std::int32_t c = std::clamp(code, lattice.least, lattice.greatest);
   if (lattice.entries.empty()) return float(c) / lattice.divisor;
-  return lattice.entries[static_cast<std::size_t>(c - lattice.least)];
+  const auto i = static_cast<std::size_t>((c - lattice.least) / lattice.grain);
+  const std::int32_t j = (c - lattice.least) % lattice.grain;
+  if (j == 0) return lattice.entries[i];
+  const double before = lattice.entries[i], after = lattice.entries[i + 1];
+  return float((before * (lattice.grain - j) + after * j) / lattice.grain);
 }
 
 // "Sextants".

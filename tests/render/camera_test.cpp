@@ -27,7 +27,7 @@ TEST_CASE("a camera written and read again is the same camera") {
 }
 
 TEST_CASE("a camera needs a position and a target, the rest has defaults") {
-  const Result<Camera> read = parse_camera(R"({"position":[1,2,3],"target":[0,0,0],"more":1})");
+  const Result<Camera> read = parse_camera(R"({"position":[1,2,3],"target":[0,0,0]})");
   REQUIRE(read.ok());
   CHECK(read->position == Vec3d{1, 2, 3});
   CHECK(read->up == Vec3d{0, 0, 1});
@@ -52,6 +52,9 @@ TEST_CASE("a bad camera is refused with the field and what is wrong with it") {
       {R"({"position":[1,2],"target":[0,0,0]})", Error::BadFormat, "\"position\" is an array of 2"},
       {R"({"position":"here","target":[0,0,0]})", Error::BadFormat, "\"position\" is a string"},
       {R"({"position":[1,2,null],"target":[0,0,0]})", Error::BadFormat, "\"position\"[2]"},
+      {R"({"position":[1,2,3],"target":[0,0,0],"pixel":5})", Error::BadFormat,
+       "\"pixel\" is no field of it; the nearest is \"pixels\""},
+      {R"({"position":[1,2,3],"target":[0,0,0],"fov":5})", Error::BadFormat, "\"fov\" is no field"},
       {R"({"position":[1,2,3],"target":[1,2,3]})", Error::BadValue, "the same point"},
       {R"({"position":[1,2,3],"target":[0,0,0],"up":[0,0,0]})", Error::BadValue, "\"up\""},
       {R"({"position":[1,2,3],"target":[0,0,0],"vertical_fov":180})", Error::BadValue,

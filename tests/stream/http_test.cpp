@@ -3,6 +3,7 @@
 
 #include "crease/block_streamer.h"
 #include "crease/file_server.h"
+#include "http/url.h"
 #include "stream/fault_host.h"
 #include "stream/stream_files.h"
 
@@ -225,11 +226,21 @@ TEST_CASE("of a range whose begin is there, the rest is asked for") {
 TEST_CASE("what is no URL of a host") {
   CHECK(is_http_url("http://a/b"));
   CHECK(is_http_url("https://a/b"));
+  CHECK(is_http_url("HTTP://a/b"));
+  CHECK(is_http_url("Https://a/b"));
+  CHECK(!is_http_url("http:/"));
   CHECK(!is_http_url("ftp://a/b"));
   CHECK(!is_http_url("a/http://b"));
   const Result<ByteSourcePtr> bad = open_http_source("http://", hasty());
   REQUIRE(!bad.ok());
   CHECK(bad.failure().error == Error::ReadFailed);
+}
+
+TEST_CASE("a URL is asked for as hosts want it") {
+  CHECK(http::url_to_ask("HTTPS://Host/A b/\xc3\xa4.crease?q=1 2") ==
+        "https://Host/A%20b/%C3%A4.crease?q=1%202");
+  CHECK(http::url_to_ask("http://h\xc3\xa4/%20") == "http://h\xc3\xa4/%20");
+  CHECK(http::url_to_ask("http://host") == "http://host");
 }
 
 }  // namespace
