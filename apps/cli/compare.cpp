@@ -72,7 +72,9 @@ Command add_compare(CLI::App& app, const Common& common) {
   command->add_option("A", options->a, "mesh file, .crease or its URL, at full resolution")
       ->required();
   command->add_option("B", options->b, "the other one")->required();
-  command->add_option("--samples", options->compare.samples, "points on each surface")
+  command
+      ->add_option("--samples", options->compare.samples,
+                   "points on each surface for means and normals")
       ->type_name("N")
       ->check(sample_count(1))
       ->capture_default_str();

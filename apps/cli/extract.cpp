@@ -40,13 +40,8 @@ Json asked_json(const ExtractArguments& options) {
 }
 
 // Why the level is not what was asked for.
-std::string shortfall_of(const Chosen& chosen, std::size_t triangles) {
-  const std::string count = grouped(triangles);
-  if (chosen.stopped_by == StoppedBy::Topology) {
-    return "target not met: the coarsest level has " + count + " triangles";
-  }
-  return "target not met: the level with " + count + " triangles is off by " +
-         in_length(hausdorff(*chosen.measured));
+std::string shortfall_of(std::size_t triangles) {
+  return "target not met: the coarsest level has " + grouped(triangles) + " triangles";
 }
 
 std::string in_words(const std::optional<Comparison>& measured) {
@@ -187,10 +182,9 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
     if (refused) {
       report.text.clear();
       report.short_of = Error::TargetNotMet;
-      report.shortfall =
-          shortfall_of(chosen, level.triangle_count()) + "; nothing was written (--strict)";
+      report.shortfall = shortfall_of(level.triangle_count()) + "; nothing was written (--strict)";
     } else {
-      log(common, shortfall_of(chosen, level.triangle_count()));
+      log(common, shortfall_of(level.triangle_count()));
     }
   }
   return report;

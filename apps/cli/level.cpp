@@ -3,10 +3,10 @@
 #include "cli/console.h"
 #include "cli/fields.h"
 #include "cli/number_check.h"
+#include "cli/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace crease::cli {
 
@@ -32,7 +32,7 @@ void add_level_options(CLI::App& command, LevelOptions& options) {
   ratio->excludes(error);
   command
       .add_option("--samples", options.samples,
-                  "points on each surface that errors are measured at; 0 measures nothing")
+                  "points on each surface for means and normals; 0 measures nothing")
       ->type_name("N")
       ->check(sample_count(0))
       ->capture_default_str();
@@ -54,6 +54,14 @@ const char* name_of(StoppedBy stop) {
 
 namespace {
 
+CompareOptions options_of(std::size_t samples, const Common& common) {
+  CompareOptions options;
+  options.samples = samples;
+  options.threads = common.threads;
+  options.progress = progress_bar(common);
+  return options;
+}
+
 // The last contractions may take the last triangle; a level for others has at least one.
 void keep_a_triangle(ProgressiveMesh& mesh) {
   while (mesh.triangle_count() == 0 && mesh.applied() > 0) mesh.set_applied(mesh.applied() - 1);
@@ -68,9 +76,9 @@ Chosen choose_by_count(ProgressiveMesh& mesh, std::size_t count) {
   return chosen;
 }
 
-// Looks for the coarsest level within `limit` by measuring. Errors grow along the sequence, though
-// not strictly, so this brackets from where the recorded error points to and halves the bracket
-// until it is one contraction or a hundredth of the triangles wide. What it returns was measured.
+// Looks for the coarsest level within `limit`. Errors grow along the sequence, though not strictly,
+// so this brackets from where the recorded error points to and halves the bracket until it is one
+// contraction or a hundredth of the triangles wide. Of what it returns no point is too far.
 class ErrorSearch {
  public:
   ErrorSearch(ProgressiveMesh& mesh, const Mesh& full, double limit, std::size_t samples,
@@ -105,14 +113,14 @@ class ErrorSearch {
            (triangles_at(good) - triangles_at(bad)) * 100 > triangles_at(good)) {
       try_level(good + (bad - good) / 2);
     }
-    if (!interrupted() && !measured_.contains(good)) is_within(good);
     if (interrupted()) return interrupted_failure();
 
     mesh_.set_applied(good);
+    const Result<Comparison> measured = measure_level(full_, mesh_.extract(), samples_, common_);
+    if (!measured.ok()) return measured.failure();
     Chosen chosen;
-    chosen.measured = measured_.at(good);
+    chosen.measured = *measured;
     chosen.stopped_by = good == base ? StoppedBy::Base : StoppedBy::Error;
-    chosen.target_met = meets_limit(*chosen.measured);
     return chosen;
   }
 
@@ -128,16 +136,13 @@ class ErrorSearch {
   }
   bool is_within(std::size_t applied) {
     mesh_.set_applied(applied);
-    const Result<Comparison> measured = measure_level(full_, mesh_.extract(), samples_, common_);
-    if (!measured.ok()) return false;  // interrupted, which run() sees
-    measured_.insert_or_assign(applied, *measured);
-    log(common_, "  " + std::to_string(mesh_.triangle_count()) + " triangles: measured " +
-                     std::to_string(hausdorff(*measured)));
-    return meets_limit(*measured);
-  }
-  // A mesh is off from itself by the rounding of the measurement.
-  bool meets_limit(const Comparison& measured) const {
-    return hausdorff(measured) <= limit_ + 1e-12 * measured.diagonal;
+    const Result<bool> within =
+        meshes_within(full_, mesh_.extract(), limit_, options_of(samples_, common_));
+    wipe_progress_bar();
+    if (!within.ok()) return false;  // interrupted, which run() sees
+    log(common_, "  " + std::to_string(mesh_.triangle_count()) + " triangles: " +
+                     (*within ? "within" : "not within") + " " + in_length(limit_));
+    return *within;
   }
 
   ProgressiveMesh& mesh_;
@@ -145,7 +150,6 @@ class ErrorSearch {
   double limit_;
   std::size_t samples_;
   const Common& common_;
-  std::map<std::size_t, Comparison> measured_;  // by contractions applied
 };
 
 }  // namespace
@@ -169,11 +173,7 @@ Result<Chosen> choose_level(ProgressiveMesh& mesh, const Mesh& full, const Level
 
 Result<Comparison> measure_level(const Mesh& full, const Mesh& level, std::size_t samples,
                                  const Common& common) {
-  CompareOptions options;
-  options.samples = samples;
-  options.threads = common.threads;
-  options.progress = progress_bar(common);
-  Result<Comparison> measured = compare_meshes(full, level, options);
+  Result<Comparison> measured = compare_meshes(full, level, options_of(samples, common));
   wipe_progress_bar();
   if (interrupted()) return interrupted_failure();
   return measured;

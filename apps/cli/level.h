@@ -19,7 +19,7 @@ struct LevelOptions {
   std::optional<std::size_t> triangles{};
   std::optional<double> ratio{};
   std::optional<double> error{};
-  std::size_t samples = 100'000;  // to measure with, on each surface
+  std::size_t samples = 100'000;  // to measure means and normals with, on each surface
 };
 
 void add_level_options(CLI::App& command, LevelOptions& options);
@@ -34,12 +34,12 @@ const char* name_of(StoppedBy stop);
 
 struct Chosen {
   StoppedBy stopped_by = StoppedBy::Base;
-  bool target_met = true;
-  std::optional<Comparison> measured;  // of the level in force, when the search measured it
+  bool target_met = true;              // but for Topology
+  std::optional<Comparison> measured;  // of the level in force, with --error
 };
 
-// Moves `mesh` to the level asked for. With --error that is the coarsest whose measured distance
-// from `full`, both ways, is at most the length asked: quadrics only tell where to look.
+// Moves `mesh` to the level asked for. With --error that is the coarsest that is nowhere further
+// from `full`, both ways, than the length asked: quadrics only tell where to look.
 Result<Chosen> choose_level(ProgressiveMesh& mesh, const Mesh& full, const LevelOptions& asked,
                             const Common& common);
 

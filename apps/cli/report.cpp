@@ -129,7 +129,7 @@ Command add_report(CLI::App& app, const Common& common) {
       ->capture_default_str();
   command
       ->add_option("--samples", options->samples,
-                   "points on each surface that errors are measured at; 0 measures nothing")
+                   "points on each surface for means and normals; 0 measures nothing")
       ->type_name("N")
       ->check(sample_count(0))
       ->capture_default_str();

@@ -1,13 +1,14 @@
 #include "crease/compare.h"
 
 #include "base/assert.h"
+#include "measure/furthest.h"
+#include "measure/look_for_each.h"
 #include "measure/sample.h"
 #include "measure/surface.h"
 #include "parallel/parallel.h"
 #include "parallel/shared_progress.h"
 
 #include <algorithm>
-#include <mutex>
 #include <vector>
 
 namespace crease {
@@ -17,26 +18,15 @@ namespace {
 // Two triangles count as equally near when their distances differ by less than this share of the
 // diagonal: a sample on a hard edge sees both sides of it.
 constexpr double kTie = 1e-5;
-constexpr std::size_t kGrain = 512;
-
-// So many points are looked for at a time; in between a thread asks whether to go on.
-constexpr std::size_t kAtATime = 64;
-
-// Calls look(i) for points i of a range, until the work is to stop.
-template <typename Look>
-void look_for_each(std::size_t begin, std::size_t end, SharedProgress& progress, Look look) {
-  while (begin < end && !progress.stopped()) {
-    const std::size_t next = std::min(end, begin + kAtATime);
-    for (std::size_t i = begin; i < next; ++i) look(i);
-    progress.advance(next - begin);
-    begin = next;
-  }
-}
+// Frame units: nothing that is less wrong than this is found out.
+constexpr double kRounding = 1e-9;
+// What bounds the work where distances are nearly the same all over a surface.
+constexpr std::size_t kQueriesATriangle = 16, kQueriesAtLeast = 1'000'000;
 
 struct OneWay {
   std::vector<double> distance;   // frame units, per sample
   std::vector<double> deviation;  // radians, per sample
-  double max = 0;                 // frame units, vertices included
+  Furthest furthest;              // frame units
 };
 
 // Per sample into arrays of its own, so that sums do not depend on how threads share the work.
@@ -46,49 +36,42 @@ OneWay measure_samples(const Surface& from, const Surface& to, const CompareOpti
   result.distance.resize(options.samples);
   result.deviation.resize(options.samples);
   const Sampler sampler(from, options.samples, options.seed);
-  parallel_ranges(options.samples, kGrain, [&](std::size_t begin, std::size_t end) {
-    Surface::Scratch scratch;
-    look_for_each(begin, end, progress, [&](std::size_t i) {
-      const SurfacePoint sample = sampler(i);
-      Vec3d p;
-      for (std::size_t c = 0; c < 3; ++c) {
-        p += from.corner(sample.triangle, c) * sample.weights[c];
-      }
-      const Vec3d normal = from.normal(sample.triangle, sample.weights);
-      const Nearest nearest = to.nearest(p, &normal, tie, scratch);
-      result.distance[i] = nearest.distance;
-      result.deviation[i] = nearest.deviation_rad;
-    });
+  const auto is_over = [&] { return progress.stopped(); };
+  look_for_each(options.samples, progress, is_over, [&](std::size_t i, Surface::Scratch& scratch) {
+    const SurfacePoint sample = sampler(i);
+    Vec3d p;
+    for (std::size_t c = 0; c < 3; ++c) {
+      p += from.corner(sample.triangle, c) * sample.weights[c];
+    }
+    const Vec3d normal = from.normal(sample.triangle, sample.weights);
+    const Nearest nearest = to.nearest(p, &normal, tie, scratch);
+    result.distance[i] = nearest.distance;
+    result.deviation[i] = nearest.deviation_rad;
   });
-  for (double d : result.distance) result.max = std::max(result.max, d);
+  for (double d : result.distance) {
+    result.furthest.distance = std::max(result.furthest.distance, d);
+  }
   return result;
 }
 
-// The largest distance of a vertex that a triangle uses.
-double max_over_vertices(const Mesh& mesh, const Frame& frame, const Surface& to,
-                         SharedProgress& progress) {
-  std::vector<bool> used(mesh.vertex_count());
-  for (const Triangle& triangle : mesh.triangles) {
-    for (VertexId v : triangle) used[index_of(v)] = true;
-  }
-  double largest = 0;
-  std::mutex join;
-  parallel_ranges(mesh.vertex_count(), kGrain, [&](std::size_t begin, std::size_t end) {
-    Surface::Scratch scratch;
-    double own = 0;
-    look_for_each(begin, end, progress, [&](std::size_t v) {
-      if (!used[v]) return;
-      const Vec3d p = frame.to_frame(mesh.positions[v]);
-      own = std::max(own, to.nearest(p, nullptr, 0, scratch).distance);
-    });
-    const std::lock_guard<std::mutex> lock(join);
-    largest = std::max(largest, own);
-  });
-  return largest;
+std::size_t max_queries(const Surface& from, const Surface& to) {
+  return kQueriesATriangle * (from.triangle_count() + to.triangle_count()) + kQueriesAtLeast;
+}
+
+OneWay measure_way(const Surface& from, const Surface& to, const CompareOptions& options,
+                   double tie, SharedProgress& progress) {
+  OneWay way = measure_samples(from, to, options, tie, progress);
+  way.furthest = find_furthest(from, to,
+                               {.at_least = way.furthest.distance,
+                                .relative = kMaxTolerance,
+                                .absolute = kRounding,
+                                .max_queries = max_queries(from, to)},
+                               progress);
+  return way;
 }
 
 Spread spread_of(const OneWay& way, double scale) {
-  Spread spread{.max = way.max / scale};
+  Spread spread{.max = way.furthest.distance / scale, .bound = way.furthest.bound / scale};
   if (way.distance.empty()) return spread;
   double sum = 0, sum_of_squares = 0;
   for (double d : way.distance) {
@@ -101,17 +84,19 @@ Spread spread_of(const OneWay& way, double scale) {
   return spread;
 }
 
+// How far there is to go beside the samples.
+std::size_t size_of(const Mesh& a, const Mesh& b) {
+  return a.vertex_count() + b.vertex_count() + a.triangle_count() + b.triangle_count();
+}
+
 Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareOptions& options) {
   const Frame frame = common_frame(a, b);
   const double tie = kTie * frame.diagonal * frame.scale;
   const Surface surface_a(a, frame), surface_b(b, frame);
 
-  SharedProgress progress(options.progress, "compare",
-                          2 * options.samples + a.vertex_count() + b.vertex_count());
-  OneWay a_to_b = measure_samples(surface_a, surface_b, options, tie, progress);
-  OneWay b_to_a = measure_samples(surface_b, surface_a, options, tie, progress);
-  a_to_b.max = std::max(a_to_b.max, max_over_vertices(a, frame, surface_b, progress));
-  b_to_a.max = std::max(b_to_a.max, max_over_vertices(b, frame, surface_a, progress));
+  SharedProgress progress(options.progress, "compare", 2 * options.samples + size_of(a, b));
+  OneWay a_to_b = measure_way(surface_a, surface_b, options, tie, progress);
+  OneWay b_to_a = measure_way(surface_b, surface_a, options, tie, progress);
   if (progress.stopped()) return fail(Error::Interrupted, "compare: interrupted");
 
   Comparison result;
@@ -132,12 +117,40 @@ Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareOptions& o
   return result;
 }
 
+Result<bool> within(const Mesh& a, const Mesh& b, double distance, const CompareOptions& options) {
+  const Frame frame = common_frame(a, b);
+  const Surface surface_a(a, frame), surface_b(b, frame);
+  SharedProgress progress(options.progress, "compare", size_of(a, b));
+  const auto is_within = [&](const Surface& from, const Surface& to) {
+    const double limit = distance * frame.scale;
+    const FurthestOptions wanted{.at_least = limit,
+                                 .absolute = kRounding,
+                                 .any_will_do = true,
+                                 .max_queries = max_queries(from, to)};
+    // What was found may be further by one rounding and its bound by one more.
+    return find_furthest(from, to, wanted, progress).bound <= limit + 2 * kRounding;
+  };
+  const bool both = is_within(surface_b, surface_a) && is_within(surface_a, surface_b);
+  if (progress.stopped()) return fail(Error::Interrupted, "compare: interrupted");
+  return both;
+}
+
+void check_comparable(const Mesh& a, const Mesh& b) {
+  CREASE_ASSERT(a.triangle_count() > 0 && b.triangle_count() > 0);
+  CREASE_ASSERT(a.normals() != nullptr && b.normals() != nullptr);
+}
+
 }  // namespace
 
 Result<Comparison> compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options) {
-  CREASE_ASSERT(a.triangle_count() > 0 && b.triangle_count() > 0);
-  CREASE_ASSERT(a.normals() != nullptr && b.normals() != nullptr);
+  check_comparable(a, b);
   return run_on(options.threads, [&] { return compare(a, b, options); });
+}
+
+Result<bool> meshes_within(const Mesh& a, const Mesh& b, double distance,
+                           const CompareOptions& options) {
+  check_comparable(a, b);
+  return run_on(options.threads, [&] { return within(a, b, distance, options); });
 }
 
 std::vector<float> distances_to(const Mesh& surface, std::span<const Vec3d> points, int threads) {
@@ -146,7 +159,7 @@ std::vector<float> distances_to(const Mesh& surface, std::span<const Vec3d> poin
     const Frame frame = common_frame(surface, surface);
     const Surface to(surface, frame);
     std::vector<float> distance_of_point(points.size());
-    parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(points.size(), kLooksATask, [&](std::size_t begin, std::size_t end) {
       Surface::Scratch scratch;
       for (std::size_t i = begin; i < end; ++i) {
         const Vec3d p = frame.to_frame(points[i]);

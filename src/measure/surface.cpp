@@ -166,11 +166,14 @@ Nearest Surface::nearest(const Vec3d& p, const Vec3d* normal, double tie, Scratc
   double least = kInfinity;
   for (const Scratch::Candidate& candidate : scratch.candidates) {
     if (candidate.distance > query.best + tie) continue;
-    if (candidate.distance == query.best) scratch.last_triangle = candidate.triangle;
+    if (candidate.distance == query.best) {
+      nearest.triangle = std::min(nearest.triangle, candidate.triangle);
+    }
     if (normal == nullptr) continue;
     least = std::min(least,
                      angle_between(*normal, this->normal(candidate.triangle, candidate.weights)));
   }
+  scratch.last_triangle = nearest.triangle;
   if (normal != nullptr) nearest.deviation_rad = least;
   return nearest;
 }

@@ -29,8 +29,9 @@ struct Frame {
 Frame common_frame(const Mesh& a, const Mesh& b);
 
 struct Nearest {
-  double distance = 0;       // frame units
-  double deviation_rad = 0;  // the least among all triangles within the tie of the distance
+  double distance = 0;             // frame units
+  double deviation_rad = 0;        // the least among all triangles within the tie of the distance
+  std::uint32_t triangle = kNone;  // the first of those that are as near as any
 };
 
 class Surface {
@@ -39,7 +40,9 @@ class Surface {
   // TBB arena it is called in.
   Surface(const Mesh& mesh, const Frame& frame);
 
+  const Mesh& mesh() const { return mesh_; }
   std::size_t triangle_count() const { return mesh_.triangle_count(); }
+  Vec3d position(std::size_t vertex) const { return positions_[vertex]; }
   Vec3d corner(std::size_t triangle, std::size_t corner) const {
     return positions_[index_of(mesh_.triangles[triangle][corner])];
   }
