@@ -72,7 +72,9 @@ void ActiveCut::copy_triangle(Part from, std::uint32_t source, Part to, std::uin
   }
   const ActiveTriangles& old = parts_[from];
   ActiveTriangles& part = parts_[to];
-  std::copy_n(&old.slots[3 * std::size_t(source)], 3, &part.slots[3 * std::size_t(target)]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    part.slots[3 * std::size_t(target) + k] = old.slots[3 * std::size_t(source) + k];
+  }
   const std::size_t each = 3 * tracked_.size();
   for (std::size_t i = 0; i < each; ++i) {
     part.values[each * target + i] = old.values[each * source + i];
