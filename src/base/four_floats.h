@@ -58,9 +58,15 @@ struct FourDoubles {
     return {float(low[0]), float(low[1]), float(high[0]), float(high[1])};
 #endif
   }
-  FourDoubles operator+(const FourDoubles& o) const { return {low + o.low, high + o.high}; }
-  FourDoubles operator*(const FourDoubles& o) const { return {low * o.low, high * o.high}; }
-  FourDoubles operator/(const FourDoubles& o) const { return {low / o.low, high / o.high}; }
+  FourDoubles operator+(const FourDoubles& o) const {
+    return {low + o.low, high + o.high};
+  }
+  FourDoubles operator*(const FourDoubles& o) const {
+    return {low * o.low, high * o.high};
+  }
+  FourDoubles operator/(const FourDoubles& o) const {
+    return {low / o.low, high / o.high};
+  }
 };
 
 inline FourDoubles root(const FourDoubles& x) {

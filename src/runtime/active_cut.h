@@ -216,9 +216,10 @@ class ActiveCut {
   std::uint32_t follow(std::uint32_t slot);
   void forget_following();
   template <typename Visit>
-  void visit_following(Visit visit);
+  void visit_all(const std::vector<Following>& all, Visit visit);
   template <typename Moves, typename Visit>
-  void visit_corners_following(Moves moves, Visit visit);
+  void visit_corners(const std::vector<Following>& all, Moves moves, Visit visit);
+  void part_following();
   void show_following();
   bool keeps_between(std::size_t place, NodeId above, NodeId below) const;
   void renew_values(const Following& f, const ActiveVertex& v, std::size_t place);
@@ -226,7 +227,6 @@ class ActiveCut {
   void renew_corners(const Following& f, std::uint32_t to);
   void give_corners(std::uint32_t slot);
   void take_corners(const Following& f);
-  bool is_left(std::uint32_t slot) const { return to_of_slot_[slot] != slot; }
   bool goes_up(CornerRef corner);
   void activate_born();
   std::uint32_t kept_value(const CornerAt& at, std::size_t place) const {
@@ -283,7 +283,7 @@ class ActiveCut {
   std::array<ActiveTriangles, kPartCount> parts_;
   ChangeSet vertex_changes_;
   std::vector<std::uint32_t> arriving_;  // scratch of one triangle
-  std::vector<Following> following_;
+  std::vector<Following> following_, left_;
   std::vector<std::uint32_t> following_of_slot_;  // or kNone
   std::vector<std::uint32_t> to_of_slot_;         // itself, but for one that merges left
   std::vector<SplitId> moves_;                    // that corners have not followed

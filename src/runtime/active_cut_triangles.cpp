@@ -138,8 +138,8 @@ std::size_t ActiveCut::bytes() const {
   std::size_t sum = 8 * done_.capacity() + map_.bytes() + lists_.bytes() +
                     sizeof(ActiveVertex) * vertices_.capacity() + 4 * free_slots_.capacity() +
                     4 * (following_of_slot_.capacity() + to_of_slot_.capacity()) +
-                    sizeof(Following) * following_.capacity() + 4 * moves_.capacity() +
-                    sizeof(Born) * born_.capacity();
+                    sizeof(Following) * (following_.capacity() + left_.capacity()) +
+                    4 * moves_.capacity() + sizeof(Born) * born_.capacity();
   for (const AttributeOrder& order : orders_) sum += order.bytes();
   for (const ActiveTriangles& part : parts_) {
     sum += 4 * (part.ids.capacity() + part.slots.capacity() + part.holes.capacity() +
