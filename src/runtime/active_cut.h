@@ -204,8 +204,18 @@ class ActiveCut {
     return l == normal_layer_ ? !v.has_one_normal()
                               : hierarchy_.layers[l].attribute_count(v.node) > 1;
   }
+  // What all corners of the wedge show wherever they stand, or kNone.
+  std::uint32_t constant_at(std::size_t place, WedgeId wedge) const {
+    const PackedIndices<>& constants = hierarchy_.layers[tracked_[place]].constant_of_wedge;
+    return constants.empty() ? kNone : constants[index_of(wedge)] - 1;
+  }
+  std::uint32_t varying_value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge,
+                                 const CornerLists::View& seen) const;
   std::uint32_t value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge,
-                         const CornerLists::View& seen) const;
+                         const CornerLists::View& seen) const {
+    const std::uint32_t constant = constant_at(place, wedge);
+    return constant != kNone ? constant : varying_value_at(place, v, wedge, seen);
+  }
   // A vertex that has moved, whose corners have not yet.
   struct Following {
     std::uint32_t slot;
