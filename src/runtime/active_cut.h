@@ -260,6 +260,7 @@ class ActiveCut {
   void prefetch_normals(NodeId node) const;
   void prefetch_normals_further(NodeId node) const;
   void prefetch_normal(std::uint32_t attribute) const;
+  void prefetch_varying_values();
   void prefetch_values(WedgeId wedge) const {  // of corners that arrive
     for (const PackedIndices<>* constants : constants_) constants->prefetch(index_of(wedge));
   }
@@ -302,7 +303,8 @@ class ActiveCut {
     std::array<WedgeId, 3> wedges, begins;  // of the vertices where they are
     std::array<std::uint32_t, 3> slots;
   };
-  std::vector<Born> born_;  // scratch
+  std::vector<Born> born_;       // scratch
+  std::vector<NodeId> varying_;  // scratch
 };
 
 }  // namespace crease

@@ -115,16 +115,14 @@ void ActiveCut::activate_born() {
     }
     for (Born& b : born_) {
       b.wedges = h_.triangles[index_of(b.triangle)];
-      for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; is_large_ && k < 3; ++k) {
         map_.prefetch(b.wedges[k]);
         prefetch_values(b.wedges[k]);
       }
     }
     for (Born& b : born_) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        b.begins[k] = map_.begin_before(b.wedges[k]);
-        map_.prefetch_slot(b.begins[k]);
-      }
+      for (std::size_t k = 0; k < 3; ++k) b.begins[k] = map_.begin_before(b.wedges[k]);
+      for (std::size_t k = 0; is_large_ && k < 3; ++k) map_.prefetch_slot(b.begins[k]);
     }
     for (Born& b : born_) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -132,6 +130,7 @@ void ActiveCut::activate_born() {
         prefetch_vertex(b.slots[k]);
       }
     }
+    if (is_large_) prefetch_varying_values();
     for (const Born& b : born_) activate(b.triangle, b.wedges, b.slots);
   }
 }
