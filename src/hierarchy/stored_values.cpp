@@ -33,9 +33,21 @@ void StoredValues::directions(std::span<const std::uint32_t> which, std::span<Ve
     for (std::size_t i = 0; i < which.size(); ++i) found[i] = direction(which[i]);
     return;
   }
+  static_assert(OctahedralCoding::kZero.u == 0 && OctahedralCoding::kZero.v == 0);
   const std::uint32_t max_component = max_component_;
-  for (std::size_t i = 0; i < which.size(); ++i) {
-    found[i] = octahedral_direction(max_component, unpacked(codes_[which[i]]));
+  const std::uint32_t* const codes = codes_.data();
+  const std::size_t in_fours = which.size() - which.size() % 4;
+  for (std::size_t i = 0; i < in_fours; i += 4) {
+    FourInts u, v;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const OctahedralCode code = unpacked(codes[which[i + k]]);
+      u[k] = static_cast<std::int32_t>(code.u), v[k] = static_cast<std::int32_t>(code.v);
+    }
+    const auto [x, y, z] = octahedral_directions(max_component, u, v);
+    for (std::size_t k = 0; k < 4; ++k) found[i + k] = {x[k], y[k], z[k]};
+  }
+  for (std::size_t i = in_fours; i < which.size(); ++i) {
+    found[i] = octahedral_direction(max_component, unpacked(codes[which[i]]));
   }
 }
 

@@ -22,6 +22,7 @@
 // which is no direction but occurs among normals.
 #pragma once
 
+#include "base/four_floats.h"
 #include "crease/vec.h"
 
 #include <array>
@@ -130,6 +131,26 @@ inline Vec3f octahedral_direction(std::uint32_t max_component, OctahedralCode co
   const double size = std::sqrt(xy[0] * xy[0] + xy[1] * xy[1] + z * z);  // of a whole number
   xy /= Pair{size, size};
   return {static_cast<float>(xy[0]), static_cast<float>(xy[1]), static_cast<float>(z / size)};
+}
+
+// The same of four codes at once, the same to the bit: their x, y and z.
+inline std::array<FourFloats, 3> octahedral_directions(std::uint32_t max_component,
+                                                       const FourInts& u, const FourInts& v) {
+  const auto m = static_cast<std::int32_t>(max_component / 2);
+  const FourInts x = u - m, y = v - m;
+  const FourInts sign_x = x >> 31, sign_y = y >> 31;
+  const FourInts size_x = (x ^ sign_x) - sign_x, size_y = (y ^ sign_y) - sign_y;
+  const FourInts z = m - size_x - size_y, below = z >> 31;
+  const FourInts folded_x = ((m - size_y) ^ sign_x) - sign_x;
+  const FourInts folded_y = ((m - size_x) ^ sign_y) - sign_y;
+  const std::array<FourDoubles, 3> n{FourDoubles::from(x ^ ((x ^ folded_x) & below)),
+                                     FourDoubles::from(y ^ ((y ^ folded_y) & below)),
+                                     FourDoubles::from(z)};
+  const FourDoubles size = root(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  const FourInts is_zero = (u | v) == 0;
+  std::array<FourFloats, 3> found;
+  for (std::size_t k = 0; k < 3; ++k) found[k] = is_zero ? FourFloats{} : (n[k] / size).rounded();
+  return found;
 }
 
 // The bits, 8 to 16, of the coarsest lattice that has each of these vectors of three exactly; none

@@ -205,11 +205,18 @@ void ActiveCut::activate(TriangleId t, const std::array<WedgeId, 3>& wedges,
   bool one_normal = true;
   for (std::size_t k = 0; k < 3; ++k) one_normal &= vertices[slots[k]].has_one_normal();
   const bool has_values = tracked > 0 && (tracks_others_ || !one_normal);
-  for (std::size_t k = 0; has_values && k < 3; ++k) {
-    const ActiveVertex& v = vertices[slots[k]];
-    for (std::size_t i = 0; i < tracked; ++i) {
-      if (!has_several(i, v)) continue;  // what is kept is of no use
-      arriving_[k * tracked + i] = value_at(i, v, wedges[k], lists_.of(v.corners));
+  for (std::size_t i = 0; has_values && i < tracked; ++i) {
+    // Where a vertex has one value, what is kept is of no use. Who has several nobody can foretell.
+    std::uint32_t varying = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t constant = constant_at(i, wedges[k]);
+      arriving_[k * tracked + i] = constant;
+      varying |= std::uint32_t(constant == kNone && has_several(i, vertices[slots[k]])) << k;
+    }
+    for (; varying != 0; varying &= varying - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(varying));
+      const ActiveVertex& v = vertices[slots[k]];
+      arriving_[k * tracked + i] = varying_value_at(i, v, wedges[k], lists_.of(v.corners));
     }
   }
   const bool is_derived = touches_triangles_ && is_derived_now(t);

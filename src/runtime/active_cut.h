@@ -204,8 +204,18 @@ class ActiveCut {
     return l == normal_layer_ ? !v.has_one_normal()
                               : hierarchy_.layers[l].attribute_count(v.node) > 1;
   }
+  // What all corners of the wedge show wherever they stand, or kNone.
+  std::uint32_t constant_at(std::size_t place, WedgeId wedge) const {
+    const PackedIndices<>& constants = hierarchy_.layers[tracked_[place]].constant_of_wedge;
+    return constants.empty() ? kNone : constants[index_of(wedge)] - 1;
+  }
+  std::uint32_t varying_value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge,
+                                 const CornerLists::View& seen) const;
   std::uint32_t value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge,
-                         const CornerLists::View& seen) const;
+                         const CornerLists::View& seen) const {
+    const std::uint32_t constant = constant_at(place, wedge);
+    return constant != kNone ? constant : varying_value_at(place, v, wedge, seen);
+  }
   // A vertex that has moved, whose corners have not yet.
   struct Following {
     std::uint32_t slot;
@@ -216,9 +226,10 @@ class ActiveCut {
   std::uint32_t follow(std::uint32_t slot);
   void forget_following();
   template <typename Visit>
-  void visit_following(Visit visit);
+  void visit_all(const std::vector<Following>& all, Visit visit);
   template <typename Moves, typename Visit>
-  void visit_corners_following(Moves moves, Visit visit);
+  void visit_corners(const std::vector<Following>& all, Moves moves, Visit visit);
+  void part_following();
   void show_following();
   bool keeps_between(std::size_t place, NodeId above, NodeId below) const;
   void renew_values(const Following& f, const ActiveVertex& v, std::size_t place);
@@ -226,7 +237,6 @@ class ActiveCut {
   void renew_corners(const Following& f, std::uint32_t to);
   void give_corners(std::uint32_t slot);
   void take_corners(const Following& f);
-  bool is_left(std::uint32_t slot) const { return to_of_slot_[slot] != slot; }
   bool goes_up(CornerRef corner);
   void activate_born();
   std::uint32_t kept_value(const CornerAt& at, std::size_t place) const {
@@ -250,6 +260,7 @@ class ActiveCut {
   void prefetch_normals(NodeId node) const;
   void prefetch_normals_further(NodeId node) const;
   void prefetch_normal(std::uint32_t attribute) const;
+  void prefetch_varying_values();
   void prefetch_values(WedgeId wedge) const {  // of corners that arrive
     for (const PackedIndices<>* constants : constants_) constants->prefetch(index_of(wedge));
   }
@@ -283,7 +294,7 @@ class ActiveCut {
   std::array<ActiveTriangles, kPartCount> parts_;
   ChangeSet vertex_changes_;
   std::vector<std::uint32_t> arriving_;  // scratch of one triangle
-  std::vector<Following> following_;
+  std::vector<Following> following_, left_;
   std::vector<std::uint32_t> following_of_slot_;  // or kNone
   std::vector<std::uint32_t> to_of_slot_;         // itself, but for one that merges left
   std::vector<SplitId> moves_;                    // that corners have not followed
@@ -292,7 +303,8 @@ class ActiveCut {
     std::array<WedgeId, 3> wedges, begins;  // of the vertices where they are
     std::array<std::uint32_t, 3> slots;
   };
-  std::vector<Born> born_;  // scratch
+  std::vector<Born> born_;       // scratch
+  std::vector<NodeId> varying_;  // scratch
 };
 
 }  // namespace crease

@@ -9,48 +9,56 @@ namespace crease {
 
 // With the memory of the next ones on its way.
 template <typename Visit>
-void ActiveCut::visit_following(Visit visit) {
-  const std::size_t count = following_.size();
+void ActiveCut::visit_all(const std::vector<Following>& all, Visit visit) {
+  const std::size_t count = all.size();
   for (std::size_t i = 0; i < count; ++i) {
-    if (i + 8 < count) prefetch_vertex(following_[i + 8].slot);
-    visit(following_[i]);
+    if (i + 8 < count) prefetch_vertex(all[i + 8].slot);
+    visit(all[i]);
   }
 }
 
 // The same for those of which moves(f) holds, with that of the triangles of their corners.
 template <typename Moves, typename Visit>
-void ActiveCut::visit_corners_following(Moves moves, Visit visit) {
-  const std::size_t count = following_.size();
+void ActiveCut::visit_corners(const std::vector<Following>& all, Moves moves, Visit visit) {
+  const std::size_t count = all.size();
   for (std::size_t i = 0; i < count; ++i) {
-    if (i + 8 < count) prefetch_vertex(following_[i + 8].slot);
-    if (i + 4 < count && moves(following_[i + 4])) prefetch_corners(following_[i + 4].slot);
-    if (moves(following_[i])) visit(following_[i]);
+    if (i + 8 < count) prefetch_vertex(all[i + 8].slot);
+    if (i + 4 < count && moves(all[i + 4])) prefetch_corners(all[i + 4].slot);
+    if (moves(all[i])) visit(all[i]);
   }
 }
 
-// Vertices stand where they will stay. Those that have merged left tell where their corners go.
+// Those that have merged left go into a list of their own: who they are nobody can foretell.
+void ActiveCut::part_following() {
+  const std::size_t count = following_.size();
+  left_.resize(count);
+  std::size_t staying = 0, left = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i + 16 < count) __builtin_prefetch(&vertices_[following_[i + 16].slot]);
+    const Following f = following_[i];
+    const bool stays = vertices_[f.slot].node != kNoNode;
+    left_[left] = f;
+    following_[staying] = f;
+    left += stays ? 0 : 1;
+    staying += stays ? 1 : 0;
+  }
+  left_.resize(left);
+  following_.resize(staying);
+}
+
+// Vertices stand where they will stay.
 void ActiveCut::show_following() {
   constexpr std::size_t kAhead = 4;
   const std::size_t count = following_.size();
-  const auto normals_of = [&](std::size_t i) {
-    return attributes_of_normals(vertices_[following_[i].slot].node);
-  };
   std::array<CompactRanges::Range, kAhead> normals{};  // of the next ones
   for (std::size_t i = 0; i < count + kAhead; ++i) {
     if (i + 20 < count) __builtin_prefetch(&vertices_[following_[i + 20].slot]);
     if (i + 12 < count) prefetch_normals(vertices_[following_[i + 12].slot].node);
     if (i + 8 < count) prefetch_normals_further(vertices_[following_[i + 8].slot].node);
     CompactRanges::Range& range = normals[i % kAhead];
-    if (i >= kAhead) {
-      const std::uint32_t slot = following_[i - kAhead].slot;
-      if (vertices_[slot].node != kNoNode) {
-        show_vertex(slot, range);
-      } else {
-        to_of_slot_[slot] = map_.slot_at(vertices_[slot].begin);
-      }
-    }
+    if (i >= kAhead) show_vertex(following_[i - kAhead].slot, range);
     if (i < count) {
-      range = normals_of(i);
+      range = attributes_of_normals(vertices_[following_[i].slot].node);
       prefetch_normal(range.begin);
     }
   }
@@ -58,15 +66,18 @@ void ActiveCut::show_following() {
 
 void ActiveCut::forget_following() {
   for (const Following& f : following_) following_of_slot_[f.slot] = kNone;
+  for (const Following& f : left_) following_of_slot_[f.slot] = kNone;
   following_.clear();
+  left_.clear();
   moves_.clear();
 }
 
 void ActiveCut::bring_corners_down() {
   show_following();
-  visit_corners_following([](const Following& f) { return !f.is_new; },
-                          [&](const Following& f) { give_corners(f.slot); });
-  visit_following([&](const Following& f) { renew_corners(f, f.slot); });
+  visit_corners(
+      following_, [](const Following& f) { return !f.is_new; },
+      [&](const Following& f) { give_corners(f.slot); });
+  visit_all(following_, [&](const Following& f) { renew_corners(f, f.slot); });
   activate_born();
   for (const SplitId s : moves_) touch_derived(s);
   forget_following();
@@ -104,16 +115,14 @@ void ActiveCut::activate_born() {
     }
     for (Born& b : born_) {
       b.wedges = h_.triangles[index_of(b.triangle)];
-      for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; is_large_ && k < 3; ++k) {
         map_.prefetch(b.wedges[k]);
         prefetch_values(b.wedges[k]);
       }
     }
     for (Born& b : born_) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        b.begins[k] = map_.begin_before(b.wedges[k]);
-        map_.prefetch_slot(b.begins[k]);
-      }
+      for (std::size_t k = 0; k < 3; ++k) b.begins[k] = map_.begin_before(b.wedges[k]);
+      for (std::size_t k = 0; is_large_ && k < 3; ++k) map_.prefetch_slot(b.begins[k]);
     }
     for (Born& b : born_) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -121,43 +130,46 @@ void ActiveCut::activate_born() {
         prefetch_vertex(b.slots[k]);
       }
     }
+    if (is_large_) prefetch_varying_values();
     for (const Born& b : born_) activate(b.triangle, b.wedges, b.slots);
   }
 }
 
 void ActiveCut::bring_corners_up() {
+  part_following();
   show_following();
-  visit_corners_following([&](const Following& f) { return is_left(f.slot); },
-                          [&](const Following& f) {
-                            lists_.keep_if(vertices_[f.slot].corners,
-                                           [&](const CornerAt& at) { return goes_up(at.corner); });
-                          });
-  visit_following(
-      [&](const Following& f) {  // in lists of those that stay all values are right then
-        if (!is_left(f.slot)) renew_corners(f, f.slot);
-      });
-  visit_following([&](const Following& f) {
-    if (is_left(f.slot)) take_corners(f);
+  visit_all(left_, [&](const Following& f) {
+    to_of_slot_[f.slot] = map_.slot_at(vertices_[f.slot].begin);
   });
+  visit_corners(
+      left_, [](const Following&) { return true; },
+      [&](const Following& f) {
+        lists_.keep_if(vertices_[f.slot].corners,
+                       [&](const CornerAt& at) { return goes_up(at.corner); });
+      });
+  // In lists of those that stay all values are right then.
+  visit_all(following_, [&](const Following& f) { renew_corners(f, f.slot); });
+  visit_all(left_, [&](const Following& f) { take_corners(f); });
   for (const SplitId s : moves_) touch_derived(s);
   forget_following();
 }
 
 // Whether the triangle of a corner at a vertex that is left is still one; the corner stands where
-// it belongs then. Else it vanishes from the lists that stay.
+// it belongs then. Else the triangle vanishes, and its other two corners from their lists: also
+// from one that is left, where it would be met again.
 bool ActiveCut::goes_up(CornerRef corner) {
   ActiveTriangles& part = parts_[corner.part()];
   std::uint32_t* const slots = &part.slots[3 * std::size_t(corner.triangle())];
+  const std::uint32_t* const to_of_slot = to_of_slot_.data();
   std::uint32_t to[3];
-  for (std::size_t k = 0; k < 3; ++k) to[k] = to_of_slot_[slots[k]];
+  for (std::size_t k = 0; k < 3; ++k) to[k] = to_of_slot[slots[k]];
   if ((to[0] != to[1]) & (to[1] != to[2]) & (to[2] != to[0])) {
     slots[corner.corner()] = to[corner.corner()];
     part.moved.mark(corner.triangle());
     return true;
   }
-  if (part.ids[corner.triangle()] == kNoTriangle) return false;
-  for (std::uint32_t k = 0; k < 3; ++k) {
-    if (is_left(slots[k])) continue;
+  constexpr std::uint32_t kOthers[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+  for (const std::uint32_t k : kOthers[corner.corner()]) {
     lists_.erase(vertices_[slots[k]].corners, CornerRef(corner.part(), corner.triangle(), k));
   }
   part.remove(corner.triangle());

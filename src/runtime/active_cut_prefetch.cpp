@@ -6,9 +6,10 @@ namespace crease {
 void ActiveCut::prefetch_split(std::uint32_t slot, SplitId s) const {
   const std::size_t first = index_of(h_.first_child(s));
   __builtin_prefetch(&vertices_[slot]);
+  h_.deltas.prefetch(3 * (first - h_.root_count));
+  if (!is_large_) return;
   __builtin_prefetch(&following_of_slot_[slot]);
   h_.second_wedge.prefetch(index_of(s));
-  h_.deltas.prefetch(3 * (first - h_.root_count));
   h_.deltas.prefetch(3 * (first - h_.root_count) + 5);
   h_.is_split.prefetch(first);
 }
@@ -27,20 +28,23 @@ void ActiveCut::prefetch_split_further(SplitId s) const {
 
 void ActiveCut::prefetch_merge(std::uint32_t slot, SplitId s) const {
   __builtin_prefetch(&vertices_[slot]);
+  h_.deltas.prefetch(3 * (index_of(h_.first_child(s)) - h_.root_count));
+  if (!is_large_) return;
   h_.second_wedge.prefetch(index_of(s));
   h_.node_of_split.prefetch(index_of(s));
-  h_.deltas.prefetch(3 * (index_of(h_.first_child(s)) - h_.root_count));
 }
 
 void ActiveCut::prefetch_merge_further(SplitId s) const {
-  const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
-  if (middle < h_.wedge_count()) {
-    map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle)});
-    map_.prefetch_slot(WedgeId{static_cast<std::uint32_t>(middle)});  // if it is one
-  }
-  if (middle > 0) map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle - 1)});
   const NodeId node = h_.node_of_split[index_of(s)];
-  h_.is_split.prefetch(index_of(node));
+  if (is_large_) {
+    const std::size_t middle = index_of(h_.second_wedge[index_of(s)]);
+    if (middle < h_.wedge_count()) {
+      map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle)});
+      map_.prefetch_slot(WedgeId{static_cast<std::uint32_t>(middle)});  // if it is one
+    }
+    if (middle > 0) map_.prefetch(WedgeId{static_cast<std::uint32_t>(middle - 1)});
+    h_.is_split.prefetch(index_of(node));
+  }
   if (h_.is_root(node)) return;
   const SplitId above = h_.split_above(node);
   __builtin_prefetch(&h_.bounds[index_of(above)]);
@@ -84,6 +88,36 @@ void ActiveCut::prefetch_normal(std::uint32_t attribute) const {
     layer.has_value.prefetch(attribute);
   } else if (!layer.value_of_attribute.empty()) {
     layer.value_of_attribute.prefetch(attribute);
+  }
+}
+
+// Of the corners in born_ that have to look up theirs, step by step for all of them.
+void ActiveCut::prefetch_varying_values() {
+  for (std::size_t i = 0; i < tracked_.size(); ++i) {
+    const AttributeHierarchy& layer = hierarchy_.layers[tracked_[i]];
+    if (layer.constant_of_wedge.empty()) continue;
+    varying_.clear();
+    for (const Born& b : born_) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const ActiveVertex& v = vertices_[b.slots[k]];
+        const bool varies = constant_at(i, b.wedges[k]) == kNone && has_several(i, v);
+        if (varies) varying_.push_back(v.node);
+      }
+    }
+    for (const NodeId n : varying_) {
+      layer.attribute_ranges.prefetch(index_of(n));
+      h_.is_split.prefetch(index_of(n));
+      if (!h_.is_root(n)) h_.second_wedge.prefetch(index_of(h_.split_above(n)));
+    }
+    for (const NodeId n : varying_) layer.attribute_ranges.prefetch_further(index_of(n));
+    if (layer.has_value.size() == 0 || layer.value_of_attribute.empty()) continue;
+    for (const NodeId n : varying_) {
+      layer.has_value.prefetch(layer.attribute_ranges.begin(index_of(n)));
+    }
+    for (const NodeId n : varying_) {
+      const std::uint32_t first = layer.attribute_ranges.begin(index_of(n));
+      layer.value_of_attribute.prefetch(layer.place_of_value(first));
+    }
   }
 }
 

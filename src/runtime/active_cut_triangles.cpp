@@ -72,7 +72,9 @@ void ActiveCut::copy_triangle(Part from, std::uint32_t source, Part to, std::uin
   }
   const ActiveTriangles& old = parts_[from];
   ActiveTriangles& part = parts_[to];
-  std::copy_n(&old.slots[3 * std::size_t(source)], 3, &part.slots[3 * std::size_t(target)]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    part.slots[3 * std::size_t(target) + k] = old.slots[3 * std::size_t(source) + k];
+  }
   const std::size_t each = 3 * tracked_.size();
   for (std::size_t i = 0; i < each; ++i) {
     part.values[each * target + i] = old.values[each * source + i];
@@ -136,8 +138,8 @@ std::size_t ActiveCut::bytes() const {
   std::size_t sum = 8 * done_.capacity() + map_.bytes() + lists_.bytes() +
                     sizeof(ActiveVertex) * vertices_.capacity() + 4 * free_slots_.capacity() +
                     4 * (following_of_slot_.capacity() + to_of_slot_.capacity()) +
-                    sizeof(Following) * following_.capacity() + 4 * moves_.capacity() +
-                    sizeof(Born) * born_.capacity();
+                    sizeof(Following) * (following_.capacity() + left_.capacity()) +
+                    4 * moves_.capacity() + sizeof(Born) * born_.capacity();
   for (const AttributeOrder& order : orders_) sum += order.bytes();
   for (const ActiveTriangles& part : parts_) {
     sum += 4 * (part.ids.capacity() + part.slots.capacity() + part.holes.capacity() +

@@ -13,10 +13,10 @@ bool keeps_values(const AttributeHierarchy& layer, SplitId s) {
 
 }  // namespace
 
-// What a corner that comes to v shows. Where the wedge varies, another corner of it often stands
-// there already: of those in `seen`.
-std::uint32_t ActiveCut::value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge,
-                                  const CornerLists::View& seen) const {
+// What a corner that comes to v shows, if its wedge varies. Another corner of it often stands there
+// already: of those in `seen`.
+std::uint32_t ActiveCut::varying_value_at(std::size_t place, const ActiveVertex& v, WedgeId wedge,
+                                          const CornerLists::View& seen) const {
   const std::uint32_t l = tracked_[place];
   if (!orders_[place].empty()) {
     const AttributeHierarchy& layer = hierarchy_.layers[l];
@@ -24,9 +24,6 @@ std::uint32_t ActiveCut::value_at(std::size_t place, const ActiveVertex& v, Wedg
     return layer.stored_value(layer.place_of_value(node.begin) +
                               orders_[place].attribute_at(node, wedge));
   }
-  const PackedIndices<>& constants = hierarchy_.layers[l].constant_of_wedge;
-  const std::uint32_t constant = constants.empty() ? 0 : constants[index_of(wedge)];
-  if (constant != 0) return constant - 1;
   for (const CornerAt at : seen) {
     if (at.wedge == wedge) return kept_value(at, place);
   }

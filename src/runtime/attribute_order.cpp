@@ -95,6 +95,7 @@ AttributeOrder::AttributeOrder(const MeshHierarchy& hierarchy, std::size_t layer
     for (std::uint32_t i = range.begin; i < range.end; ++i)
       begin_of_attribute_.push_back(begins[i]);
   }
+  for (std::uint32_t a = 0; a < Node::kFew; ++a) begin_of_attribute_.push_back(0);
   for (std::uint32_t w = 0; w < hierarchy.vertices.wedge_count(); ++w) {
     const std::uint32_t attribute = forest.attribute_of(WedgeId{w});
     place_of_wedge_.push_back(attribute == kNone ? 0 : begins[attribute]++);

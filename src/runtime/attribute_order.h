@@ -22,6 +22,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace crease {
 
@@ -38,37 +39,39 @@ class AttributeOrder {
     std::size_t first;
     std::uint32_t begin;  // of its attributes, in the layer
     std::uint32_t count;
-    std::array<std::uint32_t, kFew> begins;
+    std::array<std::uint64_t, kFew> begins;  // where an attribute begins, above which it is
   };
   Node node(const AttributeHierarchy& layer, NodeId n) const {
     const auto at = layer.attribute_ranges.range_among_unusual(index_of(n));
     Node node{at.unusual_before, at.range.begin, at.range.end - at.range.begin, {}};
-    const std::uint32_t last = node.count - (node.count > 0 ? 1 : 0);
+    const auto three = begin_of_attribute_.three_from(node.first);
+    node.begins = {key(three[0], 0), key(three[1], 1), key(three[2], 2),
+                   key(begin_of_attribute_[node.first + 3], 3)};
     for (std::uint32_t a = 0; a < Node::kFew; ++a) {
-      const std::uint32_t beyond = 0 - std::uint32_t(a >= node.count);  // all bits
-      node.begins[a] = begin_of_attribute_[node.first + std::min(a, last)] | beyond;
+      node.begins[a] |= 0 - std::uint64_t(a >= node.count);  // all bits: beyond any place
     }
     return node;
   }
   // Of a corner that can stand there. Time O(attributes of the node).
   RelativeAttribute attribute_at(const Node& node, WedgeId wedge) const {
-    const std::uint32_t place = place_of_wedge_[index_of(wedge)];
-    std::uint64_t last = 0;  // its begin, and then which it is
-    const auto look_at = [&](std::uint32_t a, std::uint32_t begin) {
-      const std::uint64_t counts = 0 - std::uint64_t(begin <= place);  // all bits, or none
-      last = std::max(last, (std::uint64_t(begin) << 32 | a) & counts);
-    };
-    for (std::uint32_t a = 0; a < Node::kFew; ++a) look_at(a, node.begins[a]);
+    const std::uint64_t place = key(place_of_wedge_[index_of(wedge)], kMostAttribute);
+    std::uint64_t back = ~std::uint64_t(0);  // to the last begin; what is beyond the place wraps
+    for (const std::uint64_t begin : node.begins) back = std::min(back, place - begin);
     for (std::uint32_t a = Node::kFew; a < node.count; ++a) {
-      look_at(a, begin_of_attribute_[node.first + a]);
+      back = std::min(back, place - key(begin_of_attribute_[node.first + a], a));
     }
-    return static_cast<RelativeAttribute>(last);
+    return static_cast<RelativeAttribute>(place - back);
   }
   std::size_t bytes() const { return place_of_wedge_.bytes() + begin_of_attribute_.bytes(); }
 
  private:
+  static constexpr std::uint32_t kMostAttribute = std::numeric_limits<RelativeAttribute>::max();
+  static std::uint64_t key(std::uint32_t begin, std::uint32_t a) {
+    return std::uint64_t(begin) << std::numeric_limits<RelativeAttribute>::digits | a;
+  }
+
   PackedIndices<> place_of_wedge_;
-  PackedIndices<> begin_of_attribute_;  // of nodes that have not one
+  PackedIndices<> begin_of_attribute_;  // of nodes that have not one, and kFew more
 };
 
 }  // namespace crease

@@ -183,11 +183,22 @@ class CornerLists {
   template <typename Keeps>
   void keep_if(CornerList& list, Keeps keeps) {
     std::uint32_t staying = 0;
+    if (list.is_own()) {
+      for (std::uint32_t i = 0; i < list.count; ++i) {
+        const CornerAt at = list.own(i);
+        const bool stays = keeps(at);
+        list.refs[staying] = at.corner;
+        list.wedges[staying] = at.wedge;
+        staying += stays ? 1 : 0;
+      }
+      list.count = staying;
+      return;
+    }
     for (std::uint32_t i = 0; i < list.count; ++i) {
       const CornerAt at = of(list)[i];
       const bool stays = keeps(at);  // may move the pool
-      (list.is_own() ? list.refs.data() : &refs_[first(list)])[staying] = at.corner;
-      (list.is_own() ? list.wedges.data() : &wedges_[first(list)])[staying] = at.wedge;
+      refs_[first(list) + staying] = at.corner;
+      wedges_[first(list) + staying] = at.wedge;
       staying += stays ? 1 : 0;
     }
     resize(list, staying);

@@ -24,17 +24,22 @@ class CutDrawing {
   std::size_t bytes() const { return 12 * (positions_.capacity() + vertex_normals_.capacity()); }
 
  private:
+  void take(ChangeSet& marked, std::size_t active);
+  void decode_values(const ActiveCut& cut, std::size_t count);
   void sort_touched(ActiveCut& cut, const Geomorphs& geomorphs);
   void refresh_vertices(ActiveCut& cut, const Geomorphs& geomorphs);
   void refresh_part(ActiveCut& cut, const Geomorphs& geomorphs, Part p);
-
+  template <std::size_t kPerTriangle>
+  void refresh_normals(const ActiveCut& cut, const Geomorphs& geomorphs, ActiveTriangles& part);
   void show_normals(const ActiveCut& cut, const Geomorphs& geomorphs, const ActiveTriangles& part,
                     std::uint32_t triangle, std::span<Vec3f> shown) const;
 
   std::vector<Vec3f> positions_, vertex_normals_;
   DrawChanges changes_;
-  std::vector<std::uint32_t> touched_;  // scratch
-  std::vector<Range> ranges_;           // scratch
+  // Scratch.
+  std::vector<std::uint32_t> taken_, values_;
+  std::vector<Vec3f> decoded_;
+  std::vector<Range> ranges_;
 };
 
 // That of the corners as they are; the zero vector for a triangle without area.

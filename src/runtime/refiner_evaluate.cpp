@@ -124,9 +124,26 @@ void Refiner::find_merges(const ActiveCut& cut) {
 }
 
 void Refiner::find_splits(const ActiveCut& cut) {
+  if (is_ordered_) {
+    report_.evaluated += wrong_.find<true>(
+        error_, odometer_, [&](std::uint32_t slot) { wish_split(cut, slot); }, at_once_);
+    return;
+  }
+  // What the vertices say is read when all are found, with the memory of the next ones on its way.
+  std::vector<Wish>& wishes = splits_.wishes;
+  const std::size_t known = wishes.size();  // what was split for others has found some already
   report_.evaluated += wrong_.find<true>(
-      error_, odometer_, [&](std::uint32_t slot) { wish_split(cut, slot); }, at_once_);
-  if (!is_ordered_) sort_by_place(cut, splits_.wishes);
+      error_, odometer_,
+      [&](std::uint32_t slot) {
+        wishes.push_back({0, kNoSplit, slot});
+      },
+      at_once_);
+  const std::span<const ActiveVertex> vertices = cut.vertices();
+  for (std::size_t i = known; i < wishes.size(); ++i) {
+    if (i + 12 < wishes.size()) __builtin_prefetch(&vertices[wishes[i + 12].slot]);
+    wishes[i].split = vertices[wishes[i].slot].split;
+  }
+  sort_by_place(cut, wishes);
 }
 
 // Into as many ranges of wedges as there are wishes, about. What is found on the way (split(),
@@ -140,7 +157,10 @@ void Refiner::sort_by_place(const ActiveCut& cut, std::vector<Wish>& wishes) {
     return index_of(cut.vertices()[wish.slot].begin) >> (bits - range_bits);
   };
   first_in_range_.assign((std::size_t(1) << range_bits) + 1, 0);
-  for (const Wish& wish : wishes) ++first_in_range_[range_of(wish) + 1];
+  for (std::size_t i = 0; i < wishes.size(); ++i) {
+    if (i + 12 < wishes.size()) __builtin_prefetch(&cut.vertices()[wishes[i + 12].slot]);
+    ++first_in_range_[range_of(wishes[i]) + 1];
+  }
   for (std::size_t i = 1; i < first_in_range_.size(); ++i) {
     first_in_range_[i] += first_in_range_[i - 1];
   }
