@@ -1,6 +1,7 @@
 """crease view --screenshot: what it says of what it shows."""
 
 import json
+import os
 import pathlib
 import sys
 import unittest
@@ -55,6 +56,13 @@ class Answers(tool.Case):
         report = self.shown(self.built(), self.camera([0, 0, 0.001]), "--mode", "linear")
         self.assertEqual(report["triangles"], full)
         self.assertEqual(report["error_pixels"], 0)
+
+    def test_no_more_is_read_than_the_file_has(self):
+        model = self.built()
+        for mode in ("block", "vertex"):
+            report = self.shown(model, self.camera([-60, -55, 12], 0.01), "--mode", mode)
+            self.assertGreater(report["bytes_read"], 0)
+            self.assertLessEqual(report["bytes_read"], os.path.getsize(model))
 
 
 if __name__ == "__main__":
