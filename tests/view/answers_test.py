@@ -64,6 +64,13 @@ class Answers(tool.Case):
             self.assertGreater(report["bytes_read"], 0)
             self.assertLessEqual(report["bytes_read"], os.path.getsize(model))
 
+    def test_original_stands_alone(self):
+        done = tool.run([tool.BINARY, "view", str(self.built()), "--split", "original,pixels=3"],
+                        self.screen.environment)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("stands alone", done.stderr)
+        self.assertNotIn("none of", done.stderr)
+
 
 if __name__ == "__main__":
     tool.main()
