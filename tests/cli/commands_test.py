@@ -501,6 +501,9 @@ class Commands(tool.Case):
         answer = self.run_tool("info", self.path("q.crease"), "--quiet")
         self.assertIn("triangles", answer.stdout)
         self.assertEqual(answer.stderr, "")
+        answer = self.run_tool("validate", self.path("q.crease"), "--quiet")
+        self.assertIn("valid", answer.stdout)
+        self.assertEqual(answer.stderr, "")
 
 
 if __name__ == "__main__":
