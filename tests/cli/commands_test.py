@@ -267,6 +267,11 @@ class Commands(tool.Case):
         self.run_tool("build", self.write("hills.obj", "\n".join(lines)), "-o", built)
         return built
 
+    def test_streams_are_the_bytes_of_the_blocks(self):
+        facts = self.json("info", self.hills())
+        blocks = facts["bytes"] - facts["container_bytes"]
+        self.assertAlmostEqual(sum(facts["streams"].values()) / 8, blocks, delta=8 * facts["blocks"])
+
     def test_what_a_view_reads_gives_the_cut_of_the_whole_file(self):
         hills, out = self.hills(), self.path("hills.png")
         shares = []
