@@ -40,8 +40,9 @@ struct ViewedModel {
   std::uint64_t bytes_read = 0;
   std::size_t blocks_read = 0;
 };
-// As fine as `view` needs it. With that view as its detail it is made of the blocks that it needs;
-// of all of them its errors and levels are known everywhere.
+// As fine as `view` needs it. With that view as its detail it is made of the blocks that the cut
+// depends on, which is that of the whole file to within a few percent of the triangles; of all
+// blocks its errors and levels are known everywhere.
 Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view, const Detail& detail);
 
 }  // namespace crease::cli

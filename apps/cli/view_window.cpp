@@ -102,6 +102,10 @@ class SplitWords {
   }
 
   Failure wrong(const std::string& word) const {
+    if (word == "original") {
+      return fail(Error::CommandLine,
+                  "--split " + text_ + ": original has no settings of its own: it stands alone");
+    }
     return fail(
         Error::CommandLine,
         "--split " + text_ + ": \"" + word +

@@ -214,6 +214,12 @@ struct ShownCut {
   }
 };
 
+// How far what is shown within a sphere may be off, surface or line.
+struct ErrorSphere {
+  Vec3f center;  // as positions of draw lists
+  float radius = 0, error = 0;
+};
+
 struct BlockUpdate {
   std::size_t refined = 0, coarsened = 0;  // blocks that the cut went through
   std::size_t splits = 0, merges = 0;      // by vertex
@@ -295,6 +301,12 @@ class BlockMesh {
   // much as is allowed counts 1. 0: nothing is off by more than that. Where the eye is inside of a
   // block's sphere, it counts as a twentieth of the radius away from what is wrong.
   float view_error() const;
+
+  // For pictures. Where such a group of a block that is shown whole is off: spheres that may reach
+  // beyond it. None: nowhere.
+  std::vector<ErrorSphere> errors_of(const ResidentBlock& block, const BlockGroup& group) const;
+  // Per position of the list its surface or line error, whichever is larger. Time O(vertices).
+  std::vector<float> error_of_position(const ShownCut& cut) const;
 
   std::size_t resident_count() const;
   std::size_t resident_bytes() const;

@@ -35,6 +35,8 @@ class ProgressiveMesh {
   void set_error(float surface_error);
   // How many contractions that level has in force. Negative: 0.
   std::size_t applied_for_error(float surface_error) const;
+  // The same of surface and line errors, as views count them.
+  std::size_t applied_for_view(float error) const;
 
   // Geomorphs: how long a vertex is on its way from where the one stood that it comes out of, and
   // back before it is contracted. 0, the default: levels are seen at once. While something is on

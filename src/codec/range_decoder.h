@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -60,6 +61,9 @@ class RangeDecoder {
 
   // What the next bits are about; see MeteringDecoder.
   void enter(Stream) {}
+
+  // Bits that all until now has taken.
+  double bits_taken() const { return 8.0 * double(at_) - std::log2(double(range_)); }
 
   // The bytes ended so long ago that no encoder made them, or hold what none writes.
   bool failed() const { return corrupt_ || at_ > bytes_.size() + kSlack; }

@@ -26,6 +26,12 @@ namespace crease {
 
 struct DrawCount {
   std::size_t calls = 0, triangles = 0;
+
+  DrawCount& operator+=(const DrawCount& other) {
+    calls += other.calls;
+    triangles += other.triangles;
+    return *this;
+  }
 };
 
 class GlBlocks {

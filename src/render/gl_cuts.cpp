@@ -24,12 +24,16 @@ std::size_t GlCuts::upload(std::span<const ShownCut> shown) {
     Cut& here = cuts_[number_of(cut)];
     here.shown_at = uploads_;
     if (here.scene && here.revision == cut.revision) continue;
-    here.scene = std::make_unique<const GlScene>(cut.list, std::span<const float>{}, materials_);
+    here.scene = std::make_unique<GlScene>(cut.list, std::span<const float>{}, materials_);
     here.revision = cut.revision;
     uploaded += here.scene->bytes();
   }
   std::erase_if(cuts_, [this](const auto& cut) { return cut.second.shown_at != uploads_; });
   return uploaded;
+}
+
+std::size_t GlCuts::set_scalars(const ShownCut& cut, std::span<const float> scalars) {
+  return cuts_.at(number_of(cut)).scene->set_scalars(scalars);
 }
 
 std::size_t GlCuts::bytes() const {

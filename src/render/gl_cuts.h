@@ -27,6 +27,9 @@ class GlCuts {
   // What is not shown any more is freed. Returns the bytes uploaded.
   std::size_t upload(std::span<const ShownCut> shown);
 
+  // What Coloring::Error shows of one, per position; until another thing of it is shown.
+  std::size_t set_scalars(const ShownCut& cut, std::span<const float> scalars);
+
   // Around all corners of what is shown.
   Box box_of(std::span<const ShownCut> shown) const;
   // Of each one's box, less `origin`.
@@ -41,7 +44,7 @@ class GlCuts {
 
  private:
   struct Cut {
-    std::unique_ptr<const GlScene> scene;
+    std::unique_ptr<GlScene> scene;
     std::uint64_t revision = 0;
     std::uint64_t shown_at = 0;  // the last upload() that showed it
   };

@@ -35,6 +35,7 @@ class BlockErrors {
   // Per split. Changes with settle().
   std::span<const SplitBounds> bounds() const { return bounds_; }
   RoundedError of_root(std::uint32_t root) const;
+  std::span<const RoundedError> of_vertices() const { return of_vertex_; }  // at the fine end
   std::size_t bytes() const;
 
  private:

@@ -1,6 +1,8 @@
 // What a BlockMesh shows and misses, as lists.
 #include "runtime/block_mesh_impl.h"
 
+#include <algorithm>
+
 namespace crease {
 
 using codec::ModelSchema;
@@ -57,6 +59,28 @@ void BlockMesh::Impl::list_cuts() {
   }
   listed.resize(count);
   shown_cuts.resize(count);
+}
+
+std::vector<ErrorSphere> BlockMesh::errors_of(const ResidentBlock& block,
+                                              const BlockGroup& group) const {
+  const std::uint32_t finer = impl_->graph.next_finer(block.facts().band, group.patch);
+  if (finer == kNone) return {};
+  return impl_->levels.errors(finer, 0);
+}
+
+std::vector<float> BlockMesh::error_of_position(const ShownCut& cut) const {
+  const auto block = static_cast<std::uint32_t>(index_of(cut.block->id()));
+  if (cut.groups.empty()) return impl_->cuts.error_of_position(block);
+  const std::vector<ErrorSphere> spheres =
+      impl_->levels.errors(block, impl_->levels.list(block)->level);
+  std::vector<float> errors(cut.list.positions.size(), 0);
+  for (const ErrorSphere& sphere : spheres) {
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      if (length(cut.list.positions[i] - sphere.center) > sphere.radius) continue;
+      errors[i] = std::max(errors[i], sphere.error);
+    }
+  }
+  return errors;
 }
 
 void BlockMesh::Impl::list_missing_hierarchies() {

@@ -330,6 +330,26 @@ LevelError LevelChoice::left(std::uint32_t block, const LevelError& coarse) cons
   return entries_[block].facts->left[std::size_t(level)];
 }
 
+std::vector<ErrorSphere> LevelChoice::errors(std::uint32_t block, int level) const {
+  std::vector<ErrorSphere> errors;
+  if (level == kFullLevel) return errors;
+  const LevelFactsPtr known = facts(block);
+  if (!known || known->pieces.empty()) {
+    const BlockBounds& own = graph_.own(block);
+    const RoundedUp off = worse(own.bounds.surface, own.bounds.line);
+    errors.push_back({own.center, own.bounds.radius.value(), off.value()});
+    return errors;
+  }
+  const LevelsLeft& left = known->left_in_piece;
+  for (std::size_t i = 0; i < known->pieces.size(); ++i) {
+    const LevelSphere& piece = known->pieces[i];
+    const float off = left.off[static_cast<std::size_t>(level) * left.count + i].value();
+    const bool has_parts = piece.next > i + 1;
+    if (!has_parts && off > 0) errors.push_back({piece.center, piece.radius.value(), off});
+  }
+  return errors;
+}
+
 void LevelChoice::list_missing(std::span<const std::uint32_t> cut,
                                std::vector<BlockId>& missing) const {
   std::vector<BlockId> stale;

@@ -60,6 +60,9 @@ class LevelChoice {
   // How wrong the block is as it is shown; `coarse`: where levels are not known, of its coarse end.
   LevelError left(std::uint32_t block, const LevelError& coarse) const;
 
+  // And where, as far as that is known. `level`: kFullLevel is right.
+  std::vector<ErrorSphere> errors(std::uint32_t block, int level) const;
+
   LevelFactsPtr facts(std::uint32_t block) const {
     return block < entries_.size() ? entries_[block].facts : nullptr;
   }

@@ -9,6 +9,21 @@
 
 namespace crease {
 
+namespace {
+
+// Of the coarsest level of which `measure` is at most `most`.
+template <typename Measure>
+std::size_t applied_for(const PackedContractions& contractions, float most, Measure measure) {
+  if (most < 0) return 0;
+  const std::vector<ErrorStep>& errors = contractions.errors;
+  const auto too_coarse =
+      std::partition_point(errors.begin(), errors.end(),
+                           [&](const ErrorStep& step) { return measure(step.error) <= most; });
+  return too_coarse == errors.end() ? contractions.count() : too_coarse->applied - 1;
+}
+
+}  // namespace
+
 ProgressiveMesh::Impl::Impl(ProgressiveArraysPtr given) : arrays(std::move(given)), state(*arrays) {
   const SectionCounts& full = arrays->full;
   base_triangles = full.triangles();
@@ -173,12 +188,13 @@ void ProgressiveMesh::set_error(float surface_error) {
 }
 
 std::size_t ProgressiveMesh::applied_for_error(float surface_error) const {
-  if (surface_error < 0) return 0;
-  const std::vector<ErrorStep>& errors = impl_->arrays->contractions.errors;
-  const auto too_coarse = std::partition_point(
-      errors.begin(), errors.end(),
-      [surface_error](const ErrorStep& step) { return step.error.surface <= surface_error; });
-  return too_coarse == errors.end() ? contraction_count() : too_coarse->applied - 1;
+  return applied_for(impl_->arrays->contractions, surface_error,
+                     [](const LevelError& e) { return e.surface; });
+}
+
+std::size_t ProgressiveMesh::applied_for_view(float error) const {
+  return applied_for(impl_->arrays->contractions, error,
+                     [](const LevelError& e) { return std::max(e.surface, e.line); });
 }
 
 void ProgressiveMesh::set_geomorph_seconds(double seconds) {

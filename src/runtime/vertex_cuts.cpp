@@ -41,6 +41,25 @@ void VertexCuts::insert(BlockHierarchyPtr hierarchy) {
   }
 }
 
+std::vector<float> VertexCuts::error_of_position(std::uint32_t block) const {
+  const Entry& entry = entries_[block];
+  const BlockHierarchy::Data& data = entry.cut->data();
+  std::vector<RoundedError> of_leaf(data.hierarchy.vertices.node_count());
+  for (std::size_t v = 0; v < data.leaf_of_vertex.size(); ++v) {
+    of_leaf[index_of(data.leaf_of_vertex[v])] = entry.errors->of_vertices()[v];
+  }
+  std::vector<float> errors;
+  for (const ActiveVertex& v : entry.cut->live()->vertices()) {
+    RoundedError error;
+    if (v.node != kNoNode) {
+      error = v.split == kNoSplit ? of_leaf[index_of(v.node)]
+                                  : error_of(entry.cut->bounds()[index_of(v.split)]);
+    }
+    errors.push_back(worse(error.surface, error.line).value());
+  }
+  return errors;
+}
+
 void VertexCuts::drop(std::uint32_t block) {
   if (block >= entries_.size()) return;
   hide(block);

@@ -57,6 +57,8 @@ class VertexCuts {
   const BlockCut* cut(std::uint32_t block) const {
     return block < entries_.size() ? entries_[block].cut.get() : nullptr;
   }
+  // Of a cut that shows something: per position of its draw list, surface or line.
+  std::vector<float> error_of_position(std::uint32_t block) const;
   BlockHierarchyPtr hierarchy(std::uint32_t block) const {
     return block < entries_.size() ? entries_[block].hierarchy : nullptr;
   }

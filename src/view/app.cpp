@@ -172,7 +172,7 @@ Status App::step() {
     }
     if (frame_.is_complete != was_complete) frame_.has_changed = true;
   }
-  frame_.bytes_per_second = pace_.add(now(), session_.bytes_read());
+  frame_.bytes_per_second = pace_.add(now(), session_.bytes_transferred());
   if (!is_drawing_due()) return finish_screenshot();
   const auto [width, height] = window_.size_px();
   if (width == 0 || height == 0) return Done{};

@@ -24,7 +24,7 @@ bool LevelWalk::go(ProgressiveMesh& mesh, const LevelGoal& goal, double seconds,
 
 bool LevelWalk::step(ProgressiveMesh& mesh, const LevelGoal& goal,
                      const std::function<void()>& after_step) {
-  const std::size_t wanted = mesh.applied_for_error(goal.error), now = mesh.applied();
+  const std::size_t wanted = mesh.applied_for_view(goal.error), now = mesh.applied();
   const auto limit = [&] {  // to the finest level that has few enough
     mesh.set_triangle_count(goal.max_triangles);
     after_step();

@@ -15,7 +15,7 @@
 namespace crease {
 
 struct LevelGoal {
-  float error = 0;                // model units; negative: all of it
+  float error = 0;                // surface and line, model units; negative: all of it
   std::size_t max_triangles = 0;  // the finest level with so many, if that is coarser
 
   bool operator==(const LevelGoal&) const = default;

@@ -1,5 +1,7 @@
 #include "view/session.h"
 
+#include "crease/http_source.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -138,9 +140,14 @@ const ModelFacts* Session::facts() const {
   return streamer_ ? &streamer_->mesh().facts() : nullptr;
 }
 
-std::uint64_t Session::bytes_read() const {
+std::uint64_t Session::bytes_transferred() const {
   if (!streamer_) return 0;
   return streamer_->statistics().source.bytes_transferred + whole_bytes_;
+}
+
+std::uint64_t Session::bytes_read() const {
+  const std::uint64_t transferred = bytes_transferred();
+  return is_http_url(source_.source) ? transferred : std::min(transferred, source_.bytes);
 }
 
 std::optional<Failure> Session::stream_trouble() const {

@@ -56,6 +56,9 @@ class Session {
   }
   const ModelSource& source() const { return source_; }
   const ModelFacts* facts() const;
+  // All that came until now. Of a file here, which is read again for what is whole.
+  std::uint64_t bytes_transferred() const;
+  // The same from a host; of a file here, how much of it that is.
   std::uint64_t bytes_read() const;
   // What streams may ask for.
   RateLimit& limit() { return *limit_; }

@@ -1,5 +1,7 @@
 #include "view/shown_blocks.h"
 
+#include "crease/block_view.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -21,10 +23,11 @@ ColorSrgb color_of_number(std::uint32_t number) {
   return color;
 }
 
-double distance_to(const BlockFacts& facts, const Grid& grid, const Vec3d& eye) {
-  const double radius = grid.step * facts.radius;
-  return std::max(length(grid.position(facts.center) - eye) - radius, 1e-6 * radius + 1e-12);
+Vec3d to_double(const Vec3f& p) {
+  return {p.x, p.y, p.z};
 }
+
+constexpr double kNearest = 1e-12;
 
 }  // namespace
 
@@ -41,7 +44,10 @@ FrameFacts ShownBlocks::update(const ViewSettings& settings, const Camera& camer
   blocks_.drop(report.cut.dropped);
   facts.uploaded_bytes =
       blocks_.upload(mesh().shown(), beside_ == nullptr ? nullptr : &beside_->blocks_);
-  facts.uploaded_bytes += cuts_.upload(mesh().shown_cuts());
+  if (const std::size_t uploaded = cuts_.upload(mesh().shown_cuts()); uploaded > 0) {
+    facts.uploaded_bytes += uploaded;
+    painted_.reset();
+  }
   creases_.drop(report.cut.dropped);
   if (settings.creases) {
     facts.uploaded_bytes += creases_.update(mesh().shown(), mesh().shown_cuts());
@@ -84,24 +90,86 @@ Result<DrawCount> ShownBlocks::draw(ProgramCache& programs, const DrawPass& pass
       };
       break;
     case ViewColoring::Error:
-      color_of_block = [&](const ResidentBlock& block) {
-        const double distance = distance_to(block.facts(), model.grid, cut_camera.position);
-        const double pixels = in_pixels(block.facts().fine, cut_camera, distance);
-        return error_color(float(std::min(1.0, pixels / (2 * settings.pixels))));
-      };
       break;
   }
-  Result<DrawCount> count = blocks_.draw(programs, pass, style, mesh().shown(), color_of_block);
-  if (!count.ok()) return count;
-  const Result<DrawCount> by_vertex =
-      cuts_.draw(programs, pass, style, mesh().shown_cuts(), color_of_block);
-  if (!by_vertex.ok()) return by_vertex;
-  count->calls += by_vertex->calls;
-  count->triangles += by_vertex->triangles;
-  if (!settings.creases) return count;
+  Result<DrawCount> count(DrawCount{});
+  if (settings.coloring == ViewColoring::Error) {
+    count = draw_by_error(programs, pass, style, 2 * settings.pixels, cut_camera);
+  } else {
+    count = blocks_.draw(programs, pass, style, mesh().shown(), color_of_block);
+    if (!count.ok()) return count;
+    const Result<DrawCount> cuts =
+        cuts_.draw(programs, pass, style, mesh().shown_cuts(), color_of_block);
+    if (!cuts.ok()) return cuts;
+    *count += *cuts;
+  }
+  if (!count.ok() || !settings.creases) return count;
   const Status drawn = creases_.draw(programs, pass, style);
   if (!drawn.ok()) return drawn.failure();
   return count;
+}
+
+// The groups of whole blocks in one colour each, what is between the ends of blocks by position.
+Result<DrawCount> ShownBlocks::draw_by_error(ProgramCache& programs, const DrawPass& pass,
+                                             DrawStyle style, double full_pixels,
+                                             const Camera& camera) {
+  const std::span<const ShownCut> cuts = mesh().shown_cuts();
+  if (painted_ != camera) {
+    for (const ShownCut& cut : cuts) cuts_.set_scalars(cut, pixels_of_position(cut, camera));
+    painted_ = camera;
+  }
+  DrawStyle by_position = style;
+  by_position.coloring = Coloring::Error;
+  by_position.error_full = float(full_pixels);
+  Result<DrawCount> count = cuts_.draw(programs, pass, by_position, cuts);
+  for (const ShownRange& shown : mesh().shown()) {
+    const auto draw_group = [&](const BlockGroup& group) {
+      if (!count.ok()) return false;
+      const double share = pixels_of(*shown.block, group, camera) / full_pixels;
+      style.surface = error_color(float(std::min(1.0, share)));
+      const ShownRange range{shown.block, group.sn, group.fn, group.nsn};
+      const Result<DrawCount> drawn = blocks_.draw(programs, pass, style, {&range, 1});
+      if (!drawn.ok()) {
+        count = drawn.failure();
+      } else {
+        *count += *drawn;
+      }
+      return false;  // nothing is asked of what shown_groups() would join
+    };
+    shown_groups({&shown, 1}, draw_group);
+  }
+  return count;
+}
+
+std::vector<float> ShownBlocks::pixels_of_position(const ShownCut& cut,
+                                                   const Camera& camera) const {
+  std::vector<float> errors = mesh().error_of_position(cut);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const Vec3d to = cut.list.origin + to_double(cut.list.positions[i]) - camera.position;
+    errors[i] = float(double(errors[i]) / pixel_size(camera, std::max(length(to), kNearest)));
+  }
+  return errors;
+}
+
+// At the point of the group, and of a sphere where it is off, that is nearest to the eye.
+double ShownBlocks::pixels_of(const ResidentBlock& block, const BlockGroup& group,
+                              const Camera& camera) const {
+  const Vec3d eye = camera.position - origin(), low = to_double(group.low),
+              high = to_double(group.high);
+  const auto distance_to_box = [&](const Vec3d& p) {
+    Vec3d off;
+    for (int i = 0; i < 3; ++i) off[i] = std::max({low[i] - p[i], p[i] - high[i], 0.0});
+    return length(off);
+  };
+  double most = 0;
+  for (const ErrorSphere& sphere : mesh().errors_of(block, group)) {
+    const Vec3d center = to_double(sphere.center);
+    if (distance_to_box(center) > sphere.radius) continue;
+    const double distance =
+        std::max({distance_to_box(eye), length(center - eye) - sphere.radius, kNearest});
+    most = std::max(most, double(sphere.error) / pixel_size(camera, distance));
+  }
+  return most;
 }
 
 Box ShownBlocks::box() const {

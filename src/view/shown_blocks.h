@@ -9,6 +9,8 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
+#include <vector>
 
 namespace crease {
 
@@ -37,6 +39,11 @@ class ShownBlocks final : public ShownMesh {
   const BlockMesh& mesh() const { return streamer_->mesh(view_); }
 
  private:
+  std::vector<float> pixels_of_position(const ShownCut& cut, const Camera& camera) const;
+  double pixels_of(const ResidentBlock& block, const BlockGroup& group, const Camera& camera) const;
+  Result<DrawCount> draw_by_error(ProgramCache& programs, const DrawPass& pass, DrawStyle style,
+                                  double full_pixels, const Camera& camera);
+
   const std::shared_ptr<BlockStreamer> streamer_;
   const std::size_t view_;
   const ShownBlocks* const beside_;
@@ -44,6 +51,7 @@ class ShownBlocks final : public ShownMesh {
   GlBlocks blocks_;
   GlCuts cuts_;
   GlBlockCreases creases_;
+  std::optional<Camera> painted_;  // whose errors the cuts' scalars are
 };
 
 }  // namespace crease

@@ -9,8 +9,12 @@
 #include "view/words.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <span>
 #include <utility>
 
 namespace crease {
@@ -47,6 +51,26 @@ double distance_to(const Box& box, const Vec3d& eye) {
   return std::sqrt(square);
 }
 
+constexpr double kCells = 48;  // along the longest side of the model
+
+// Of the triangles whose middles are in one cell of a grid.
+std::vector<Box> parts_of(const Mesh& mesh, const Box& whole) {
+  const Vec3d sides = whole.high - whole.low;
+  const double cell = std::max({sides.x, sides.y, sides.z, 1e-300}) / kCells;
+  std::map<std::array<int, 3>, Box> parts;
+  for (const Triangle& t : mesh.triangles) {
+    Vec3d middle;
+    for (const VertexId v : t) middle = middle + mesh.positions[index_of(v)] * (1.0 / 3);
+    std::array<int, 3> place{};
+    for (int i = 0; i < 3; ++i) place[std::size_t(i)] = int((middle[i] - whole.low[i]) / cell);
+    Box& part = parts[place];
+    for (const VertexId v : t) part.add(mesh.positions[index_of(v)]);
+  }
+  std::vector<Box> boxes;
+  for (const auto& [place, box] : parts) boxes.push_back(box);
+  return boxes;
+}
+
 float share_of(std::size_t full, std::size_t base, std::size_t shown) {
   if (full <= base || base == 0) return 0;
   const double share = std::log(double(full) / double(std::max(shown, base))) /
@@ -77,9 +101,10 @@ std::string in_words(std::size_t shown, std::size_t full) {
 // What both have.
 class ShownWhole : public ShownMesh {
  public:
-  ShownWhole(const DrawList& list, const Box& box, const GlMaterialsPtr& materials)
+  ShownWhole(const DrawList& list, const WholeData& data, const GlMaterialsPtr& materials)
       : scene_(list, {}, materials, GL_DYNAMIC_DRAW),
-        box_(box),
+        box_(data.box),
+        parts_(data.parts),
         materials_(materials),
         origin_(list.origin) {}
 
@@ -115,6 +140,7 @@ class ShownWhole : public ShownMesh {
 
   GlScene scene_;
   const Box box_;
+  const std::vector<Box> parts_;
 
  private:
   const GlMaterialsPtr materials_;
@@ -124,8 +150,9 @@ class ShownWhole : public ShownMesh {
 
 class ShownVertices final : public ShownWhole {
  public:
-  ShownVertices(std::unique_ptr<AdaptiveMesh> mesh, const Box& box, const GlMaterialsPtr& materials)
-      : ShownWhole(mesh->draw_list(), box, materials),
+  ShownVertices(std::unique_ptr<AdaptiveMesh> mesh, const WholeData& data,
+                const GlMaterialsPtr& materials)
+      : ShownWhole(mesh->draw_list(), data, materials),
         mesh_(std::move(mesh)),
         hierarchy_bytes_(hierarchy_bytes(mesh_->hierarchy()).total()) {}
 
@@ -186,7 +213,7 @@ class ShownVertices final : public ShownWhole {
   // Bounds of what the cut allows: an update that is complete leaves no more.
   double worst_error(const Camera& camera, const ViewSettings& settings) {
     if (settings.max_triangles == std::numeric_limits<std::size_t>::max()) return settings.pixels;
-    return in_pixels(mesh_->error(), camera, std::max(distance_to(box_, camera.position), 1e-9));
+    return in_pixels(mesh_->error(), camera, std::max(distance_to(parts_, camera.position), 1e-9));
   }
 
   // What `coloring` paints; errors are in pixels of `camera`.
@@ -220,14 +247,15 @@ class ShownVertices final : public ShownWhole {
 
 class ShownLinear final : public ShownWhole {
  public:
-  ShownLinear(std::unique_ptr<ProgressiveMesh> mesh, const Box& box,
+  ShownLinear(std::unique_ptr<ProgressiveMesh> mesh, const WholeData& data,
               const GlMaterialsPtr& materials)
-      : ShownWhole(mesh->draw_list(), box, materials), mesh_(std::move(mesh)) {}
+      : ShownWhole(mesh->draw_list(), data, materials), mesh_(std::move(mesh)) {}
 
-  // One level everywhere: as fine as the nearest point of the model's box needs it.
+  // One level everywhere: as fine as the nearest part of the model needs it, and all of it inside
+  // of one.
   FrameFacts update(const ViewSettings& settings, const Camera& camera) override {
-    const double distance = distance_to(box_, camera.position);
-    const double wanted = settings.pixels * pixel_size(camera, distance);
+    const double distance = distance_to(parts_, camera.position);
+    const double wanted = distance > 0 ? settings.pixels * pixel_size(camera, distance) : -1;
     FrameFacts facts;
     const std::size_t before = mesh_->applied();
     const double seconds = time_.seconds();
@@ -260,7 +288,7 @@ class ShownLinear final : public ShownWhole {
                    share_of(mesh_->full_triangle_count(), mesh_->base_triangle_count(),
                             mesh_->triangle_count()));
     if (settings.coloring == ViewColoring::Error) {
-      const double distance = std::max(distance_to(box_, cut_camera.position), 1e-9);
+      const double distance = std::max(distance_to(parts_, cut_camera.position), 1e-9);
       const double pixels = in_pixels(mesh_->error(), cut_camera, distance);
       style.surface = error_color(float(std::min(1.0, pixels / (2 * settings.pixels))));
     }
@@ -289,7 +317,7 @@ class ShownLinear final : public ShownWhole {
   // that may be met is looked for step by step.
   bool is_near(const LevelGoal& goal) const {
     if (goal.max_triangles < mesh_->full_triangle_count()) return false;
-    const std::size_t now = mesh_->applied(), there = mesh_->applied_for_error(goal.error);
+    const std::size_t now = mesh_->applied(), there = mesh_->applied_for_view(goal.error);
     return std::max(now, there) - std::min(now, there) <= LevelWalk::kStep;
   }
 
@@ -310,6 +338,12 @@ std::size_t largest_array(const DrawList& list) {
 
 }  // namespace
 
+double distance_to(std::span<const Box> parts, const Vec3d& eye) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Box& part : parts) nearest = std::min(nearest, distance_to(part, eye));
+  return nearest;
+}
+
 Result<WholeModel> load_whole(const ModelSource& model, ViewMode mode, Note& note) {
   note.say("loading the whole model", 0);
   const Result<BlockFile> file = open_again(model, note);
@@ -319,6 +353,7 @@ Result<WholeModel> load_whole(const ModelSource& model, ViewMode mode, Note& not
   if (note.is_stopped()) return fail(Error::Interrupted, "interrupted");
   WholeData data;
   for (const Vec3d& p : decoded->mesh.positions) data.box.add(p);
+  data.parts = parts_of(decoded->mesh, data.box);
   if (mode == ViewMode::Linear) {
     note.say("sorting the levels");
     data.levels = build_progressive_arrays(decoded->mesh, decoded->sequence);
@@ -353,10 +388,10 @@ Result<std::unique_ptr<ShownMesh>> show_whole(WholeModel model, const GlLimits& 
   }
   if (model.linear) {
     return std::unique_ptr<ShownMesh>(
-        std::make_unique<ShownLinear>(std::move(model.linear), model.data.box, materials));
+        std::make_unique<ShownLinear>(std::move(model.linear), model.data, materials));
   }
   return std::unique_ptr<ShownMesh>(
-      std::make_unique<ShownVertices>(std::move(model.vertices), model.data.box, materials));
+      std::make_unique<ShownVertices>(std::move(model.vertices), model.data, materials));
 }
 
 }  // namespace crease

@@ -8,14 +8,20 @@
 #include "view/shown_mesh.h"
 
 #include <memory>
+#include <span>
+#include <vector>
 
 namespace crease {
+
+// The nearest of the boxes; 0 inside of one.
+double distance_to(std::span<const Box> parts, const Vec3d& eye);
 
 // What several meshes of a model share: one of the two.
 struct WholeData {
   std::shared_ptr<const MeshHierarchy> hierarchy;
   ProgressiveArraysPtr levels;
   Box box;
+  std::vector<Box> parts;  // around triangles that are near each other
 
   bool is_there() const { return hierarchy || levels; }
 };

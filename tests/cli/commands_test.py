@@ -257,6 +257,40 @@ class Commands(tool.Case):
         self.assertGreater(away["triangles"], 0)
         self.assertLessEqual(made["triangles"], made["full_triangles"])
 
+    def hills(self, side=160):
+        def height(x, y):
+            return 3 * math.sin(x / 9) * math.cos(y / 13) + 0.3 * math.sin(x * 1.3 + y) + x * y / 5000
+
+        lines = ["v %d %d %.5f" % (x, y, height(x, y)) for y in range(side) for x in range(side)]
+        for y in range(side - 1):
+            for x in range(1, side):
+                a = y * side + x
+                lines += ["f %d %d %d" % (a, a + 1, a + side), "f %d %d %d" % (a + 1, a + side + 1, a + side)]
+        built = self.path("hills.crease")
+        self.run_tool("build", self.write("hills.obj", "\n".join(lines)), "-o", built)
+        return built
+
+    def test_streams_are_the_bytes_of_the_blocks(self):
+        facts = self.json("info", self.hills())
+        blocks = facts["bytes"] - facts["container_bytes"]
+        self.assertAlmostEqual(sum(facts["streams"].values()) / 8, blocks, delta=8 * facts["blocks"])
+
+    def test_what_a_view_reads_gives_the_cut_of_the_whole_file(self):
+        hills, out = self.hills(), self.path("hills.png")
+        shares = []
+        for position, pixels in (([80, -90, 60], 1), ([80, -20, 20], 2), ([80, -300, 200], 2)):
+            camera = self.write("hills.json", json.dumps(
+                {"position": position, "target": [80, 80, 0], "viewport": [640, 480], "pixels": pixels}))
+            whole = self.json("render", hills, "-o", out, "--view", camera, "--color", "error")
+            panel = whole["panels"][0]
+            camera = self.write("panel.json", json.dumps(panel["camera"]))
+            made = self.json("extract", hills, "-o", self.path("hills.stl"), "--view", camera,
+                             "--samples", 0)
+            shares.append(made["bytes_read"] / made["file_bytes"])
+            self.assertAlmostEqual(made["triangles"], panel["triangles"],
+                                   delta=0.06 * panel["triangles"])
+        self.assertLess(min(shares), 0.6)
+
     def test_extract_writes_every_format_and_reads_any_mesh(self):
         for extension in ("obj", "ply", "stl", "glb"):
             out = self.path("level." + extension)
@@ -474,6 +508,9 @@ class Commands(tool.Case):
         self.assertEqual((done.stdout, done.stderr), ("", ""))
         answer = self.run_tool("info", self.path("q.crease"), "--quiet")
         self.assertIn("triangles", answer.stdout)
+        self.assertEqual(answer.stderr, "")
+        answer = self.run_tool("validate", self.path("q.crease"), "--quiet")
+        self.assertIn("valid", answer.stdout)
         self.assertEqual(answer.stderr, "")
 
 

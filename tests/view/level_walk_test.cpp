@@ -34,7 +34,7 @@ TEST_CASE(
     const auto changes = [&] { CHECK(walked.draw_list().sn.triangle_count() > 0); };
     while (!walk.go(walked, goal, 0, changes)) REQUIRE(++frames < 100);
     longest = std::max(longest, frames);
-    direct.set_error(goal.error);
+    direct.set_applied(direct.applied_for_view(goal.error));
     if (direct.triangle_count() > goal.max_triangles) direct.set_triangle_count(goal.max_triangles);
     CHECK(walked.triangle_count() == direct.triangle_count());
     CHECK(walked.applied() == direct.applied());
