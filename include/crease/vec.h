@@ -27,6 +27,10 @@ using Vec3d = Vec3<double>;
 using Vec3f = Vec3<float>;
 using Vec3i = Vec3<std::int32_t>;
 
+constexpr Vec3d to_double(const Vec3f& v) {
+  return {double(v.x), double(v.y), double(v.z)};
+}
+
 template <typename T>
 constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;

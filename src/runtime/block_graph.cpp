@@ -89,10 +89,6 @@ void BlockGraph::find_dependents() {
 
 namespace {
 
-Vec3d to_double(const Vec3f& p) {
-  return {p.x, p.y, p.z};
-}
-
 // The smallest sphere around both, a little larger.
 void hold(BlockBounds& outer, const BlockBounds& inner) {
   SplitBounds& bounds = outer.bounds;

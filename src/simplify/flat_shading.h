@@ -19,10 +19,6 @@ inline constexpr double kLinearChord = 0.8;
 // Rounding to the grid turns triangles by about this chord.
 inline constexpr double kRoundingChord = 1.5e-4;
 
-inline Vec3d to_double(const Vec3f& v) {
-  return {double(v.x), double(v.y), double(v.z)};
-}
-
 // Area times squared chord between the input normals and `shown`.
 inline double error_of(const Represented& input, const Vec3d& shown) {
   return std::max(0.0, 2 * (double(input.area) - dot(to_double(input.sum), shown)));

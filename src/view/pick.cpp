@@ -10,10 +10,6 @@ namespace crease {
 
 namespace {
 
-Vec3d to_double(const Vec3f& v) {
-  return {v.x, v.y, v.z};
-}
-
 struct Crossing {
   double along, u, v;
 };

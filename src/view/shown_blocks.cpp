@@ -23,10 +23,6 @@ ColorSrgb color_of_number(std::uint32_t number) {
   return color;
 }
 
-Vec3d to_double(const Vec3f& p) {
-  return {p.x, p.y, p.z};
-}
-
 constexpr double kNearest = 1e-12;
 
 }  // namespace
