@@ -26,10 +26,6 @@ struct Row {
   double worst, mean;  // degrees
 };
 
-Vec3d to_double(const Vec3f& v) {
-  return {double(v.x), double(v.y), double(v.z)};
-}
-
 class Directions {
  public:
   Vec3d next() {

@@ -14,10 +14,6 @@
 namespace crease {
 namespace {
 
-Vec3d to_double(const Vec3f& v) {
-  return {double(v.x), double(v.y), double(v.z)};
-}
-
 // Exact for small angles too.
 double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
