@@ -71,10 +71,11 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
 
 // A misspelt field would be its default in silence.
 Status check_fields(const Json& object) {
-  for (const auto& [key, value] : object.items()) {
+  for (const auto& field : object.items()) {
+    const std::string& key = field.key();
     if (std::ranges::find(kFields, key) != kFields.end()) continue;
     const std::string_view nearest = *std::ranges::min_element(
-        kFields, {}, [&](std::string_view field) { return edits_between(key, field); });
+        kFields, {}, [&](std::string_view known) { return edits_between(key, known); });
     return bad(Error::BadFormat, "\"" + key.substr(0, 40) +
                                      "\" is no field of it; the nearest is \"" +
                                      std::string(nearest) + "\"");
