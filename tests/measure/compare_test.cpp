@@ -1,13 +1,13 @@
 #include "crease/compare.h"
 
 #include "measure/closest_point.h"
+#include "measure/mesh_pairs.h"
 #include "measure/sample.h"
 #include "measure/surface.h"
 #include "support/mesh_builder.h"
 #include "support/mesh_zoo.h"
 
 #include <doctest/doctest.h>
-#include <rapidcheck.h>
 
 #include <algorithm>
 #include <limits>
@@ -53,11 +53,6 @@ void check_against_brute_force(const Mesh& a, const Mesh& b, std::size_t samples
   }
 }
 
-Mesh moved(Mesh mesh, const Vec3d& offset, double scale = 1) {
-  for (Vec3d& p : mesh.positions) p = p * scale + offset;
-  return mesh;
-}
-
 Mesh square(double z, int cells) {
   MeshBuilder b;
   b.grid({0, 0, z}, {1, 0, 0}, {0, 1, 0}, cells, cells);
@@ -89,32 +84,14 @@ TEST_CASE("every mesh of the zoo is where it is") {
 }
 
 TEST_CASE("closest points equal the brute force, zoo mesh against zoo mesh") {
-  const std::vector<ZooMesh> zoo = mesh_zoo();
-  for (std::size_t i = 0; i < zoo.size(); ++i) {
-    const ZooMesh &a = zoo[i], &b = zoo[(i * 5 + 3) % zoo.size()];
-    if (a.mesh.triangle_count() == 0 || b.mesh.triangle_count() == 0) continue;
-    CAPTURE(a.name);
-    CAPTURE(b.name);
-    check_against_brute_force(a.mesh, b.mesh, 100);
-    check_against_brute_force(b.mesh, moved(a.mesh, {1e-4, 2e-4, -1e-4}), 100);
-  }
+  for_zoo_pairs([](const Mesh& a, const Mesh& b) {
+    check_against_brute_force(a, b, 100);
+    check_against_brute_force(b, moved(a, {1e-4, 2e-4, -1e-4}), 100);
+  });
 }
 
 TEST_CASE("closest points equal the brute force on random triangles") {
-  const auto triangles = rc::gen::nonEmpty<std::vector<std::array<int, 9>>>(
-      rc::gen::container<std::vector<std::array<int, 9>>>(
-          rc::gen::container<std::array<int, 9>>(rc::gen::inRange(-20, 21))));
-  const auto mesh_of = [](const std::vector<std::array<int, 9>>& corners) {
-    MeshBuilder b;
-    for (const std::array<int, 9>& x : corners) {
-      b.flat_triangle({b.vertex({x[0] / 10.0, x[1] / 10.0, x[2] / 10.0}),
-                       b.vertex({x[3] / 10.0, x[4] / 10.0, x[5] / 10.0}),
-                       b.vertex({x[6] / 10.0, x[7] / 10.0, x[8] / 10.0})});
-    }
-    return b.take();
-  };
-  CHECK(
-      rc::check([&] { check_against_brute_force(mesh_of(*triangles), mesh_of(*triangles), 20); }));
+  CHECK(rc::check([] { check_against_brute_force(any_triangles(), any_triangles(), 20); }));
 }
 
 TEST_CASE("parallel squares are as far apart as they are") {

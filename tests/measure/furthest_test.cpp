@@ -2,12 +2,12 @@
 
 #include "crease/compare.h"
 #include "measure/closest_point.h"
+#include "measure/mesh_pairs.h"
 #include "measure/same_triangles.h"
 #include "support/mesh_builder.h"
 #include "support/mesh_zoo.h"
 
 #include <doctest/doctest.h>
-#include <rapidcheck.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,11 +67,6 @@ void check_against_grids(const Mesh& from, const Mesh& to, int n) {
         doctest::Approx(found.distance * (1 + kRelative) + kAbsolute).epsilon(1e-12));
 }
 
-Mesh placed(Mesh mesh, const Vec3d& offset, double scale = 1) {
-  for (Vec3d& p : mesh.positions) p = p * scale + offset;
-  return mesh;
-}
-
 // So that no number is round.
 Mesh turned(Mesh mesh) {
   const double c = std::cos(0.7), s = std::sin(0.7);
@@ -115,32 +110,15 @@ Mesh wall_with_window(int cells, int column, int row) {
 }  // namespace
 
 TEST_CASE("the furthest point is that of dense grids, zoo mesh against zoo mesh") {
-  const std::vector<ZooMesh> zoo = mesh_zoo();
-  for (std::size_t i = 0; i < zoo.size(); ++i) {
-    const ZooMesh &a = zoo[i], &b = zoo[(i * 5 + 3) % zoo.size()];
-    if (a.mesh.triangle_count() == 0 || b.mesh.triangle_count() == 0) continue;
-    CAPTURE(a.name);
-    CAPTURE(b.name);
-    check_against_grids(a.mesh, b.mesh, 12);
-    check_against_grids(b.mesh, a.mesh, 12);
-    check_against_grids(a.mesh, placed(a.mesh, {1e-2, 2e-2, -1e-2}), 12);
-  }
+  for_zoo_pairs([](const Mesh& a, const Mesh& b) {
+    check_against_grids(a, b, 12);
+    check_against_grids(b, a, 12);
+    check_against_grids(a, moved(a, {1e-2, 2e-2, -1e-2}), 12);
+  });
 }
 
 TEST_CASE("the furthest point is that of dense grids on random triangles") {
-  const auto triangles = rc::gen::nonEmpty<std::vector<std::array<int, 9>>>(
-      rc::gen::container<std::vector<std::array<int, 9>>>(
-          rc::gen::container<std::array<int, 9>>(rc::gen::inRange(-20, 21))));
-  const auto mesh_of = [](const std::vector<std::array<int, 9>>& corners) {
-    MeshBuilder b;
-    for (const std::array<int, 9>& x : corners) {
-      b.flat_triangle({b.vertex({x[0] / 10.0, x[1] / 10.0, x[2] / 10.0}),
-                       b.vertex({x[3] / 10.0, x[4] / 10.0, x[5] / 10.0}),
-                       b.vertex({x[6] / 10.0, x[7] / 10.0, x[8] / 10.0})});
-    }
-    return b.take();
-  };
-  CHECK(rc::check([&] { check_against_grids(mesh_of(*triangles), mesh_of(*triangles), 16); }));
+  CHECK(rc::check([] { check_against_grids(any_triangles(), any_triangles(), 16); }));
 }
 
 TEST_CASE("a covered window is found whatever the samples are") {
@@ -183,7 +161,7 @@ TEST_CASE("surfaces that are equally far apart all over take a bounded time") {
   const Mesh inner = smooth_sphere(64, 128);
   for (double scale : {1.001, 1.25, 4.0}) {
     CAPTURE(scale);
-    const Mesh outer = placed(smooth_sphere(60, 100), {}, scale);
+    const Mesh outer = moved(smooth_sphere(60, 100), {}, scale);
     const Frame frame = common_frame(inner, outer);
     const Surface a(inner, frame), b(outer, frame);
     CHECK(furthest(a, b).queries < 32 * inner.triangle_count());
@@ -237,7 +215,7 @@ TEST_CASE("meshes are within what they are apart and not within less") {
     CHECK(*meshes_within(a, a, 0, {}));
   }
   // All over at the limit.
-  CHECK(*meshes_within(wall(3), placed(wall(5), {0, 0, 0.25}), 0.25, {}));
+  CHECK(*meshes_within(wall(3), moved(wall(5), {0, 0, 0.25}), 0.25, {}));
 }
 
 TEST_CASE("the search for meshes within a distance stops where its caller asks it to") {
