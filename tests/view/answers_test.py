@@ -9,8 +9,8 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "cli"))
 
 import tool  # noqa: E402
-import display  # noqa: E402
 import picture  # noqa: E402
+import screen_case  # noqa: E402
 
 
 def red_share(path):
@@ -21,15 +21,7 @@ def red_share(path):
     return red / (picture.covered(seen) * len(colors))
 
 
-class Answers(tool.Case):
-    @classmethod
-    def setUpClass(cls):
-        cls.screen = display.Display()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.screen.close()
-
+class Answers(screen_case.ScreenCase):
     def camera(self, position, pixels=1):
         return self.write("camera.json", json.dumps(
             {"position": position, "target": [0, 0, 5], "up": [0, 0, 1], "vertical_fov": 50,

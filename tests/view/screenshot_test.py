@@ -11,8 +11,8 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "cli"))
 
 import tool  # noqa: E402
-import display  # noqa: E402
 import picture  # noqa: E402
+import screen_case  # noqa: E402
 
 SIZE = "480x320"
 
@@ -42,15 +42,7 @@ class Ranges(http.server.SimpleHTTPRequestHandler):
         pass
 
 
-class Screenshot(tool.Case):
-    @classmethod
-    def setUpClass(cls):
-        cls.screen = display.Display()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.screen.close()
-
+class Screenshot(screen_case.ScreenCase):
     def view(self, *arguments, exit_status=0, environment=None):
         done = tool.run([tool.BINARY, "view", *map(str, arguments)],
                         environment or self.screen.environment, timeout=600)
