@@ -207,7 +207,8 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCodin
   std::stable_sort(
       order.begin(), order.end(),
       [](const OrderedContraction& a, const OrderedContraction& b) { return a.cost < b.cost; });
-  if (estimator.flat_count() > order.size() / kFewOfThem) order = defer_folds(block, order);
+  if (estimator.flat_count() > order.size() / kFewOfThem)
+    order = defer_folds(block, std::move(order));
   return {std::move(order), estimator.take_wedges()};
 }
 
