@@ -20,11 +20,12 @@ class SharedProgress {
                  std::size_t done = 0)
       : callback_(callback), stage_(stage), whole_(whole), done_(done) {}
 
-  // From any thread: so much more is done. A thread that is telling already tells for this one.
+  // From any thread: so much more is done. A thread that is telling already tells for this one;
+  // a callback that has asked to stop is not called again.
   void advance(std::size_t more) {
     const std::size_t now = done_.fetch_add(more) + more;
     if (!callback_ || !telling_.try_lock()) return;
-    if (!callback_(stage_, double(now) / double(whole_))) stopped_ = true;
+    if (!stopped_ && !callback_(stage_, double(now) / double(whole_))) stopped_ = true;
     telling_.unlock();
   }
 

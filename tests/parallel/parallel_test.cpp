@@ -1,5 +1,7 @@
 #include "parallel/parallel.h"
 
+#include "parallel/shared_progress.h"
+
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -117,4 +119,16 @@ TEST_CASE("what a task throws reaches the caller") {
                            return true;
                          }),
                   std::runtime_error);
+}
+
+TEST_CASE("progress that has asked to stop is not told more") {
+  int told = 0;
+  const ProgressCallback callback = [&](const char*, double) { return ++told < 3; };
+  run_on(7, [&] {
+    SharedProgress progress(callback, "stage", 10'000);
+    parallel_for(10'000, [&](std::size_t) { progress.advance(1); });
+    CHECK(progress.stopped());
+    return true;
+  });
+  CHECK(told == 3);
 }
