@@ -130,7 +130,8 @@ std::vector<std::string> lost_parts(const ModelFile& file, const Mesh& mesh,
 }
 
 // Where the output has a place for them.
-Status add_images(const ExtractArguments& options, const ModelFile& file, Mesh& mesh) {
+Status add_images_and_up(const ExtractArguments& options, const ModelFile& file, Mesh& mesh) {
+  mesh.up = file.blocks().facts().up;
   const std::string ending = ending_of(options.output);
   if (ending != ".glb" && ending != ".obj") return Done{};
   Result<std::vector<ImageFile>> images = file.images(mesh.materials);
@@ -155,7 +156,7 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
   const bool refused = options.strict && !chosen.target_met;
   ExportReport exported;
   if (!refused) {
-    const Status painted = add_images(options, file, extracted->mesh);
+    const Status painted = add_images_and_up(options, file, extracted->mesh);
     if (!painted.ok()) return painted.failure();
     const Result<ExportReport> written =
         write_mesh(level, options.output, common, lost_parts(file, level, options.output, common));
@@ -207,7 +208,7 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
     measured = *comparison;
   }
   if (interrupted()) return interrupted_failure();
-  const Status painted = add_images(options, file, seen);
+  const Status painted = add_images_and_up(options, file, seen);
   if (!painted.ok()) return painted.failure();
   const Result<ExportReport> written =
       write_mesh(seen, options.output, common, lost_parts(file, seen, options.output, common));
@@ -241,6 +242,7 @@ Result<Report> extract_levels(const ExtractArguments& options, const ModelFile& 
   if (!images.ok()) return images.failure();
   LodChainOptions chain = options.chain;
   chain.strict = options.strict;
+  chain.up = file.blocks().facts().up;
   Result<Report> report =
       extract_chain(mesh, *images, options.output, chain, options.level.samples, common);
   if (!report.ok()) return report;

@@ -1,6 +1,7 @@
 #include "cli/facts.h"
 
 #include "cli/fields.h"
+#include "cli/up_option.h"
 #include "crease/shading.h"
 
 #include <algorithm>
@@ -149,6 +150,7 @@ Json mesh_facts(const Mesh& mesh) {
           {"attributes", attributes_json(mesh)},
           {"materials", materials},
           {"parts", mesh.parts.size()},
+          {"up", to_json(mesh.up)},
           {"bounds", bounds_json(mesh)}};
 }
 
@@ -215,6 +217,7 @@ Json head_facts(const ModelFile& file) {
           {"bands", bands},
           {"blocks", file.blocks().block_count()},
           {"precision", facts.grid.step},
+          {"up", to_json(facts.up)},
           {"bytes_read", file.bytes_to_open()}};
 }
 

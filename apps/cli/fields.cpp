@@ -1,6 +1,7 @@
 #include "cli/fields.h"
 
 #include "cli/text.h"
+#include "cli/up_option.h"
 
 #include <algorithm>
 
@@ -39,6 +40,8 @@ Json to_json(const Comparison& c) {
 Json to_json(const ImportReport& report) {
   return {{"format", report.format},
           {"normals", report.normals},
+          {"up", to_json(report.up)},
+          {"up_is_guessed", report.up_is_guessed},
           {"polygons", report.polygons},
           {"degenerate_triangles", report.degenerate_triangles},
           {"duplicate_triangles", report.duplicate_triangles},
@@ -89,7 +92,9 @@ Json measured_json(const Comparison& c) {
 }
 
 std::string lines_of(const ImportReport& report) {
-  std::string lines = "  " + report.format + "; normals: " + report.normals;
+  std::string lines = "  " + report.format + "; normals: " + report.normals +
+                      (report.up == UpAxis::Y ? "; y up" : "; z up") +
+                      (report.up_is_guessed ? ", by its shape" : "");
   const auto say = [&lines](std::size_t count, const char* what) {
     if (count > 0) lines += "\n  " + grouped(count) + " " + what;
   };

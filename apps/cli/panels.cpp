@@ -149,6 +149,7 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
                         const Common& common) {
   const Result<ModelFile> file = open_model(path, options.read, common);
   if (!file.ok()) return file.failure();
+  learn_up(file->blocks().facts().up);
   Detail detail{.part_names = false};
   // What was not read has no errors and no levels.
   if (!options.errors_of_positions && !options.levels_of_positions) detail.view = options.view;
@@ -188,6 +189,7 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
   if (whole && !is_crease_file(path) && !options.errors_of_positions) {
     Result<Mesh> mesh = load_mesh(path, options.read, common);  // nothing to simplify
     if (!mesh.ok()) return mesh.failure();
+    learn_up(mesh->up);
     Source source;
     source.arrays = std::make_unique<MeshDrawArrays>(*mesh);
     const std::string name = path.filename().string();
@@ -199,6 +201,7 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
 
   const Result<ModelFile> file = open_model(path, options.read, common);
   if (!file.ok()) return file.failure();
+  learn_up(file->blocks().facts().up);
   const std::size_t full_count = file->triangle_count();
   const std::vector<LevelOptions> levels = levels_of(options, full_count);
   const auto needed = options.errors_of_positions ? std::nullopt : triangles_needed(levels);

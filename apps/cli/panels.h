@@ -43,6 +43,7 @@ class Panels {
   std::span<const Panel> list() const { return panels_; }
   const Json& json() const { return json_; }                // one object a panel
   std::uint64_t bytes_read() const { return bytes_read_; }  // of .crease files
+  UpAxis up() const { return up_; }                         // of the first file that knows
 
  private:
   // What a panel's views point into.
@@ -60,6 +61,9 @@ class Panels {
                  const std::string& name, const PanelOptions& options, const Common& common);
   void add_control(const Mesh& level, const std::string& name, const PanelOptions& options,
                    float level_share);
+  void learn_up(UpAxis up) {
+    if (up_ == UpAxis::Unknown) up_ = up;
+  }
   void add(Source source, const std::string& title, Json json, const PanelOptions& options,
            float level_share);
 
@@ -67,6 +71,7 @@ class Panels {
   std::vector<Panel> panels_;
   Json json_ = Json::array();
   std::uint64_t bytes_read_ = 0;
+  UpAxis up_ = UpAxis::Unknown;
 };
 
 // One normal a vertex: the average of the corners' stored normals, weighted by their angles. What a

@@ -7,6 +7,7 @@
 #include "cli/output.h"
 #include "cli/panels.h"
 #include "cli/text.h"
+#include "cli/up_option.h"
 #include "cli/view.h"
 
 #include <memory>
@@ -19,7 +20,7 @@ struct RenderArguments {
   std::vector<std::filesystem::path> files;
   std::filesystem::path output;
   PanelOptions panels;
-  std::string levels, view, size, up = "z";
+  std::string levels, view, size, up;
   std::string coloring;                          // empty: shaded, by error from outside
   bool wireframe = false, no_wireframe = false;  // neither: from outside
   bool outside = false, occlusion = false;
@@ -51,7 +52,6 @@ Result<RenderOptions> render_options(const RenderArguments& options) {
   render.wireframe = options.wireframe || (options.outside && !options.no_wireframe);
   render.columns = options.columns;
   render.ambient_occlusion = options.occlusion;
-  if (options.up == "y") render.up = {0, 1, 0};
   if (!options.view.empty()) {
     const Result<Camera> camera = read_camera(options.view);
     if (!camera.ok()) return camera.failure();
@@ -111,6 +111,7 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
     if (!added.ok()) return added.failure();
     if (interrupted()) return interrupted_failure();
   }
+  render->up = up_direction(options.up, panels.up());
   render->on_note = [&common](const std::string& note) { log(common, note); };
   const Result<Image> image = render_panels(panels.list(), *render);
   if (!image.ok()) return image.failure();
@@ -159,9 +160,7 @@ Command add_render(CLI::App& app, const Common& common) {
                  "the model as fine as --view needs it, seen from outside with its frustum, "
                  "coloured by error: up to \"pixels\" blue, beyond yellow to red")
       ->needs(view);
-  command->add_option("--up", options->up, "axis that points up when there is no --view")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->capture_default_str();
+  add_up_option(*command, options->up);
   command->add_flag("--ambient-occlusion", options->occlusion,
                     "darker in corners and at the feet of walls");
   command

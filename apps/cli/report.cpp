@@ -9,6 +9,7 @@
 #include "cli/report_levels.h"
 #include "cli/report_page.h"
 #include "cli/text.h"
+#include "cli/up_option.h"
 #include "cli/view.h"
 #include "crease/build_progressive_arrays.h"
 #include "crease/write_file.h"
@@ -24,7 +25,7 @@ namespace {
 struct ReportArguments {
   std::filesystem::path file, output;
   std::string levels = "0.5,0.2,0.1,0.05,0.02,0.01";
-  std::string title, view, size, up = "z";
+  std::string title, view, size, up;
   std::size_t samples = 50'000;
   ReadOptions read;
 };
@@ -36,7 +37,6 @@ Result<ReportLevelOptions> report_level_options(const ReportArguments& options) 
   level.ratios = *std::move(ratios);
   std::ranges::sort(level.ratios, std::greater());
   level.samples = options.samples;
-  if (options.up == "y") level.up = {0, 1, 0};
   if (!options.view.empty()) {
     const Result<Camera> camera = read_camera(options.view);
     if (!camera.ok()) return camera.failure();
@@ -71,10 +71,11 @@ Result<Report> run_report(const ReportArguments& options, const Common& common) 
   const std::string_view endings[] = {".html", ".htm"};
   const Status writable = check_output(options.output, endings, "pages are", {&options.file, 1});
   if (!writable.ok()) return writable.failure();
-  const Result<ReportLevelOptions> asked = report_level_options(options);
+  Result<ReportLevelOptions> asked = report_level_options(options);
   if (!asked.ok()) return asked.failure();
   const Result<ModelFile> file = open_model(options.file, options.read, common);
   if (!file.ok()) return file.failure();
+  asked->up = up_direction(options.up, file->blocks().facts().up);
   DecodeOptions decode = decode_options(common);
   decode.count_bits = true;
   const Result<DecodedModel> model = decode_model(file->blocks(), decode);
@@ -138,9 +139,7 @@ Command add_report(CLI::App& app, const Common& common) {
       ->add_option("--view", options->view,
                    "camera of the pictures, as in render; default: all of the model")
       ->type_name("CAM.json");
-  command->add_option("--up", options->up, "axis that points up when there is no --view")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->capture_default_str();
+  add_up_option(*command, options->up);
   command->add_option("--size", options->size, "of a picture; default 640x480")->type_name("WxH");
   add_build_options(*command, options->read);
   command->footer("Example:\n  crease report house.crease -o house.html");

@@ -5,6 +5,7 @@
 #include "cli/number_check.h"
 #include "cli/output.h"
 #include "cli/text.h"
+#include "cli/up_option.h"
 #include "cli/view.h"
 #include "crease/viewer.h"
 
@@ -23,7 +24,7 @@ namespace {
 
 struct ViewArguments {
   std::string source;
-  std::string size, view, flight, split, mode = "block", coloring = "shaded", up = "z";
+  std::string size, view, flight, split, mode = "block", coloring = "shaded", up;
   bool wireframe = false, creases = false, occlusion = false, outside = false, panels = false;
   std::filesystem::path screenshot;
   std::optional<double> pixels, degrees, budget_mb, bandwidth_kb;
@@ -155,7 +156,7 @@ Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common&
   viewer.ambient_occlusion = options.occlusion;
   viewer.outside = options.outside;
   viewer.panels_on_screenshot = options.panels;
-  if (options.up == "y") viewer.up = {0, 1, 0};
+  if (options.up != "auto") viewer.up = up_direction(options.up, UpAxis::Unknown);
   if (!options.view.empty()) {
     const Result<Camera> camera = read_camera(options.view);
     if (!camera.ok()) return camera.failure();
@@ -276,9 +277,7 @@ Command add_view(CLI::App& app, const Common& common) {
   command->add_flag("--outside", options->outside,
                     "once the view is complete it is frozen, and looked at from outside with its "
                     "frustum: keys O and Z");
-  command->add_option("--up", options->up, "axis that points up when no camera says")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->capture_default_str();
+  add_up_option(*command, options->up);
   command
       ->add_option("--path", options->flight,
                    "plays a flight, as key R records it: [{\"seconds\":0,\"camera\":{...}}, ...]")
@@ -292,7 +291,7 @@ Command add_view(CLI::App& app, const Common& common) {
   add_build_options(*command, options->read);
   command->footer(
       "Examples:\n  crease view city.crease\n  crease view https://host/city.crease --budget 256\n"
-      "  crease view bunny.ply --up y --screenshot bunny.png\n"
+      "  crease view bunny.ply --screenshot bunny.png\n"
       "Keys: F1 shows them.");
   return {command, [options, &common] { return run_view(*options, common); }};
 }

@@ -60,6 +60,7 @@ struct ModelFacts {
   Grid grid;
   std::uint8_t grid_bits = 0;  // no coordinate of a vertex is 2^grid_bits or more, either way
   std::uint64_t vertex_count = 0, triangle_count = 0;
+  UpAxis up = UpAxis::Unknown;
   std::vector<LayerSchema> layers;
   std::vector<BandFacts> bands;  // finest first
 };

@@ -7,7 +7,8 @@
 // groups are kept; formats that store split vertices (glTF, PLY, STL) are welded by bit-equal
 // positions and bit-equal attribute values. Scene transforms are baked, in doubles. The images of
 // materials come along, from inside a glTF or from files beside it; one that is not found is a
-// note. Input that cannot be meant is refused; input that is merely ugly is accepted and counted.
+// note. What points up is y in glTF and z in CityJSON; elsewhere it is guessed from the shape.
+// Input that cannot be meant is refused; input that is merely ugly is accepted and counted.
 #pragma once
 
 #include "crease/mesh.h"
@@ -45,6 +46,8 @@ struct ImportOptions {
 struct ImportReport {
   std::string format;                    // "OBJ", "binary STL", ...
   std::string normals;                   // where the normals come from, in words
+  UpAxis up = UpAxis::Unknown;           // Mesh::up
+  bool up_is_guessed = false;            // from the shape, as the file does not say
   std::size_t polygons = 0;              // faces with more than three corners, triangulated
   std::size_t degenerate_triangles = 0;  // two equal corners: dropped
   std::size_t duplicate_triangles = 0;   // kept

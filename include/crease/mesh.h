@@ -76,6 +76,14 @@ const ImageFile* find_image(std::span<const ImageFile> images, std::string_view 
 
 using Triangle = std::array<VertexId, 3>;
 
+// The axis of the coordinates that points up. Unknown: nobody has said so; z is then as good as
+// any.
+enum class UpAxis : std::uint8_t { Unknown, Y, Z };
+
+constexpr Vec3d direction_of(UpAxis up) {
+  return up == UpAxis::Y ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+}
+
 struct Mesh {
   std::vector<Vec3d> positions;                  // vertex_count, model units
   std::vector<Triangle> triangles;               // triangle_count, counter-clockwise from outside
@@ -86,6 +94,7 @@ struct Mesh {
   std::vector<std::string> parts;  // names of objects, groups or scene nodes
   // Those that materials name, as far as they are known. Levels and cuts are extracted without.
   std::vector<ImageFile> images;
+  UpAxis up = UpAxis::Unknown;  // levels and cuts are extracted without
 
   std::size_t vertex_count() const { return positions.size(); }
   std::size_t triangle_count() const { return triangles.size(); }

@@ -88,8 +88,8 @@ struct ViewerOptions {
   double divider = 0.5;  // share of the width that the left half has
   // Else the last one that this file was seen from, else all of the model.
   std::optional<Camera> camera{};
-  Vec3d up{0, 0, 1};  // where no camera says
-  Flight flight{};    // played once the first picture is there
+  std::optional<Vec3d> up{};  // where no camera says; else as the model has it
+  Flight flight{};            // played once the first picture is there
   // Shows until the view is complete, and the flight over, writes the picture, ends.
   std::filesystem::path screenshot{};
   bool panels_on_screenshot = false;  // what lies over the picture is on it

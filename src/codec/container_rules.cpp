@@ -71,6 +71,7 @@ std::string broken_rule(const ModelFacts& facts) {
       return "grid: it lies too far away for doubles to tell its points apart";
     }
   }
+  if (facts.up > UpAxis::Z) return "unknown axis for up";
   std::size_t normals = 0;
   for (std::size_t l = 0; l < facts.layers.size(); ++l) {
     const std::string where = "layer " + std::to_string(l) + ": ";

@@ -61,7 +61,8 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head, boo
   for (int i = 0; i < 3; ++i) facts.grid.origin[i] = in.f64();
   facts.grid.step = in.f64();
   facts.grid_bits = in.u8();
-  std::uint8_t reserved = decode_reserved(in, 3);
+  facts.up = static_cast<UpAxis>(in.u8());
+  std::uint8_t reserved = decode_reserved(in, 2);
   head.part_count = in.u32();
   std::uint64_t end = head.head_bytes, left = head.file_bytes - end;
   std::vector<BlockFileHead::Section*> sections = {&head.materials, &head.parts, &head.tables};

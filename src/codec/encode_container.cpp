@@ -141,7 +141,8 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   for (int i = 0; i < 3; ++i) head.f64(facts.grid.origin[i]);
   head.f64(facts.grid.step);
   head.u8(facts.grid_bits);
-  encode_reserved(head, 3);
+  head.u8(static_cast<std::uint8_t>(facts.up));
+  encode_reserved(head, 2);
   head.u32(static_cast<std::uint32_t>(content.parts.size()));
   const std::vector<std::byte> materials = encode_materials(content.materials);
   writer.parts_ = encode_parts(content.parts);

@@ -28,6 +28,7 @@ class EndJoiner {
     Mesh mesh;
     mesh.materials = schema_.materials;
     mesh.parts = schema_.parts;
+    mesh.up = schema_.facts.up;
     mesh.positions.reserve(positions_.size());
     for (const Vec3i& p : positions_) mesh.positions.push_back(schema_.facts.grid.position(p));
     mesh.triangles.reserve(triangles_.size());

@@ -204,7 +204,9 @@ class City {
 }  // namespace
 
 Mesh generate_city(const CityOptions& options) {
-  return City({options.seed, std::min(options.triangles, CityOptions::kMost)}).build();
+  Mesh city = City({options.seed, std::min(options.triangles, CityOptions::kMost)}).build();
+  city.up = UpAxis::Z;
+  return city;
 }
 
 }  // namespace crease

@@ -1,5 +1,6 @@
 #include "io/raw_mesh.h"
 #include "mesh/clean.h"
+#include "mesh/guess_up.h"
 #include "mesh/normals.h"
 #include "mesh/weld.h"
 
@@ -320,6 +321,9 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
   }
   if (!goes_on(options, "normals", 0)) return interrupted();
   settle_normals(mesh, raw, options, report);
+  report.up_is_guessed = raw.up == UpAxis::Unknown;
+  mesh.up = report.up_is_guessed ? guess_up(mesh, raw.usual_up) : raw.up;
+  report.up = mesh.up;
   if (!goes_on(options, "normals", 1)) return interrupted();
   return imported;
 }

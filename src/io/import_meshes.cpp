@@ -3,6 +3,7 @@
 
 #include "io/images.h"
 #include "mesh/clean.h"
+#include "mesh/guess_up.h"
 #include "mesh/weld.h"
 
 #include <algorithm>
@@ -109,11 +110,15 @@ Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
   if (paths.empty()) return fail(Error::CommandLine, "no file to import");
   if (paths.size() == 1) return import_mesh(paths[0], options);
   Imported all;
-  bool had_parts = false;
+  bool had_parts = false, is_first = true;
   for (const std::filesystem::path& path : paths) {
     Result<Imported> one = import_mesh(path, options);
     if (!one.ok()) return one.failure();
     had_parts = had_parts || one->mesh.parts.size() > 1;
+    if (is_first) all.mesh.up = one->mesh.up;
+    is_first = false;
+    const bool is_said = !one->report.up_is_guessed && one->mesh.up == all.mesh.up;
+    all.report.up_is_guessed = all.report.up_is_guessed || !is_said;
     append(all.report, one->report, path.string());
     append(all.mesh, std::move(one->mesh), path.filename().string());
   }
@@ -132,6 +137,8 @@ Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
   std::stable_partition(mesh.layers.begin(), mesh.layers.end(), [](const AttributeLayer& layer) {
     return layer.role == AttributeRole::Normal;
   });
+  if (all.report.up_is_guessed) mesh.up = guess_up(mesh, mesh.up);
+  all.report.up = mesh.up;
   // Again over all: files may repeat each other.
   all.report.duplicate_triangles = count_duplicate_triangles(mesh);
   all.report.zero_area_triangles = count_zero_area_triangles(mesh);

@@ -94,6 +94,9 @@ struct RawMesh {
   std::vector<std::string> parts;
   std::vector<ImageFile> images;  // from inside the file; import.cpp looks for others beside it
 
+  UpAxis up = UpAxis::Unknown;  // as the file or its format says
+  UpAxis usual_up = UpAxis::Y;  // of files in a format that does not
+
   // What normals are when the file has none, or lacks them at some corners, and the policy is Keep.
   // Smoothing groups, where there are any, go before this.
   NormalPolicy default_normals{NormalPolicy::Kind::Crease, 30};

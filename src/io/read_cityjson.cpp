@@ -82,6 +82,7 @@ class CityBuilder {
                            in_quotes(version) + "; 1.0, 1.1 and 2.0 are read");
     }
     raw_.report.format = "CityJSON " + version;
+    raw_.up = UpAxis::Z;
     const Json& transform = at(json, "transform");
     if (!transform.is_null()) {
       const auto scale = as_vector(at(transform, "scale"));

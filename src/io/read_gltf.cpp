@@ -1,4 +1,5 @@
-// glTF 2.0: .gltf, .glb, and the GLB inside a .b3dm. Coordinates stay as they are (y up).
+// glTF 2.0: .gltf, .glb, and the GLB inside a .b3dm. Coordinates stay as they are (y up, but for
+// files of this program that say otherwise).
 #include "io/gltf_attributes.h"
 #include "io/gltf_compression.h"
 #include "io/gltf_document.h"
@@ -118,6 +119,7 @@ class MeshBuilder {
     raw_.materials = read_materials(json_, images);
     raw_.images = std::move(images.images);
     raw_.report.notes.insert(raw_.report.notes.end(), images.notes.begin(), images.notes.end());
+    raw_.up = as_text(at(at(at(json_, "asset"), "extras"), "up")) == "z" ? UpAxis::Z : UpAxis::Y;
     raw_.default_normals = {NormalPolicy::Kind::Flat, 0};
     const bool has_parts = scene->instances.size() > 1;
 

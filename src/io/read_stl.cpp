@@ -48,6 +48,7 @@ void add_triangle(RawMesh& raw) {
 Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
   RawMesh raw;
   raw.report.format = "binary STL";
+  raw.usual_up = UpAxis::Z;
   raw.positions.reserve(3 * facet_count);
   raw.triangles.reserve(facet_count);
   RawLayer attribute{std::string(kStlAttribute),
@@ -88,6 +89,7 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
 Result<RawMesh> read_text(const Source& source) {
   RawMesh raw;
   raw.report.format = "text STL";
+  raw.usual_up = UpAxis::Z;
   LineReader lines(source.text());
   std::size_t corners = 0;
   bool in_facet = false, closed = true;

@@ -123,6 +123,7 @@ class GlbWriter {
       layers.push_back(&flat);
     }
     for (const AttributeLayer& layer : mesh.layers) layers.push_back(&layer);
+    is_z_up_ = is_z_up_ || mesh.up == UpAxis::Z;
     const SplitVertices split = split_vertices(mesh, layers);
     const std::vector<std::size_t> streams = streams_of(layers);
     const Vec3d origin = middle_origin(mesh);
@@ -177,6 +178,8 @@ class GlbWriter {
   Result<std::vector<std::byte>> finish(std::size_t root) {
     Json json = Json::object();
     json["asset"] = {{"version", "2.0"}, {"generator", kGenerator}};
+    // Coordinates stay as they are, whatever glTF says of them; so that we at least know again.
+    if (is_z_up_) json["asset"]["extras"] = {{"up", "z"}};
     if (!extensions_.empty()) json["extensionsUsed"] = extensions_;
     json["scene"] = 0;
     Json scene = Json::object();
@@ -389,6 +392,7 @@ class GlbWriter {
   Json accessors_ = Json::array(), nodes_ = Json::array(), meshes_ = Json::array();
   std::vector<std::size_t> stream_of_accessor_;
   std::vector<std::string> extensions_;
+  bool is_z_up_ = false;
 };
 
 }  // namespace

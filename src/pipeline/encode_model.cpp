@@ -60,6 +60,7 @@ Result<EncodedModel> encode_model(const Mesh& snapped, const ContractionSequence
   content.facts.grid_bits = grid_bits(snapped, sequence);
   content.facts.vertex_count = used_vertex_count(snapped);
   content.facts.triangle_count = snapped.triangle_count();
+  content.facts.up = snapped.up;
   content.facts.layers = schema_of(snapped, codings);
   content.facts.bands = band_facts(snapped, sequence);
   content.materials = snapped.materials;

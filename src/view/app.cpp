@@ -44,7 +44,7 @@ App::App(const ViewerOptions& options, ViewerWindow& window, GlCanvas canvas)
   settings_.max_bytes = options.max_bytes;
   split_ = split_of(options);
   stream_.max_bytes_per_second = options.max_bytes_per_second;
-  camera_.up = options.up;
+  camera_.up = options.up.value_or(camera_.up);
   if (!options.source.empty()) session_.open(options.source);
 }
 
@@ -104,7 +104,10 @@ void App::fit() {
     const Camera of_side = sized(camera_, side);
     if (of_side.width_px < narrowest.width_px) narrowest = of_side;
   }
-  camera_ = fit_camera_to(std::span(&set, 1), options_.up, narrowest.width_px, narrowest.height_px);
+  const ModelFacts* facts = session_.facts();
+  const Vec3d up =
+      options_.up.value_or(direction_of(facts == nullptr ? UpAxis::Unknown : facts->up));
+  camera_ = fit_camera_to(std::span(&set, 1), up, narrowest.width_px, narrowest.height_px);
 }
 
 // A cut for another camera has another outline, so this might go on for ever. The outline of a

@@ -65,6 +65,7 @@ inline ContainerContent some_content() {
   ModelFacts& facts = content.facts;
   facts.grid = {{1.5, -2e6, 0.25}, 0.125};
   facts.grid_bits = 20;
+  facts.up = UpAxis::Y;
   facts.vertex_count = 5'000'000'000;
   facts.triangle_count = 9'999'999'999;
   facts.layers = {

@@ -336,7 +336,8 @@ TEST_CASE("what the container promises is looked at behind the checksums") {
       {8, 3, "head"},         // whose layers begin later
       {80, 0, "head: grid"},  // the step's lower half; its upper one follows
       {88, 32, "head: grid: more than 31 bits"},
-      {89, 0x03000001, "head: a reserved byte is not 0"},  // and three parts
+      {89, 0x03000003, "head: unknown axis for up"},  // and three parts
+      {89, 0x03000100, "head: a reserved byte is not 0"},
       {92, 0x7fffffff, "head: there are not as many names as parts"},
       {92, 0, "head: there are not as many names as parts"},
       {92, 2, "part names: their number is not as many as there are"},

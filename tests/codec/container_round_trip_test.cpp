@@ -32,6 +32,7 @@ bool same(const BlockFacts& written, const BlockFacts& read) {
 void check_same(const ModelFacts& written, const ModelFacts& read) {
   CHECK(written.grid == read.grid);
   CHECK(written.grid_bits == read.grid_bits);
+  CHECK(written.up == read.up);
   CHECK(written.vertex_count == read.vertex_count);
   CHECK(written.triangle_count == read.triangle_count);
   CHECK(written.layers == read.layers);

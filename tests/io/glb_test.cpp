@@ -87,6 +87,16 @@ std::size_t distinct_values(const AttributeLayer& layer) {
 
 }  // namespace
 
+TEST_CASE("GLB has y up, but for what is written here with z up") {
+  Mesh mesh = cone(8, 2);
+  for (const UpAxis up : {UpAxis::Unknown, UpAxis::Y, UpAxis::Z}) {
+    mesh.up = up;
+    const Mesh back = there_and_back(mesh);
+    CHECK(back.up == (up == UpAxis::Z ? UpAxis::Z : UpAxis::Y));
+    CHECK(largest_move(mesh, back) < 1e-6);
+  }
+}
+
 TEST_CASE("GLB: every zoo mesh comes back triangle for triangle") {
   for (const ZooMesh& z : mesh_zoo()) {
     if (z.mesh.triangles.empty() || !z.mesh.part_of_triangle.empty() ||

@@ -1,6 +1,8 @@
 #include "crease/import.h"
 
+#include "crease/export.h"
 #include "io/polygon_model.h"
+#include "support/mesh_zoo.h"
 
 #include <doctest/doctest.h>
 
@@ -77,6 +79,23 @@ TEST_CASE("what is ugly is counted") {
   CHECK(in.report.isolated_vertices == 1);
   CHECK(in.report.welded_vertices == 1);
   CHECK(in.mesh.triangle_count() == 3);
+}
+
+TEST_CASE("what points up is what the format says, or what it looks like") {
+  const auto up_of = [](const Mesh& mesh, const char* ending) {
+    const std::vector<std::byte> bytes = *export_bytes(mesh, ending);
+    const Result<Imported> in = import_bytes(bytes, std::string("a") + ending, {});
+    REQUIRE(in.ok());
+    CHECK(in->report.up == in->mesh.up);
+    CHECK(in->report.up_is_guessed == (std::string(ending) != ".glb"));
+    return in->mesh.up;
+  };
+  for (const char* ending : {".obj", ".ply", ".stl"}) {
+    CHECK(up_of(cone(24, 6), ending) == UpAxis::Z);
+  }
+  CHECK(up_of(cone(24, 6), ".glb") == UpAxis::Y);
+  CHECK(up_of(hard_box(2), ".obj") == UpAxis::Y);
+  CHECK(up_of(hard_box(2), ".stl") == UpAxis::Z);
 }
 
 TEST_CASE("several files become one mesh with shared vertices and a part a file") {

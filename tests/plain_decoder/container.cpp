@@ -142,7 +142,8 @@ Head read_head(const Bytes& file) {
   for (double& x : head.origin) x = in.f64();
   head.step = in.f64();
   head.grid_bits = in.u8();
-  in.reserved(3);
+  head.up = in.u8();
+  in.reserved(2);
   head.parts = in.u32();
   head.materials = read_part(in);
   head.part_names = read_part(in);
@@ -167,6 +168,7 @@ Head read_head(const Bytes& file) {
     demand(std::isfinite(x) && std::abs(x) <= head.step * 0x1p50, "the grid's origin");
   }
   demand(head.grid_bits <= 31, "the grid's bits");
+  demand(head.up <= 2, "the axis that points up");
   const auto is_normal = [](const Layer& layer) { return layer.role == 0; };
   demand(std::count_if(head.layers.begin(), head.layers.end(), is_normal) <= 1,
          "two layers of normals");

@@ -42,7 +42,7 @@ struct Head {
   std::uint64_t vertices = 0, triangles = 0;
   std::array<double, 3> origin{};
   double step = 0;
-  std::uint8_t grid_bits = 0;
+  std::uint8_t grid_bits = 0, up = 0;
   std::uint32_t parts = 0;
   Part materials, part_names, tables, image_list;
   std::uint64_t image_bytes = 0;  // of all of them

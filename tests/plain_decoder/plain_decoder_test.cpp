@@ -80,6 +80,7 @@ void check_facts(const BlockFile& file, const CodecModel& codec_model,
   CHECK(container.head.step == facts.grid.step);
   for (int k = 0; k < 3; ++k) CHECK(container.head.origin[std::size_t(k)] == facts.grid.origin[k]);
   CHECK(container.head.grid_bits == facts.grid_bits);
+  CHECK(container.head.up == static_cast<std::uint8_t>(facts.up));
   REQUIRE(container.head.layers.size() == facts.layers.size());
   for (std::size_t l = 0; l < facts.layers.size(); ++l) {
     CHECK(container.head.layers[l].name == facts.layers[l].name);
