@@ -23,8 +23,9 @@ struct AttributePrecision {
   // With 12 bits normals are off by 0.04 degrees at most, which not even a mirror shows
   // (docs/attributes.md).
   int normal_bits = 12;
-  // Over the range of each component: off by at most its 2^-(bits + 1). Values that already lie on
-  // a lattice as coarse, or are few, are kept exactly.
+  // Over the range of each component: off by at most its 2^-(bits + 1), and, where textures repeat,
+  // by about 2^(1 - bits) of one. Values that already lie on a lattice as coarse, or are few, are
+  // kept exactly.
   int texcoord_bits = 14;
   int color_bits = 10;
 };

@@ -123,6 +123,17 @@ int blend_bits(AttributeRole role, int bits) {
   return role == AttributeRole::TexCoord ? bits - 2 : std::min(bits, 7);
 }
 
+// What is asked for is of one texture. Where it repeats, a quarter of those steps a texture is the
+// least, so that its texels lie still: a house of 80 repeats was off by two of 1024.
+int bits_over_range(AttributeRole role, std::span<const float> values, int bits) {
+  constexpr int kMostMore = kMaxLatticeBits - kMaxAskedBits;
+  if (role != AttributeRole::TexCoord || values.empty()) return bits;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  int repeats = 0;  // in [2^(repeats - 1), 2^repeats)
+  std::frexp(double(*high) - double(*low), &repeats);
+  return bits + std::clamp(repeats - 2, 0, kMostMore);
+}
+
 LayerCoding lattice_coding(const AttributeLayer& layer, int bits) {
   LayerCoding coding{.kind = LayerCoding::Kind::Lattice, .bits = bits, .components = {}};
   std::vector<float> component(layer.value_count());
@@ -130,7 +141,8 @@ LayerCoding lattice_coding(const AttributeLayer& layer, int bits) {
     for (std::size_t i = 0; i < component.size(); ++i) {
       component[i] = layer.values[i * layer.dimension + k];
     }
-    coding.components.push_back(fit_lattice(component, bits, blend_bits(layer.role, bits)));
+    const int steps = bits_over_range(layer.role, component, bits);
+    coding.components.push_back(fit_lattice(component, steps, blend_bits(layer.role, steps)));
   }
   return coding;
 }

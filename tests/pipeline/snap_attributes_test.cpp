@@ -341,6 +341,35 @@ TEST_CASE("numbers on a coarse lattice are kept exactly") {
   CHECK(fit_lattice({}, 8).high == 0);
 }
 
+TEST_CASE("textures that repeat lie still") {
+  std::mt19937 random(7);
+  for (const double repeats : {0.5, 1.0, 3.0, 4.0, 80.0, 200.0}) {
+    CAPTURE(repeats);
+    Mesh mesh = torus(24, 12);
+    AttributeLayer uv{"uv", AttributeRole::TexCoord, Interpolation::Linear, 2, {}, {}};
+    std::uniform_real_distribution<float> any(0, float(repeats));
+    for (std::size_t i = 0; i < 3 * mesh.triangle_count(); ++i) {
+      uv.values.insert(uv.values.end(), {any(random), any(random)});
+      uv.of_corner.push_back(AttributeId(std::uint32_t(i)));
+    }
+    const std::vector<float> before = uv.values;
+    const std::vector<AttributeId> of_corner = uv.of_corner;
+    mesh.layers.push_back(std::move(uv));
+    REQUIRE(snap_attributes(mesh, {.texcoord_bits = 12}).size() == mesh.layers.size());
+    const AttributeLayer& after = mesh.layers.back();
+    double worst = 0;
+    for (std::size_t corner = 0; corner < of_corner.size(); ++corner) {
+      const auto value = after.value(after.of_corner[corner]);
+      for (std::size_t k = 0; k < 2; ++k) {
+        const float was = before[2 * index_of(of_corner[corner]) + k];
+        worst = std::max(worst, std::abs(double(value[k]) - double(was)));
+      }
+    }
+    CHECK(worst > 0);
+    CHECK(worst <= std::min(repeats * std::exp2(-13), std::exp2(-11)));
+  }
+}
+
 TEST_CASE("a few numbers are kept in a table, many are off by half a step") {
   std::mt19937 random(6);
   std::uniform_real_distribution<float> real(-0.7f, 3.1f);
