@@ -138,8 +138,10 @@ void settings_panel(const PanelContent& content, ViewSettings& settings, SplitSe
   ImGui::Begin("settings", nullptr, kPlain);
   if (content.source != nullptr) {
     text(content.source->name);
+    ImGui::PushTextWrapPos(0);
     faint(grouped(content.model->triangle_count) + " triangles, " +
           in_bytes(content.source->bytes) + (content.source->built ? " (built just now)" : ""));
+    ImGui::PopTextWrapPos();
     ImGui::Separator();
     const float column = 9 * line_px();
     name_and_value("shown", grouped(content.frame.triangles), column);
