@@ -257,6 +257,42 @@ class Commands(tool.Case):
         self.assertGreater(away["triangles"], 0)
         self.assertLessEqual(made["triangles"], made["full_triangles"])
 
+    def test_what_a_view_may_have_is_spent_where_it_looks(self):
+        camera = self.camera("near.json", [60, -60, 40], pixels=0.25)
+
+        def seen(*options, exit_status=0):
+            return self.json("extract", self.built(), "-o", self.path("seen.ply"), "--view", camera,
+                             "--samples", 0, *options, exit_status=exit_status)
+
+        free = seen()
+        self.assertEqual(free["stopped_by"], "view")
+        for options in ((), ("--consistent",), ("--degrees", 2)):
+            for most in (200, 700):
+                made = seen("--triangles", most, *options)
+                self.assertLessEqual(made["triangles"], most)
+                self.assertGreater(made["triangles"], 0.95 * most)
+                self.assertEqual(made["stopped_by"], "triangles")
+                self.assertTrue(made["target_met"])
+        self.assertEqual(made["asked"], {"view": str(camera), "triangles": 700, "degrees": 2})
+        enough = seen("--triangles", free["triangles"])
+        self.assertEqual(enough["stopped_by"], "view")
+        self.assertEqual(enough["triangles"], free["triangles"])
+        self.assertGreaterEqual(seen("--consistent")["triangles"], free["triangles"])
+        self.assertGreater(seen("--degrees", 0.5)["triangles"], free["triangles"])
+        os.remove(self.path("seen.ply"))
+        none = seen("--triangles", 1, "--strict", exit_status=5)
+        self.assertEqual(none["stopped_by"], "topology")
+        self.assertIsNone(none["output"])
+        self.assertFalse(os.path.exists(self.path("seen.ply")))
+
+    def test_of_a_view_with_few_triangles_little_is_read(self):
+        hills = self.hills()
+        camera = self.write("hills.json", json.dumps(
+            {"position": [80, -90, 60], "target": [80, 80, 0], "viewport": [640, 480], "pixels": 0.1}))
+        few = self.json("extract", hills, "-o", self.path("hills.stl"), "--view", camera,
+                        "--samples", 0, "--triangles", 300)
+        self.assertLess(few["bytes_read"], 0.5 * few["file_bytes"])
+
     def hills(self, side=160):
         def height(x, y):
             return 3 * math.sin(x / 9) * math.cos(y / 13) + 0.3 * math.sin(x * 1.3 + y) + x * y / 5000
@@ -449,6 +485,10 @@ class Commands(tool.Case):
             self.assertEqual(len(picture["panels"]), 1)
             self.assertEqual(picture["panels"][0]["triangles"], seen["triangles"])
             self.assertEqual(picture["panels"][0]["full_triangles"], seen["full_triangles"])
+        for options in (("--triangles", 500), ("--triangles", 500, "--outside")):
+            few = self.json("render", self.built(), "-o", out, "--view", near, "--no-titles", *options)
+            self.assertEqual(few["panels"][0]["stopped_by"], "triangles")
+            self.assertTrue(450 < few["panels"][0]["triangles"] <= 500)
         whole = self.json("render", self.built(), "-o", out, "--view", near, "--ratio", 1)
         self.assertEqual(whole["panels"][0]["triangles"], seen["full_triangles"])
         for color in ("shaded", "kind", "level", "error"):
