@@ -16,8 +16,8 @@ namespace {
 
 // So long a list stays that is not shown, while there is room.
 constexpr std::uint32_t kUpdatesOfList = 128;
-// By vertex, at which nothing is left to be merged.
-constexpr double kMostErrors = 1e12;
+// By vertex, at which nothing that can be merged is left.
+constexpr double kMostErrors = 1e6;
 
 }  // namespace
 
@@ -106,15 +106,24 @@ void BlockMesh::Impl::move_within(const BlockViewParameters& parameters, bool ha
                                   BlockUpdate& report) {
   const std::size_t most = parameters.view.max_triangles;
   BlockViewParameters tried = parameters;
-  double errors = search.trial();
+  const bool is_there = graph.pages_added() == page_count && missing.empty() &&
+                        std::all_of(could_be.begin(), could_be.end(), [this](std::uint32_t block) {
+                          return cuts.hierarchy(block) != nullptr;
+                        });
+  double errors = search.begin(is_there);
   for (;; errors = ErrorSearch::coarser(errors, triangles(), most)) {
     tried.view = with_errors(parameters.view, errors);
     move_vertices(tried, have_changed, report);
     have_changed = false;
     if (triangles() <= most || errors > kMostErrors) break;
   }
-  const bool is_complete = graph.pages_added() == page_count && missing.empty() &&
-                           missing_hierarchies.empty() && cuts.has_arrived();
+  // What holds the eye is wrong for any error. Those that nothing finer needs are the last ones.
+  while (triangles() > most && cut.size() > 1) {
+    move_cut({cut.begin(), cut.end() - static_cast<std::ptrdiff_t>((cut.size() + 3) / 4)}, report);
+    levels.choose_whole(cut);
+    move_vertices(tried, true, report);
+  }
+  const bool is_complete = is_there && cuts.has_arrived();
   search.tell(errors, triangles(), most, is_complete);
   searches = is_complete && !search.has_ended();
   has_changed |= searches;

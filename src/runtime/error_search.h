@@ -2,14 +2,16 @@
 //
 //   ErrorSearch search;
 //   every update: if (view is another one) search.look_anew(max_triangles);
-//                 ... make what search.trial() times the view's errors ask for ...
-//                 while (count > max_triangles) ... with larger errors, by coarser() ...
+//                 ... ask for what search.trial() times the view's errors need ...
+//                 ... show that from search.begin() on, and while (count > max_triangles) with
+//                     larger errors, by coarser() ...
 //                 search.tell(error, count, max_triangles, all is there);
 //
 // Errors are in multiples of what the view allows, so 1 is the least. A trial counts once all that
 // it needs is there: then the next one is nearer. It begins with errors that hardly anything has.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 namespace crease {
@@ -18,6 +20,8 @@ class ErrorSearch {
  public:
   void look_anew(std::size_t max_triangles);
   double trial() const { return trial_; }
+  // Where to begin: while not all that the trial needs is there, what has fitted the last time.
+  double begin(bool is_all_there) const { return is_all_there ? trial_ : std::max(trial_, good_); }
   // For one at which there are too many.
   static double coarser(double error, std::size_t triangles, std::size_t max_triangles);
   // At `error`, the trial or a coarser one, are so many triangles, not too many. `is_complete`: and
