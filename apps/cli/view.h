@@ -52,6 +52,7 @@ struct ViewedModel {
   std::uint64_t bytes_read = 0;
   std::size_t blocks_read = 0;
 };
+
 // What of a file is read for a view.
 struct ViewReads {
   bool all = false;  // so that errors and levels are known everywhere
