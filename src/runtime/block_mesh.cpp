@@ -351,7 +351,10 @@ std::span<const BlockEntry> BlockMesh::missing() const {
 std::vector<BlockEntry> BlockMesh::missing_for(const BlockViewParameters& parameters) const {
   std::vector<BlockEntry> missing;
   BlockChooser chooser(impl_->graph, impl_->schema->facts.grid);
-  for (const std::uint32_t block : chooser.choose(parameters.view, impl_->limits(parameters))) {
+  const bool is_limited = Impl::is_limited_by_vertex(parameters);
+  const ViewParameters view =
+      is_limited ? Impl::with_errors(parameters.view, impl_->search.trial()) : parameters.view;
+  for (const std::uint32_t block : chooser.choose(view, impl_->limits(parameters))) {
     if (!impl_->resident[block] && impl_->wanted_at[block] != impl_->updates) {
       missing.push_back(impl_->graph.entry(block));
     }

@@ -18,8 +18,10 @@ double ratio(std::size_t a, std::size_t b) {
 
 }  // namespace
 
-// What was found for a view before this one is where to begin.
+// What was found for a view before this one is where to begin, unless that had hardly any
+// triangles.
 void ErrorSearch::look_anew(std::size_t max_triangles) {
+  good_ = std::min(good_, kFirst);
   too_fine_ = 0;
   has_ended_ = false;
   const bool has_room = ratio(triangles_, max_triangles) < kMostInFlight;

@@ -10,6 +10,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <random>
 #include <set>
@@ -240,6 +243,36 @@ TEST_CASE("of triangles that are allowed few are left, and what came first does 
         }
       }
     }
+  }
+}
+
+// At the end of a search in which all that trials need is always there.
+double found_error(ErrorSearch& search, std::size_t most,
+                   const std::function<std::size_t(double)>& triangles_at) {
+  search.look_anew(most);
+  for (int trials = 0; !search.has_ended(); ++trials) {
+    REQUIRE(trials < 40);
+    double error = search.begin(true);
+    while (triangles_at(error) > most) {
+      error = ErrorSearch::coarser(error, triangles_at(error), most);
+    }
+    search.tell(error, triangles_at(error), most, true);
+  }
+  return search.trial();
+}
+
+TEST_CASE("a search ends where there are triangles enough and hardly more") {
+  ErrorSearch search;
+  for (const std::size_t most : {100, 3000, 40, 90'000, 2'000'000, 500}) {
+    CAPTURE(most);
+    const auto smooth = [](double error) { return std::size_t(1e6 / std::pow(error, 1.3)); };
+    const double error = found_error(search, most, smooth);
+    CHECK(smooth(error) <= most);
+    CHECK((error == 1 || 20 * smooth(error) > 19 * most));
+    const auto leaping = [](double e) { return std::size_t(e < 7 ? 1000 : 10); };
+    const double leap = found_error(search, 500, leaping);
+    CHECK(leap >= 7);
+    CHECK(leap < 7.2);
   }
 }
 
