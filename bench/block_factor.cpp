@@ -101,7 +101,7 @@ class Counter {
   std::array<double, kRowCount> count(std::map<std::uint32_t, BlockRoots>& known) {
     const BlockMesh::Impl& impl = mesh_.impl();
     std::map<std::uint32_t, bool> is_wrong;
-    for (const BlockChooser::Candidate& c : impl.chooser.wrong()) is_wrong[c.block] = true;
+    for (const SeenBlock& c : impl.chooser.wrong()) is_wrong[c.block] = true;
     for (const std::uint32_t block : impl.cut) {
       const auto& facts = impl.graph.entry(block).facts;
       const double more = double(facts.triangles_fine) - double(facts.triangles_coarse);

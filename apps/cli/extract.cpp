@@ -24,6 +24,7 @@ struct ExtractArguments {
   std::filesystem::path file, output;
   LevelOptions level;
   std::filesystem::path view;  // or empty
+  ViewOptions of_view;
   LodChainOptions chain;
   bool strict = false;
   ReadOptions read;
@@ -35,6 +36,8 @@ Json asked_json(const ExtractArguments& options) {
   if (options.level.ratio) asked["ratio"] = *options.level.ratio;
   if (options.level.error) asked["error"] = *options.level.error;
   if (!options.view.empty()) asked["view"] = options.view.string();
+  if (options.of_view.degrees > 0) asked["degrees"] = options.of_view.degrees;
+  if (options.of_view.consistent) asked["consistent"] = true;
   if (options.chain.levels > 0) asked["levels"] = options.chain.levels;
   return asked;
 }
@@ -140,6 +143,22 @@ Status add_images_and_up(const ExtractArguments& options, const ModelFile& file,
   return Done{};
 }
 
+Result<ExportReport> write_level(const ExtractArguments& options, const ModelFile& file,
+                                 Mesh& level, const Common& common) {
+  const Status painted = add_images_and_up(options, file, level);
+  if (!painted.ok()) return painted.failure();
+  return write_mesh(level, options.output, common, lost_parts(file, level, options.output, common));
+}
+
+// That the level is not what was asked for.
+void tell_shortfall(const ExtractArguments& options, std::size_t triangles, const Common& common,
+                    Report& report) {
+  if (!options.strict) return log(common, shortfall_of(triangles));
+  report.text.clear();
+  report.short_of = Error::TargetNotMet;
+  report.shortfall = shortfall_of(triangles) + "; nothing was written (--strict)";
+}
+
 // To measure what the level is off by takes all blocks.
 Result<Report> extract_one(const ExtractArguments& options, const ModelFile& file,
                            const Common& common) {
@@ -156,10 +175,7 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
   const bool refused = options.strict && !chosen.target_met;
   ExportReport exported;
   if (!refused) {
-    const Status painted = add_images_and_up(options, file, extracted->mesh);
-    if (!painted.ok()) return painted.failure();
-    const Result<ExportReport> written =
-        write_mesh(level, options.output, common, lost_parts(file, level, options.output, common));
+    const Result<ExportReport> written = write_level(options, file, extracted->mesh, common);
     if (!written.ok()) return written.failure();
     exported = *written;
   }
@@ -179,25 +195,18 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
   report.text = options.output.string() + ": " + grouped(level.triangle_count()) + " of " +
                 grouped(file.triangle_count()) + " triangles, stopped by " +
                 name_of(chosen.stopped_by) + in_words(chosen.measured);
-  if (!chosen.target_met) {
-    if (refused) {
-      report.text.clear();
-      report.short_of = Error::TargetNotMet;
-      report.shortfall = shortfall_of(level.triangle_count()) + "; nothing was written (--strict)";
-    } else {
-      log(common, shortfall_of(level.triangle_count()));
-    }
-  }
+  if (!chosen.target_met) tell_shortfall(options, level.triangle_count(), common, report);
   return report;
 }
 
-// Fine where the camera looks: what it sees is off by at most camera.pixels.
+// Fine where the camera looks: what it sees is off by at most camera.pixels, or by as little as its
+// triangles allow.
 Result<Report> extract_view(const ExtractArguments& options, const ModelFile& file,
                             const Common& common) {
   const Result<Camera> camera = read_camera(options.view);
   if (!camera.ok()) return camera.failure();
-  Result<ViewedModel> model =
-      load_viewed(file, *camera, {.view = *camera, .part_names = has_parts(options.output)});
+  const ViewParameters view = view_of(*camera, options.of_view, options.level.triangles);
+  Result<ViewedModel> model = load_viewed(file, view, {.part_names = has_parts(options.output)});
   if (!model.ok()) return model.failure();
 
   Mesh seen = model->mesh.extract();
@@ -208,28 +217,33 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
     measured = *comparison;
   }
   if (interrupted()) return interrupted_failure();
-  const Status painted = add_images_and_up(options, file, seen);
-  if (!painted.ok()) return painted.failure();
-  const Result<ExportReport> written =
-      write_mesh(seen, options.output, common, lost_parts(file, seen, options.output, common));
-  if (!written.ok()) return written.failure();
+  const bool is_met = model->stopped_by != StoppedBy::Topology;
+  const bool refused = options.strict && !is_met;
+  ExportReport exported;
+  if (!refused) {
+    const Result<ExportReport> written = write_level(options, file, seen, common);
+    if (!written.ok()) return written.failure();
+    exported = *written;
+  }
 
   Report report;
   report.json = {{"asked", asked_json(options)},
-                 {"output", options.output.string()},
+                 {"output", refused ? Json(nullptr) : Json(options.output.string())},
                  {"triangles", seen.triangle_count()},
                  {"vertices", seen.vertex_count()},
                  {"full_triangles", file.triangle_count()},
-                 {"stopped_by", "view"},
-                 {"target_met", true},
+                 {"stopped_by", name_of(model->stopped_by)},
+                 {"target_met", is_met},
                  {"error", to_json(larger(model->mesh.error(), model->error))},
                  {"error_measured", measured ? measured_json(*measured) : Json(nullptr)},
                  {"bytes_read", model->bytes_read},
                  {"blocks_read", model->blocks_read},
                  {"file_bytes", file.blocks().head().file_bytes}};
-  report.json.update(to_json(*written));
+  report.json.update(to_json(exported));
   report.text = options.output.string() + ": " + grouped(seen.triangle_count()) + " of " +
-                grouped(file.triangle_count()) + " triangles for the view" + in_words(measured);
+                grouped(file.triangle_count()) + " triangles for the view, stopped by " +
+                name_of(model->stopped_by) + in_words(measured);
+  if (!is_met) tell_shortfall(options, seen.triangle_count(), common, report);
   return report;
 }
 
@@ -259,11 +273,10 @@ Result<Report> run_extract(const ExtractArguments& options, const Common& common
     return fail(Error::CommandLine,
                 "--levels chooses its own counts: leave out --triangles, --ratio and --error");
   }
-  if (!options.view.empty() &&
-      (is_chain || options.level.triangles || options.level.ratio || options.level.error)) {
+  if (!options.view.empty() && (is_chain || options.level.ratio || options.level.error)) {
     return fail(Error::CommandLine,
-                "--view asks for what a camera sees: leave out --triangles, --ratio, --error and "
-                "--levels");
+                "--view asks for what a camera sees, with --triangles at most so many: leave out "
+                "--ratio, --error and --levels");
   }
   const std::string_view glb[] = {".glb"};
   const Status writable =
@@ -303,11 +316,14 @@ Command add_extract(CLI::App& app, const Common& common) {
       ->required()
       ->type_name("OUT");
   add_level_options(*command, options->level);
-  command
-      ->add_option("--view", options->view,
-                   "fine where this camera looks, within its \"pixels\" on the screen, coarse "
-                   "elsewhere: {\"position\":[x,y,z],\"target\":[x,y,z],\"pixels\":1}")
-      ->type_name("CAM.json");
+  CLI::Option* view =
+      command
+          ->add_option("--view", options->view,
+                       "fine where this camera looks, within its \"pixels\" on the screen, coarse "
+                       "elsewhere: {\"position\":[x,y,z],\"target\":[x,y,z],\"pixels\":1}; with "
+                       "--triangles as fine as so many allow")
+          ->type_name("CAM.json");
+  add_view_options(*command, view, options->of_view);
   command->add_flag("--strict", options->strict,
                     "exit with 5 and write nothing when the target is not met");
   add_chain_options(*command, options->chain);
@@ -315,7 +331,7 @@ Command add_extract(CLI::App& app, const Common& common) {
   command->footer(
       "Examples:\n  crease extract bunny.crease -o bunny_10.glb --ratio 0.1\n"
       "  crease extract bunny.crease -o bunny_lod.glb --levels 4\n"
-      "  crease extract city.crease -o seen.glb --view camera.json\n"
+      "  crease extract city.crease -o seen.glb --view camera.json --triangles 20000\n"
       "  crease extract https://host/city.crease -o coarse.glb --triangles 5000");
   const CLI::Option* samples = command->get_option("--samples");
   return {command, [options, samples, &common] {

@@ -40,6 +40,8 @@ void add_level_options(CLI::App& command, LevelOptions& options) {
 
 const char* name_of(StoppedBy stop) {
   switch (stop) {
+    case StoppedBy::View:
+      return "view";
     case StoppedBy::Triangles:
       return "triangles";
     case StoppedBy::Error:

@@ -25,6 +25,7 @@ struct LevelOptions {
 void add_level_options(CLI::App& command, LevelOptions& options);
 
 enum class StoppedBy {
+  View,       // what a camera sees is right
   Triangles,  // the count asked for is reached
   Error,      // the next coarser level that was tried is off by more than asked
   Base,       // the coarsest level is good enough

@@ -196,11 +196,11 @@ std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles) {
   return band;
 }
 
-// Of the pixels allowed. Until a block is read its worst vertex stands for all of them, and the
+// Of the errors allowed. Until a block is read its worst vertex stands for all of them, and the
 // blocks that lead to it get as many splits as that asks for: with those alone that are seen to be
 // wrong, up to 60 % more triangles than with the whole file; with those that are wrong by a quarter
 // of that, at most a few.
-constexpr double kKnownPixels = 0.25;
+constexpr double kKnownErrors = 0.25;
 
 // A host was asked for more than the head, a disk is as if it had not been.
 ModelFile::ModelFile(BlockFile blocks, std::vector<std::byte> built, const Common& common)
@@ -232,8 +232,9 @@ Result<Model> ModelFile::load(const Detail& detail) const {
   options.part_names = detail.part_names;
   ViewParameters view;
   if (detail.view) {
-    view.camera = *detail.view;
-    view.camera.pixels *= kKnownPixels;
+    view = *detail.view;
+    view.camera.pixels *= kKnownErrors;
+    view.degrees *= kKnownErrors;
     options.wants = [&](const BlockEntry& entry) {
       return needs_block(entry.facts, facts.grid, view);
     };

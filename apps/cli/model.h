@@ -6,8 +6,8 @@
 #pragma once
 
 #include "cli/command.h"
+#include "crease/adaptive_mesh.h"
 #include "crease/build.h"
-#include "crease/camera.h"
 #include "crease/file.h"
 #include "crease/import.h"
 #include "crease/progressive_mesh.h"
@@ -47,7 +47,7 @@ void tell_strays(Imported& imported, const Precision& precision);
 struct Detail {
   std::optional<std::size_t> triangles{};  // levels of so many and fewer; none: all
   bool is_one_level = false;               // the finest of those alone
-  std::optional<Camera> view{};            // the blocks that its cut depends on
+  std::optional<ViewParameters> view{};    // the blocks that its cut depends on
   bool is_mesh_only = false;               // the finest mesh of these blocks, and no level of it
   // Without their names, which lie at the file's end, the mesh has no parts.
   bool part_names = true;

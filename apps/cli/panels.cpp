@@ -150,10 +150,11 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
   const Result<ModelFile> file = open_model(path, options.read, common);
   if (!file.ok()) return file.failure();
   learn_up(file->blocks().facts().up);
-  Detail detail{.part_names = false};
+  const Camera& camera = options.view->camera;
   // What was not read has no errors and no levels.
-  if (!options.errors_of_positions && !options.levels_of_positions) detail.view = options.view;
-  Result<ViewedModel> model = load_viewed(*file, *options.view, detail);
+  const bool reads_all = options.errors_of_positions || options.levels_of_positions;
+  Result<ViewedModel> model =
+      load_viewed(*file, *options.view, {.all = reads_all, .part_names = false});
   if (!model.ok()) return model.failure();
   bytes_read_ += model->bytes_read;
   const std::size_t full = file->triangle_count();
@@ -163,7 +164,7 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
   Result<std::vector<ImageFile>> images = file->images(mesh.hierarchy().materials);
   if (!images.ok()) return images.failure();
   source.images = *std::move(images);
-  if (options.errors_of_positions) source.errors = errors_in_pixels(mesh, *options.view);
+  if (options.errors_of_positions) source.errors = errors_in_pixels(mesh, camera);
   if (options.levels_of_positions) source.levels = mesh.level_of_position();
   const std::size_t triangles = mesh.triangle_count();
   const std::size_t coarsest = mesh.hierarchy().vertices.coarse_triangles().size();
@@ -174,7 +175,8 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
       {{"triangles", triangles},
        {"full_triangles", full},
        {"control", false},
-       {"camera", Json::parse(format_camera(*options.view))}},
+       {"stopped_by", name_of(model->stopped_by)},
+       {"camera", Json::parse(format_camera(camera))}},
       options, level_share(full, coarsest, triangles));
   if (options.control) add_control(shown, name, options, panels_.back().level_share);
   return Done{};

@@ -22,8 +22,8 @@ namespace crease::cli {
 struct PanelOptions {
   std::vector<double> ratios;  // a panel each; empty: one panel by `level`
   LevelOptions level;
-  std::optional<Camera> view;  // instead of both: one panel, as fine as this camera needs it
-  bool control = false;        // after the levels, each again with one averaged normal a vertex
+  std::optional<ViewParameters> view;  // instead of both: one panel, as fine as this needs it
+  bool control = false;  // after the levels, each again with one averaged normal a vertex
   bool titles = true;
   // For Coloring::Error: measured distances; of a view, pixels on its screen. For Coloring::Level.
   bool errors_of_positions = false, levels_of_positions = false;

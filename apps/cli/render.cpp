@@ -21,14 +21,16 @@ struct RenderArguments {
   std::filesystem::path output;
   PanelOptions panels;
   std::string levels, view, size, up;
+  ViewOptions of_view;
   std::string coloring;                          // empty: shaded, by error from outside
   bool wireframe = false, no_wireframe = false;  // neither: from outside
   bool outside = false, occlusion = false;
   int columns = 0;
 
+  // Of the same detail everywhere; triangles are what a view may have.
   bool has_level() const {
     const LevelOptions& one = panels.level;
-    return !levels.empty() || one.triangles || one.ratio || one.error;
+    return !levels.empty() || (one.triangles && view.empty()) || one.ratio || one.error;
   }
 };
 
@@ -81,10 +83,15 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
     if (!ratios.ok()) return ratios.failure();
     options.panels.ratios = *std::move(ratios);
   }
+  if (options.has_level() && (options.of_view.degrees > 0 || options.of_view.consistent)) {
+    return fail(Error::CommandLine,
+                "--degrees and --consistent are of what --view refines: leave out --levels, "
+                "--ratio and --error");
+  }
   if (options.outside && options.has_level()) {
     return fail(Error::CommandLine,
-                "--outside shows what --view refines: leave out --levels, --triangles, --ratio and "
-                "--error");
+                "--outside shows what --view refines, with --triangles at most so many: leave out "
+                "--levels, --ratio and --error");
   }
   const std::string_view ending[] = {".png"};
   const Status writable = check_output(options.output, ending, "pictures are", options.files);
@@ -97,12 +104,13 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
     render->columns = static_cast<int>(options.panels.control_columns());
   }
   if (options.outside) {
-    options.panels.view = render->frustum;
+    options.panels.view =
+        view_of(*render->frustum, options.of_view, options.panels.level.triangles);
   } else if (render->camera && !options.has_level()) {
     const std::size_t panel_count = options.files.size() * options.panels.panel_count();
     Result<Camera> seen = camera_of_panel(panel_count, options.panels.titles, *render);
     if (!seen.ok()) return seen.failure();
-    options.panels.view = *seen;
+    options.panels.view = view_of(*seen, options.of_view, options.panels.level.triangles);
   }
 
   Panels panels;
@@ -153,8 +161,9 @@ Command add_render(CLI::App& app, const Common& common) {
               "camera: {\"position\":[x,y,z],\"target\":[x,y,z],\"up\":[x,y,z],"
               "\"vertical_fov\":45,\"viewport\":[1920,1080],\"pixels\":1}. Without a level "
               "the model is as fine as it needs, within its \"pixels\" of error, and coarse "
-              "elsewhere. Default: all of the model")
+              "elsewhere; with --triangles as fine as so many allow. Default: all of the model")
           ->type_name("CAM.json");
+  add_view_options(*command, view, options->of_view);
   command
       ->add_flag("--outside", options->outside,
                  "the model as fine as --view needs it, seen from outside with its frustum, "

@@ -1,6 +1,7 @@
 #include "cli/view.h"
 
 #include "cli/console.h"
+#include "cli/number_check.h"
 #include "crease/render.h"
 
 #include <fstream>
@@ -40,12 +41,66 @@ Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const Detail& detai
                         decoded.blocks.size()};
 }
 
-Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view, const Detail& detail) {
-  Result<ModelHierarchy> model = load_hierarchy(file, detail);
-  if (!model.ok()) return model.failure();
-  AdaptiveMesh mesh(std::move(model->hierarchy));
-  mesh.update({.camera = view});
-  return ViewedModel{std::move(mesh), model->error, model->bytes_read, model->blocks_read};
+namespace {
+
+// The views with more error that are tried before what is asked for: so that of a view that needs
+// far more triangles than it may have, no more is read than they take. All together read a third
+// more at most, and make as much of it.
+constexpr double kCoarsest = 256, kStep = 4;
+
+ViewParameters with_errors(ViewParameters view, double times) {
+  view.camera.pixels *= times;
+  view.degrees *= times;
+  return view;
+}
+
+}  // namespace
+
+void add_view_options(CLI::App& command, CLI::Option* view, ViewOptions& options) {
+  command
+      .add_option("--degrees", options.degrees,
+                  "error of shading allowed in the view besides; default: any")
+      ->check(number_from(0.0, 180.0))
+      ->type_name("N")
+      ->needs(view);
+  command
+      .add_flag("--consistent", options.consistent,
+                "in the view a vertex is split after those that it depends on, so that every "
+                "neighbourhood is one that the simplifier saw")
+      ->needs(view);
+}
+
+ViewParameters view_of(const Camera& camera, const ViewOptions& options,
+                       const std::optional<std::size_t>& triangles) {
+  ViewParameters view{.camera = camera, .degrees = options.degrees};
+  view.consistent = options.consistent;
+  if (triangles) view.max_triangles = *triangles;
+  return view;
+}
+
+Result<ViewedModel> load_viewed(const ModelFile& file, const ViewParameters& view,
+                                const ViewReads& reads) {
+  ViewParameters unlimited = view;
+  unlimited.max_triangles = ViewParameters{}.max_triangles;
+  const bool has_limit = view.max_triangles != unlimited.max_triangles;
+  for (double times = has_limit && !reads.all ? kCoarsest : 1;; times /= kStep) {
+    Detail detail{.part_names = reads.part_names};
+    if (!reads.all) detail.view = with_errors(unlimited, times);
+    Result<ModelHierarchy> model = load_hierarchy(file, detail);
+    if (!model.ok()) return model.failure();
+    AdaptiveMesh mesh(model->hierarchy);
+    mesh.update(with_errors(unlimited, times));
+    const auto viewed = [&](AdaptiveMesh& as, StoppedBy stop) {
+      return ViewedModel{std::move(as), stop, model->error, model->bytes_read, model->blocks_read};
+    };
+    if (mesh.triangle_count() > view.max_triangles) {
+      AdaptiveMesh limited(model->hierarchy);
+      limited.update(with_errors(view, times));
+      const bool fits = limited.triangle_count() <= view.max_triangles;
+      return viewed(limited, fits ? StoppedBy::Triangles : StoppedBy::Topology);
+    }
+    if (times <= 1) return viewed(mesh, StoppedBy::View);
+  }
 }
 
 }  // namespace crease::cli

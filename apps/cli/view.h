@@ -3,11 +3,11 @@
 //
 //   Result<Camera> camera = read_camera("camera.json");
 //   Result<ModelFile> file = open_model("city.obj", read, common);
-//   Result<ViewedModel> model = load_viewed(*file, *camera, {.view = *camera});
-//   model->mesh.update({.camera = *camera});
+//   Result<ViewedModel> model = load_viewed(*file, view_of(*camera, {}, 5000), {});
 #pragma once
 
 #include "cli/command.h"
+#include "cli/level.h"
 #include "cli/model.h"
 #include "crease/adaptive_mesh.h"
 #include "crease/build_hierarchy.h"
@@ -23,6 +23,17 @@ namespace crease::cli {
 
 Result<Camera> read_camera(const std::filesystem::path& path);
 
+// What is asked of a view beside what its camera says.
+struct ViewOptions {
+  double degrees = 0;  // 0: any
+  bool consistent = false;
+};
+// `view`: the option without which they are refused.
+void add_view_options(CLI::App& command, CLI::Option* view, ViewOptions& options);
+
+ViewParameters view_of(const Camera& camera, const ViewOptions& options,
+                       const std::optional<std::size_t>& triangles);
+
 struct ModelHierarchy {
   std::shared_ptr<const MeshHierarchy> hierarchy;
   HierarchyMaps maps;
@@ -36,13 +47,21 @@ Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const Detail& detai
 
 struct ViewedModel {
   AdaptiveMesh mesh;
+  StoppedBy stopped_by = StoppedBy::View;
   LevelError error;  // of its finest cut
   std::uint64_t bytes_read = 0;
   std::size_t blocks_read = 0;
 };
-// As fine as `view` needs it. With that view as its detail it is made of the blocks that the cut
-// depends on, which is that of the whole file to within a few percent of the triangles; of all
-// blocks its errors and levels are known everywhere.
-Result<ViewedModel> load_viewed(const ModelFile& file, const Camera& view, const Detail& detail);
+
+// What of a file is read for a view.
+struct ViewReads {
+  bool all = false;  // so that errors and levels are known everywhere
+  bool part_names = true;
+};
+// As fine as `view` needs it, or as its triangles allow. Unless all is read it is made of the
+// blocks that the cut depends on, which is that of the whole file to within a few percent of the
+// triangles.
+Result<ViewedModel> load_viewed(const ModelFile& file, const ViewParameters& view,
+                                const ViewReads& reads);
 
 }  // namespace crease::cli

@@ -179,9 +179,11 @@ struct BlockViewParameters {
   // By block, of these: camera, degrees, max_triangles, hysteresis, coarse_outside,
   // silhouette_weight. The errors are bounds of whole blocks. By vertex, inside the blocks that are
   // refined so, all others as well; but max_seconds leaves some blocks as they were seen before,
-  // for the next update(). max_triangles counts the blocks of the cut whole in every mode: no more
-  // than that is ever shown, and between their ends or by vertex it is less. To count what they
-  // show would make blocks come and go, as finer ones want all of what coarser ones have.
+  // for the next update(). max_triangles counts what is shown, and that is never more unless the
+  // base is. The most visible errors are mended first. By block, what does not fit then is passed
+  // over, and what is left goes to the next ones that it does for. By vertex, all that is seen has
+  // one error, the smallest for which there are triangles enough: a few updates look for it,
+  // without regard to max_seconds, and show less until blocks and hierarchies are there.
   ViewParameters view;
   // Of resident blocks. The most visible errors first; what does not fit stays coarse. By vertex,
   // hierarchies and cuts count as well, and cuts that grow may exceed it until the next update().

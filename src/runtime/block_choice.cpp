@@ -10,9 +10,6 @@ namespace crease {
 
 namespace {
 
-// To say which of the spheres around the eye are worst, something in them is so near.
-constexpr float kNearestRadii = 0.05f;
-
 bool is_wrong(const BlockBounds& block, const ViewError& error, const ViewError::Reaches& reaches) {
   const SplitBounds& bounds = block.bounds;
   const float radius = ViewError::decoded(bounds.radius);
@@ -32,15 +29,46 @@ std::span<const std::uint32_t> BlockChooser::choose(const ViewParameters& view,
   chosen_.clear();
   find_wrong(view, limits);
   has_all_ = choose_all(view, limits);
-  if (!has_all_) choose_most_visible(view, limits);
-  return chosen_;
+  has_levels_ = false;
+  if (has_all_) return chosen_;
+  const ViewError error(view, grid_);
+  see_wrong(error);
+  has_levels_ = view.max_triangles != std::numeric_limits<std::size_t>::max();
+  if (!has_levels_) {
+    choose_most_visible(limits);
+    return chosen_;
+  }
+  spend_triangles(view, limits, error);
+  return budget_.chosen();
+}
+
+// What was chosen for a view stays until all of that is there, and is chosen anew by what is known
+// then: so that what is shown in the end does not depend on what came first.
+void BlockChooser::spend_triangles(const ViewParameters& view, const Limits& limits,
+                                   const ViewError& error) {
+  const bool has_levels = limits.levels != nullptr;
+  const bool is_same = view == spent_view_ && limits.max_bytes == spent_bytes_ &&
+                       has_levels == spent_on_levels_ && budget_.levels().size() == graph_.size();
+  if (is_same && !is_there(budget_.chosen(), limits)) return;
+  spent_view_ = view;
+  spent_bytes_ = limits.max_bytes;
+  spent_on_levels_ = has_levels;
+  budget_.spend(
+      wrong_, {error, view.max_triangles, limits.max_bytes, limits.bytes_of_block, limits.levels});
+}
+
+bool BlockChooser::is_there(std::span<const std::uint32_t> blocks, const Limits& limits) const {
+  return std::all_of(blocks.begin(), blocks.end(), [&](std::uint32_t block) {
+    return limits.resident[block] != nullptr &&
+           (limits.levels == nullptr || graph_.is_base(block) || limits.levels->is_settled(block));
+  });
 }
 
 // False if they are more than the limits, or some are not resident: then their order counts.
 bool BlockChooser::choose_all(const ViewParameters& view, const Limits& limits) {
   needed_bits_.assign(graph_.size() / 64 + 1, 0);
   const auto need = [this](std::uint32_t b) { needed_bits_[b / 64] |= std::uint64_t(1) << b % 64; };
-  for (const Candidate& candidate : wrong_) need(candidate.block);
+  for (const SeenBlock& seen : wrong_) need(seen.block);
   std::size_t bytes = 0, triangles = 0;
   // What a block needs comes before it, so that one pass from the last one finds all.
   for (std::size_t word = needed_bits_.size(); word-- > 0;) {
@@ -60,38 +88,33 @@ bool BlockChooser::choose_all(const ViewParameters& view, const Limits& limits) 
   return true;
 }
 
-void BlockChooser::choose_most_visible(const ViewParameters& view, const Limits& limits) {
-  chosen_.clear();
-  const ViewError error(view, grid_);
-  for (Candidate& candidate : wrong_) {
-    const BlockBounds& own = graph_.own(candidate.block);
-    candidate.error = graph_.is_base(candidate.block)
-                          ? std::numeric_limits<float>::infinity()
-                          : error.of(own.bounds, own.center, kNearestRadii);
+void BlockChooser::see_wrong(const ViewError& error) {
+  for (SeenBlock& seen : wrong_) {
+    const BlockBounds& own = graph_.own(seen.block);
+    seen.error = graph_.is_base(seen.block) ? std::numeric_limits<float>::infinity()
+                                            : error.of(own.bounds, own.center, kNearestRadii);
   }
+}
+
+void BlockChooser::choose_most_visible(const Limits& limits) {
+  chosen_.clear();
   // A heap: mostly the budget ends long before the list.
-  const auto is_less = [](const Candidate& a, const Candidate& b) {
+  const auto is_less = [](const SeenBlock& a, const SeenBlock& b) {
     return a.error != b.error ? a.error < b.error : a.block > b.block;
   };
   std::make_heap(wrong_.begin(), wrong_.end(), is_less);
-  std::size_t bytes = 0, triangles = 0;
+  std::size_t bytes = 0;
   for (auto end = wrong_.end(); end != wrong_.begin(); --end) {
     std::pop_heap(wrong_.begin(), end, is_less);
-    const Candidate& candidate = *(end - 1);
-    collect_needed(candidate.block);
-    std::size_t more_bytes = 0, more_triangles = 0;
-    for (const std::uint32_t block : needed_) {
-      more_bytes += limits.bytes_of_block[block];
-      more_triangles += graph_.more_triangles(block);
-    }
-    const bool is_base = candidate.error == std::numeric_limits<float>::infinity();
-    if (!is_base && (bytes + more_bytes > limits.max_bytes ||
-                     triangles + more_triangles > view.max_triangles)) {
+    const SeenBlock& seen = *(end - 1);
+    collect_needed(seen.block);
+    std::size_t more_bytes = 0;
+    for (const std::uint32_t block : needed_) more_bytes += limits.bytes_of_block[block];
+    if (!graph_.is_base(seen.block) && bytes + more_bytes > limits.max_bytes) {
       for (const std::uint32_t block : needed_) chosen_at_[block] = 0;
       break;
     }
     bytes += more_bytes;
-    triangles += more_triangles;
     chosen_.insert(chosen_.end(), needed_.begin(), needed_.end());
   }
 }

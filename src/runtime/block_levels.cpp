@@ -59,6 +59,15 @@ class Levels {
     }
     return done;
   }
+  // A triangle is there once the split that brings it is done.
+  std::uint32_t triangles_at(int level) const {
+    const VertexHierarchy& h = data_.hierarchy.vertices;
+    std::size_t count = h.coarse_triangles().size();
+    for (std::uint32_t s = 0; s < bounds_.size(); ++s) {
+      if (is_done(s, level)) count += h.triangles_of(SplitId{s}).size();
+    }
+    return static_cast<std::uint32_t>(count);
+  }
   LevelError left_by(int level) const {
     LevelError left;
     for (std::size_t s = 0; s < bounds_.size(); ++s) {
@@ -202,7 +211,10 @@ BlockLevelsPtr BlockLevelsJob::run() const {
     tighten(*data_, errors);
     errors.settle();
     const Levels levels(data, errors.bounds());
-    for (int k = 0; k < kFullLevel; ++k) facts->left[k] = levels.left_by(k);
+    for (int k = 0; k < kFullLevel; ++k) {
+      facts->left[k] = levels.left_by(k);
+      facts->triangles[k] = levels.triangles_at(k);
+    }
     for (std::uint32_t r = 0; r < data.node_of_root.size(); ++r) {
       facts->of_root.push_back(errors.of_root(r));
     }

@@ -64,10 +64,11 @@ struct KnownFiner {
 
 // Of a block, and what was known of the finer ones: nothing else tells them.
 struct LevelFacts {
-  std::array<LevelError, kFullLevel> left;  // per level but the full one: the largest
-  std::vector<RoundedError> of_root;        // empty: the block has no hierarchy
-  std::uint64_t roots = 0;                  // a checksum of these
-  std::vector<KnownFiner> finer;            // ascending
+  std::array<LevelError, kFullLevel> left;            // per level but the full one: the largest
+  std::array<std::uint32_t, kFullLevel> triangles{};  // likewise
+  std::vector<RoundedError> of_root;                  // empty: the block has no hierarchy
+  std::uint64_t roots = 0;                            // a checksum of these
+  std::vector<KnownFiner> finer;                      // ascending
   // A tree: all of the block, then its first half with the parts of that, and so on. A level is
   // right where it is in all that have no parts.
   std::vector<LevelSphere> pieces;

@@ -5,6 +5,7 @@
 #include "runtime/extract_blocks.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace crease {
@@ -15,6 +16,8 @@ namespace {
 
 // So long a list stays that is not shown, while there is room.
 constexpr std::uint32_t kUpdatesOfList = 128;
+// By vertex, at which nothing that can be merged is left.
+constexpr double kMostErrors = 1e6;
 
 }  // namespace
 
@@ -32,7 +35,9 @@ void BlockMesh::Impl::make_room() {
 }
 
 BlockChooser::Limits BlockMesh::Impl::limits(const BlockViewParameters& parameters) const {
-  return {parameters.max_bytes, bytes_of_block, is_refined, resident};
+  const bool has_levels = parameters.in_levels && !parameters.by_vertex;
+  return {parameters.max_bytes, bytes_of_block, is_refined, resident,
+          has_levels ? &levels : nullptr};
 }
 
 BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
@@ -43,38 +48,114 @@ BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
                        parameters.in_levels == last.in_levels;
   if (is_same && !has_changed) return report;
   has_changed = false;
+  const bool is_limited = is_limited_by_vertex(parameters);
+  searches = false;
+  if (is_limited && !(parameters.view == last.view && last.by_vertex)) {
+    search.look_anew(parameters.view.max_triangles);
+  }
   last = parameters;
   ++updates;
   // Before blocks are chosen, so that what levels take counts against the budget at once.
   levels.take_waiting();
   count_resized_levels();
-  const std::span<const std::uint32_t> chosen = chooser.choose(parameters.view, limits(parameters));
+  const double errors = is_limited ? search.trial() : 1;
+  const ViewParameters view = is_limited ? with_errors(parameters.view, errors) : parameters.view;
+  const std::span<const std::uint32_t> chosen = chooser.choose(view, limits(parameters));
   report.evaluated = chooser.evaluated();
   missing.clear();
   for (const std::uint32_t block : chosen) wanted_at[block] = updates;
   if (chooser.has_all()) {
-    move_cut({chosen.begin(), chosen.end()}, report);
+    could_be.assign(chosen.begin(), chosen.end());
   } else {
     for (const std::uint32_t block : chosen) {
       if (!resident[block]) missing.push_back(graph.entry(block));
     }
-    move_cut(those_that_can_be(chosen), report);
+    could_be = those_that_can_be(chosen);
   }
-  view_error = 0;
-  for (const BlockChooser::Candidate& wrong : chooser.wrong()) {
-    if (!is_refined[wrong.block]) view_error = std::max(view_error, wrong.error);
-  }
-  const bool have_changed = choose_levels(parameters);
+  move_cut(is_limited ? those_by_vertex(could_be) : could_be, report);
+  const bool have_changed = choose_levels(parameters) || report.refined + report.coarsened > 0;
   drop_beyond(parameters.max_bytes, report);
-  move_vertices(parameters, have_changed || report.refined + report.coarsened > 0, report);
+  if (is_limited) {
+    move_within(parameters, have_changed, report);
+  } else {
+    move_vertices(parameters, have_changed, report);
+  }
+  find_view_error(view, errors);
   return report;
+}
+
+bool BlockMesh::Impl::is_limited_by_vertex(const BlockViewParameters& parameters) {
+  return parameters.by_vertex &&
+         parameters.view.max_triangles != std::numeric_limits<std::size_t>::max();
+}
+
+// Without limits: whatever has errors so many times larger. Exactly that where they are larger, so
+// that their number tells how many triangles there are.
+ViewParameters BlockMesh::Impl::with_errors(ViewParameters view, double errors) {
+  view.camera.pixels *= errors;
+  view.degrees *= errors;
+  view.max_triangles = std::numeric_limits<std::size_t>::max();
+  view.clock = nullptr;
+  view.clock_context = nullptr;
+  if (errors > 1) view.hysteresis = 1;
+  return view;
+}
+
+// By vertex with as small errors as the triangles allow.
+void BlockMesh::Impl::move_within(const BlockViewParameters& parameters, bool have_changed,
+                                  BlockUpdate& report) {
+  const std::size_t most = parameters.view.max_triangles;
+  BlockViewParameters tried = parameters;
+  const bool is_there = graph.pages_added() == page_count && missing.empty() &&
+                        std::all_of(could_be.begin(), could_be.end(), [this](std::uint32_t block) {
+                          return cuts.hierarchy(block) != nullptr;
+                        });
+  double errors = search.begin(is_there);
+  for (;; errors = ErrorSearch::coarser(errors, triangles(), most)) {
+    tried.view = with_errors(parameters.view, errors);
+    move_vertices(tried, have_changed, report);
+    have_changed = false;
+    if (triangles() <= most || errors > kMostErrors) break;
+  }
+  // What holds the eye is wrong for any error. Those that nothing finer needs are the last ones.
+  while (triangles() > most && cut.size() > 1) {
+    move_cut({cut.begin(), cut.end() - static_cast<std::ptrdiff_t>((cut.size() + 3) / 4)}, report);
+    levels.choose_whole(cut);
+    move_vertices(tried, true, report);
+  }
+  const bool is_complete = is_there && cuts.has_arrived();
+  search.tell(errors, triangles(), most, is_complete);
+  searches = is_complete && !search.has_ended();
+  has_changed |= searches;
+}
+
+// By blocks that are not in the cut, and by those that are coarser there than they should be, for
+// want of triangles. `view`: with so many times the errors that are allowed.
+void BlockMesh::Impl::find_view_error(const ViewParameters& view, double errors) {
+  const bool is_limited = !chooser.levels().empty();
+  const ViewError error(view, schema->facts.grid);
+  view_error = was_by_vertex && is_limited_by_vertex(last) ? search.shown() : 0;
+  for (const SeenBlock& wrong : chooser.wrong()) {
+    float seen = wrong.error;
+    if (is_refined[wrong.block]) {
+      const int level = levels.shown(wrong.block);
+      if (!is_limited || level == kFullLevel) continue;
+      const bool is_known = levels.is_known(wrong.block) && levels.can_choose(wrong.block);
+      if (is_known) seen = levels.error_at(wrong.block, level, error);
+      if (seen <= 1) continue;
+    }
+    view_error = std::max(view_error, seen * static_cast<float>(errors));
+  }
 }
 
 // True if blocks are shown at other levels than before.
 bool BlockMesh::Impl::choose_levels(const BlockViewParameters& parameters) {
   missing_levels.clear();
   bool have_changed = false;
-  if (parameters.by_vertex || !parameters.in_levels) {
+  if (!chooser.levels().empty()) {
+    have_changed = levels.show_at(cut, chooser.levels(), parameters.view.max_triangles);
+    if (parameters.in_levels) levels.list_missing(cut, missing_levels);
+  } else if (parameters.by_vertex || !parameters.in_levels) {
     have_changed = levels.choose_whole(cut);
   } else {
     const auto keep = static_cast<float>(1 / std::max(parameters.view.hysteresis, 1.0));
@@ -98,9 +179,10 @@ void BlockMesh::Impl::move_vertices(const BlockViewParameters& parameters, bool 
   bool lists = have_changed;
   if (parameters.by_vertex) {
     const VertexCuts::Report moved =
-        cuts.update({resident, cut, is_refined}, parameters.view, lists || !was_by_vertex);
-    report.splits = moved.splits;
-    report.merges = moved.merges;
+        cuts.update({resident, cut, is_refined, is_limited_by_vertex(last)}, parameters.view,
+                    lists || !was_by_vertex);
+    report.splits += moved.splits;
+    report.merges += moved.merges;
     lists |= moved.have_changed;
     has_changed |= !cuts.has_arrived();
     for (const std::uint32_t block : cuts.resized()) count_bytes(block);
@@ -139,6 +221,20 @@ std::vector<std::uint32_t> BlockMesh::Impl::those_that_can_be(
         resident[block] != nullptr &&
         std::all_of(needed.begin(), needed.end(), [&](std::uint32_t n) { return will_be[n] != 0; });
     return will_be[block] == 0;
+  });
+  return next;
+}
+
+// Of blocks that can be in the cut, those of which the vertices are known. The base is there in any
+// case.
+std::vector<std::uint32_t> BlockMesh::Impl::those_by_vertex(std::vector<std::uint32_t> next) const {
+  std::vector<char> will_be(is_refined.size(), 0);
+  std::erase_if(next, [&](std::uint32_t block) {
+    const std::span<const std::uint32_t> needed = graph.dependencies(block);
+    will_be[block] =
+        cuts.has_vertices(block) &&
+        std::all_of(needed.begin(), needed.end(), [&](std::uint32_t n) { return will_be[n] != 0; });
+    return will_be[block] == 0 && !graph.is_base(block);
   });
   return next;
 }
@@ -255,7 +351,10 @@ std::span<const BlockEntry> BlockMesh::missing() const {
 std::vector<BlockEntry> BlockMesh::missing_for(const BlockViewParameters& parameters) const {
   std::vector<BlockEntry> missing;
   BlockChooser chooser(impl_->graph, impl_->schema->facts.grid);
-  for (const std::uint32_t block : chooser.choose(parameters.view, impl_->limits(parameters))) {
+  const bool is_limited = Impl::is_limited_by_vertex(parameters);
+  const ViewParameters view =
+      is_limited ? Impl::with_errors(parameters.view, impl_->search.trial()) : parameters.view;
+  for (const std::uint32_t block : chooser.choose(view, impl_->limits(parameters))) {
     if (!impl_->resident[block] && impl_->wanted_at[block] != impl_->updates) {
       missing.push_back(impl_->graph.entry(block));
     }
@@ -366,7 +465,7 @@ void BlockMesh::insert(BlockLevelsPtr levels) {
 }
 
 bool BlockMesh::has_arrived() const {
-  return !impl_->was_by_vertex || impl_->cuts.has_arrived();
+  return !impl_->was_by_vertex || (impl_->cuts.has_arrived() && !impl_->searches);
 }
 
 std::span<const ShownRange> BlockMesh::shown() const {
@@ -378,7 +477,7 @@ std::span<const ShownCut> BlockMesh::shown_cuts() const {
 }
 
 std::size_t BlockMesh::triangle_count() const {
-  return impl_->shown_triangles + impl_->cut_triangles;
+  return impl_->triangles();
 }
 
 LevelError BlockMesh::error() const {

@@ -5,6 +5,7 @@
 #include "crease/block_mesh.h"
 #include "runtime/block_choice.h"
 #include "runtime/block_graph.h"
+#include "runtime/error_search.h"
 #include "runtime/level_choice.h"
 #include "runtime/resident_block.h"
 #include "runtime/vertex_cuts.h"
@@ -57,6 +58,12 @@ struct BlockMesh::Impl {
   void move_cut(std::vector<std::uint32_t> next, BlockUpdate& report);
   void drop_beyond(std::size_t max_bytes, BlockUpdate& report);
   bool choose_levels(const BlockViewParameters& parameters);
+  void find_view_error(const ViewParameters& view, double errors);
+  static bool is_limited_by_vertex(const BlockViewParameters& parameters);
+  static ViewParameters with_errors(ViewParameters view, double errors);
+  std::vector<std::uint32_t> those_by_vertex(std::vector<std::uint32_t> next) const;
+  void move_within(const BlockViewParameters& parameters, bool have_changed, BlockUpdate& report);
+  std::size_t triangles() const { return shown_triangles + cut_triangles; }
   void move_vertices(const BlockViewParameters& parameters, bool have_changed, BlockUpdate& report);
   void list_cuts();
   void list_missing_hierarchies();
@@ -82,10 +89,12 @@ struct BlockMesh::Impl {
   std::vector<char> is_refined;             // it is in the cut: resident, and so is what it needs
   std::vector<std::uint64_t> wanted_at;     // the last update that wanted it
   std::vector<std::uint32_t> cut;           // those that are refined, ascending
+  std::vector<std::uint32_t> could_be;      // and others whose vertices are not known yet
   std::vector<BlockEntry> missing;
   std::vector<UnusedPtr> unused;  // since the last update
   LevelChoice levels;
   VertexCuts cuts;
+  ErrorSearch search;  // by vertex, while triangles are limited
   std::vector<BlockId> missing_hierarchies, missing_levels;
   std::vector<ShownRange> shown;
   std::vector<ShownCut> shown_cuts;
@@ -96,6 +105,7 @@ struct BlockMesh::Impl {
   BlockViewParameters last;
   bool was_by_vertex = false;  // at the last update
   bool has_changed = true;     // since the last update
+  bool searches = false;       // the next update makes another trial
 };
 
 }  // namespace crease

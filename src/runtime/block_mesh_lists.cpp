@@ -86,7 +86,7 @@ std::vector<float> BlockMesh::error_of_position(const ShownCut& cut) const {
 void BlockMesh::Impl::list_missing_hierarchies() {
   missing_hierarchies.clear();
   if (!was_by_vertex) return;
-  for (const std::uint32_t block : cut) {
+  for (const std::uint32_t block : could_be) {
     if (!cuts.hierarchy(block)) missing_hierarchies.push_back(graph.entry(block).id);
   }
 }

@@ -1,6 +1,7 @@
 #include "runtime/level_choice.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace crease {
@@ -244,6 +245,12 @@ int LevelChoice::level_at_hand(const State& state, int level) {
   return level;
 }
 
+// It, or the next coarser one that is there.
+int LevelChoice::coarser_at_hand(const State& state, int level) {
+  while (level > 0 && level < kFullLevel && (state.lists >> level & 1) == 0) --level;
+  return level;
+}
+
 // Whether lists have come.
 bool LevelChoice::begin_choice(std::span<const std::uint32_t> cut) {
   ++choices_;
@@ -270,6 +277,59 @@ bool LevelChoice::choose(std::span<const std::uint32_t> cut, const ViewError& er
     for (const std::uint32_t needed : graph_.dependencies(block)) {
       states_[needed].needed_at = choices_;
     }
+  }
+  return hide_others() || has_changed;
+}
+
+// Than its coarse end has.
+std::int64_t LevelChoice::more_triangles(std::uint32_t block, int level) const {
+  if (level == 0) return 0;
+  if (level == kFullLevel) return graph_.more_triangles(block);
+  return std::int64_t(triangles_at(block, level)) - graph_.entry(block).facts.triangles_coarse;
+}
+
+// What is at hand of the levels, and how many triangles that are.
+template <typename AtHand>
+std::int64_t LevelChoice::plan(std::span<const std::uint32_t> cut,
+                               std::span<const std::uint8_t> levels, AtHand at_hand) {
+  planned_.resize(cut.size());
+  is_needed_.assign(states_.size(), 0);
+  std::int64_t triangles = 0;
+  for (std::size_t i = cut.size(); i-- > 0;) {
+    const std::uint32_t block = cut[i];
+    const int level = is_needed_[block] != 0 ? kFullLevel : at_hand(states_[block], levels[block]);
+    planned_[i] = static_cast<std::uint8_t>(level);
+    triangles += more_triangles(block, level);
+    if (level == 0) continue;
+    for (const std::uint32_t needed : graph_.dependencies(block)) is_needed_[needed] = 1;
+  }
+  return triangles;
+}
+
+// Those that nothing finer needs are the last ones.
+std::int64_t LevelChoice::hide_finest(std::span<const std::uint32_t> cut, std::int64_t triangles,
+                                      std::int64_t max_triangles) {
+  for (std::size_t i = cut.size(); i-- > 0 && triangles > max_triangles;) {
+    if (graph_.is_base(cut[i])) break;
+    triangles -= more_triangles(cut[i], planned_[i]);
+    planned_[i] = 0;
+  }
+  return triangles;
+}
+
+bool LevelChoice::show_at(std::span<const std::uint32_t> cut, std::span<const std::uint8_t> levels,
+                          std::size_t max_triangles) {
+  bool has_changed = begin_choice(cut);
+  const auto most = static_cast<std::int64_t>(
+      std::min<std::size_t>(max_triangles, std::numeric_limits<std::int64_t>::max()));
+  if (plan(cut, levels, level_at_hand) > most) {
+    hide_finest(cut, plan(cut, levels, coarser_at_hand), most);
+  }
+  for (std::size_t i = cut.size(); i-- > 0;) {
+    State& state = states_[cut[i]];
+    state.wanted = levels[cut[i]];
+    state.chosen = 0;
+    has_changed |= show(cut[i], planned_[i]);
   }
   return hide_others() || has_changed;
 }
@@ -321,6 +381,46 @@ bool LevelChoice::hide_others() {
     any = true;
   }
   return any;
+}
+
+// Of the pieces without parts the worst; none is worse than what holds it. With the eye inside of
+// its sphere, something with parts says nothing of them.
+float LevelChoice::error_at(std::uint32_t block, int level, const ViewError& error) const {
+  const auto seen = [&error](const LevelSphere& sphere, RoundedUp off, RoundedUp degrees,
+                             float least_radii) {
+    SplitBounds bounds;
+    bounds.surface = off;
+    bounds.degrees = degrees;
+    bounds.radius = sphere.radius;
+    return error.of(bounds, sphere.center, least_radii);
+  };
+  const Looked& looked = looked_[block];
+  struct Outer {
+    std::size_t next;
+    float error;
+  };
+  const auto k = static_cast<std::size_t>(level);
+  const float of_whole = seen(looked.whole, looked.off[k], looked.degrees[k], 0);
+  std::array<Outer, kMostHalvings + 2> outer{Outer{looked.pieces.size(), of_whole}};
+  std::size_t depth = 0;
+  float most = 0;
+  for (std::size_t i = 0; i < looked.pieces.size();) {
+    while (i >= outer[depth].next) --depth;
+    const LevelSphere& piece = looked.pieces[i];
+    const bool has_parts = piece.next > i + 1;
+    const std::size_t at = k * looked.left.count + i;
+    const float own = std::min(
+        outer[depth].error,
+        seen(piece, looked.left.off[at], looked.left.degrees[at], has_parts ? 0 : kNearestRadii));
+    if (has_parts && own > most) {
+      outer[++depth] = {piece.next, own};
+      ++i;
+      continue;
+    }
+    if (!has_parts) most = std::max(most, own);
+    i = piece.next;
+  }
+  return most;
 }
 
 LevelError LevelChoice::left(std::uint32_t block, const LevelError& coarse) const {

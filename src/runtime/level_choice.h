@@ -47,6 +47,10 @@ class LevelChoice {
   // `cut`: ascending. `keep`: the error under which a level is given up for a coarser one. True if
   // what is shown has changed.
   bool choose(std::span<const std::uint32_t> cut, const ViewError& error, float keep);
+  // At these, per block, which have at most so many triangles together. Until their lists are there
+  // at finer ones or, if those are too many, at coarser ones.
+  bool show_at(std::span<const std::uint32_t> cut, std::span<const std::uint8_t> levels,
+               std::size_t max_triangles);
   // All of the cut whole.
   bool choose_whole(std::span<const std::uint32_t> cut);
 
@@ -62,6 +66,19 @@ class LevelChoice {
 
   // And where, as far as that is known. `level`: kFullLevel is right.
   std::vector<ErrorSphere> errors(std::uint32_t block, int level) const;
+
+  bool is_known(std::uint32_t block) const {
+    return block < states_.size() && states_[block].is_known;
+  }
+  // It is, and by all that is known of finer ones.
+  bool is_settled(std::uint32_t block) const { return is_known(block) && !states_[block].is_stale; }
+  // Of those that are known: whether they have levels, and what these have. `level` < kFullLevel.
+  bool can_choose(std::uint32_t block) const { return states_[block].can_choose; }
+  std::uint32_t triangles_at(std::uint32_t block, int level) const {
+    return entries_[block].facts->triangles[static_cast<std::size_t>(level)];
+  }
+  // As it is seen: 1 is just what is allowed.
+  float error_at(std::uint32_t block, int level, const ViewError& error) const;
 
   LevelFactsPtr facts(std::uint32_t block) const {
     return block < entries_.size() ? entries_[block].facts : nullptr;
@@ -130,6 +147,13 @@ class LevelChoice {
   static void set_list(State& state, const LevelList* list);
   static const LevelList* list_at(const Entry& entry, int level);
   static int level_at_hand(const State& state, int level);
+  static int coarser_at_hand(const State& state, int level);
+  template <typename AtHand>
+  std::int64_t plan(std::span<const std::uint32_t> cut, std::span<const std::uint8_t> levels,
+                    AtHand at_hand);
+  std::int64_t hide_finest(std::span<const std::uint32_t> cut, std::int64_t triangles,
+                           std::int64_t max_triangles);
+  std::int64_t more_triangles(std::uint32_t block, int level) const;
   void grow(std::size_t blocks);
   bool show(std::uint32_t block, int level);
   void change(std::uint32_t block, int level);
@@ -142,6 +166,8 @@ class LevelChoice {
   std::vector<State> states_;   // likewise
   std::vector<Looked> looked_;
   std::vector<std::uint32_t> was_shown_, is_shown_;
+  std::vector<std::uint8_t> planned_;  // per block of the cut, while levels are given
+  std::vector<char> is_needed_;        // per block, likewise
   std::vector<std::uint32_t> resized_;
   std::vector<BlockLevelsPtr> waiting_;
   bool lists_have_changed_ = false;

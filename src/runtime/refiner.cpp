@@ -45,7 +45,7 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
   moves_until_clock_ = 0;
   merge_arrived(cut);
   if (cut.triangle_count() > view_.max_triangles) {
-    keep_to_budget(cut, {std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot}, 0);
+    keep_to_budget(cut, kMostVisible, 0);
   }
   do_merges(cut);
   if (requires_anew) split_required(cut);
@@ -199,24 +199,39 @@ void Refiner::do_splits(ActiveCut& cut) {
     const Wish wish = take(splits_, less_visible);
     if (cut.vertices()[wish.slot].split != wish.split) continue;
     view_.consistent ? split_consistently(cut, wish.slot) : split(cut, wish.slot);
+    if (is_ordered_ && cut.triangle_count() > view_.max_triangles) {
+      // By what it depends on, of which nobody knew how many triangles it has.
+      keep_to_budget(cut, kMostVisible, 0);
+      splits_.clear();
+      return;
+    }
   }
   if (splits_.empty()) splits_.clear();
   if (at_once_) cut.bring_corners_down();
 }
 
-// Merges what is less visible than `wish`, least visible first, until there is room.
-void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t room) {
-  const VertexHierarchy& h = cut.hierarchy().vertices;
-  const auto more_visible = [](const Wish& a, const Wish& b) { return a.excess > b.excess; };
-  if (!counts_all_merges_) {
-    counts_all_merges_ = true;
-    least_visible_.clear();
-    for (const Pair& pair : pairs_) {
-      const float excess = excess_above(cut, cut.vertices()[pair.slot], pair.split);
-      least_visible_.push_back({excess, pair.split, pair.slot});
-    }
-    std::make_heap(least_visible_.begin(), least_visible_.end(), more_visible);
+void Refiner::count_all_merges(const ActiveCut& cut) {
+  counts_all_merges_ = true;
+  least_visible_.clear();
+  for (const Pair& pair : pairs_) {
+    const float excess = excess_above(cut, cut.vertices()[pair.slot], pair.split);
+    least_visible_.push_back({excess, pair.split, pair.slot});
   }
+  std::make_heap(least_visible_.begin(), least_visible_.end(),
+                 [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
+}
+
+// Merges what is less visible than `wanted`, least visible first, until there is room. In
+// consistent mode what was needed when its turn came is looked at again once others have merged.
+void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t room) {
+  if (!counts_all_merges_) count_all_merges(cut);
+  while (merge_for_room(cut, wanted, room) && view_.consistent) count_all_merges(cut);
+}
+
+// True if there is none yet though something has merged.
+bool Refiner::merge_for_room(ActiveCut& cut, const Wish& wanted, std::size_t room) {
+  const VertexHierarchy& h = cut.hierarchy().vertices;
+  const std::size_t merges_before = report_.merges;
   // Rounding may find a vertex less visible than its child; to merge it would not help the child.
   SplitId above = kNoSplit;
   if (wanted.split != kNoSplit) {
@@ -230,14 +245,16 @@ void Refiner::keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t roo
     const Wish wish = least_visible_.front();
     const bool is_least =
         static_cast<double>(wish.excess) * view_.hysteresis < static_cast<double>(wanted.excess);
-    if (!is_least || out_of_time()) return;
-    std::pop_heap(least_visible_.begin(), least_visible_.end(), more_visible);
+    if (!is_least || out_of_time()) return false;
+    std::pop_heap(least_visible_.begin(), least_visible_.end(),
+                  [](const Wish& a, const Wish& b) { return a.excess > b.excess; });
     least_visible_.pop_back();
     if (wish.split == above) continue;
     if (!cut.can_merge(wish.split) || is_needed(cut, wish.split)) continue;
     const ActiveCut::Children children = cut.children(wish.split);
     if (!waits(cut, wish.split, children, true)) merge(cut, wish.split, children);
   }
+  return is_full() && report_.merges > merges_before;
 }
 
 // What is below something that is wrong may be as wrong, and nothing of it is to be merged.

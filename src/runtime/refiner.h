@@ -22,6 +22,7 @@
 #include "runtime/watch_list.h"
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -71,6 +72,8 @@ class Refiner {
     SplitId split;
     std::uint32_t slot;  // of its vertex, or for merges of the one that watches
   };
+  // More visible than anything.
+  static constexpr Wish kMostVisible{std::numeric_limits<float>::infinity(), kNoSplit, kNoSlot};
   // Moves to be done, first come first served, or a heap.
   struct Queue {
     std::vector<Wish> wishes;
@@ -113,7 +116,9 @@ class Refiner {
   bool out_of_time();
   void do_merges(ActiveCut& cut);
   void do_splits(ActiveCut& cut);
+  void count_all_merges(const ActiveCut& cut);
   void keep_to_budget(ActiveCut& cut, const Wish& wanted, std::size_t room);
+  bool merge_for_room(ActiveCut& cut, const Wish& wanted, std::size_t room);
   void split(ActiveCut& cut, std::uint32_t slot);
   std::uint32_t move_down(ActiveCut& cut, std::uint32_t slot);
   void move_up(ActiveCut& cut, SplitId s, const ActiveCut::Children& children);

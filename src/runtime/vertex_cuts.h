@@ -36,6 +36,7 @@ class VertexCuts {
     std::span<const ResidentBlockPtr> resident;
     std::span<const std::uint32_t> cut;  // ascending
     std::span<const char> is_refined;    // per block
+    bool are_known = false;  // the vertices of all, and none may be whole while others are made
   };
   struct Report {
     std::size_t splits = 0, merges = 0, evaluated = 0;
@@ -61,6 +62,11 @@ class VertexCuts {
   std::vector<float> error_of_position(std::uint32_t block) const;
   BlockHierarchyPtr hierarchy(std::uint32_t block) const {
     return block < entries_.size() ? entries_[block].hierarchy : nullptr;
+  }
+  // It can be by vertex, if all that it needs are.
+  bool has_vertices(std::uint32_t block) const {
+    return block < entries_.size() && entries_[block].hierarchy &&
+           !entries_[block].hierarchy->data().is_empty;
   }
   std::size_t bytes_of(std::uint32_t block) const;  // hierarchy and cut
 

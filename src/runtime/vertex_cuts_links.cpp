@@ -14,8 +14,7 @@ constexpr std::size_t kNewTriangles = 32'000;
 }  // namespace
 
 bool VertexCuts::can_be_by_vertex(std::uint32_t block, std::span<const Way> ways) const {
-  const Entry& entry = entries_[block];
-  if (!entry.hierarchy || entry.hierarchy->data().is_empty) return false;
+  if (!has_vertices(block)) return false;
   const std::span<const std::uint32_t> needed = graph_.dependencies(block);
   return std::all_of(needed.begin(), needed.end(),
                      [ways](std::uint32_t n) { return ways[n] == Way::ByVertex; });
@@ -29,7 +28,7 @@ std::vector<VertexCuts::Way> VertexCuts::choose_ways(const Blocks& blocks) {
     if (!can_be_by_vertex(block, ways)) continue;
     if (!entries_[block].cut) {
       const std::size_t more = graph_.entry(block).facts.triangles_fine;
-      if (triangles > 0 && triangles + more > kNewTriangles) {
+      if (!blocks.are_known && triangles > 0 && triangles + more > kNewTriangles) {
         has_changed_ = true;  // the next time
         continue;
       }

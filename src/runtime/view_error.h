@@ -68,6 +68,9 @@ struct Watch {
 // Wrong for every eye.
 inline constexpr Watch kAlwaysWrong{{}, kNever, kNever, {}, 1, 0, kNever};
 
+// To say which of the spheres around the eye are worst, something in them is so near.
+inline constexpr float kNearestRadii = 0.05f;
+
 class ViewError {
  public:
   ViewError() = default;

@@ -70,6 +70,10 @@ class Failures(tool.Case):
                           ["extract", city, "-o", "x.ply", "--samples", "9" * 20],
                           ["extract", city, "-o", "x.glb", "--levels", "2", "--ratio", "0.5"],
                           ["extract", city, "-o", "x.ply", "--view", "c.json", "--ratio", "0.5"],
+                          ["extract", city, "-o", "x.ply", "--triangles", "9", "--degrees", "2"],
+                          ["extract", city, "-o", "x.ply", "--consistent"],
+                          ["render", city, "-o", "x.png", "--view", "c.json", "--ratio", "1",
+                           "--consistent"],
                           ["render", city, "-o", "x.png", "--levels", "1,0,2"],
                           ["render", city, "-o", "x.png", "--size", "10"]):
             self.assertEqual(self.fails(1, *arguments)["name"], "CommandLine")

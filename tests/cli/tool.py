@@ -5,6 +5,7 @@
         def test_x(self): info = self.json("info", self.city())
 """
 
+import hashlib
 import json
 import math
 import os
@@ -55,6 +56,16 @@ def quarters_png(side=32):
     head = struct.pack(">IIBBBBB", side, side, 8, 3, 0, 0, 0)
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"PLTE", palette) +
             chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def digest(path):
+    return hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
+
+
+def png_size(path):
+    head = pathlib.Path(path).read_bytes()[:24]
+    assert head[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", head[16:24])
 
 
 class Case(unittest.TestCase):
@@ -113,6 +124,27 @@ class Case(unittest.TestCase):
         if not os.path.exists(path):
             self.json("build", self.city(triangles), "-o", path)
         return path
+
+    def has(self, value, *keys):
+        for key in keys:
+            self.assertIn(key, value)
+
+    def camera(self, name, position, pixels=1):
+        return self.write(name, json.dumps({"position": position, "target": [0, 0, 0],
+                                            "viewport": [640, 480], "pixels": pixels}).encode())
+
+    def hills(self, side=160):
+        def height(x, y):
+            return 3 * math.sin(x / 9) * math.cos(y / 13) + 0.3 * math.sin(x * 1.3 + y) + x * y / 5000
+
+        lines = ["v %d %d %.5f" % (x, y, height(x, y)) for y in range(side) for x in range(side)]
+        for y in range(side - 1):
+            for x in range(1, side):
+                a = y * side + x
+                lines += ["f %d %d %d" % (a, a + 1, a + side), "f %d %d %d" % (a + 1, a + side + 1, a + side)]
+        built = self.path("hills.crease")
+        self.run_tool("build", self.write("hills.obj", "\n".join(lines)), "-o", built)
+        return built
 
     def files(self):
         return sorted(p.name for p in self.folder.iterdir())

@@ -205,6 +205,7 @@ TEST_CASE("while the source fails what is shown stays, and says what is wrong") 
   const auto source = std::make_shared<UnsteadySource>(c.bytes, 3, 0);
   BlockStreamer streamer = opened_streamer(file, source, hasty(1));
   BlockViewParameters coarse = view_of_all(), fine = view_of_all();
+  coarse.in_levels = fine.in_levels = false;
   coarse.view.max_triangles = c.mesh.triangle_count() / 4;
   finish(streamer, coarse);
   const std::size_t triangles = streamer.mesh().triangle_count();

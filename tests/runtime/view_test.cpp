@@ -119,13 +119,17 @@ TEST_CASE("a budget of triangles is kept, and spent") {
   const auto h = hierarchy_of(torus(24, 48));
   ViewParameters view = view_from(*h, kNear, 0.1);
   REQUIRE(triangles_for(h, view) > 600);
-  AdaptiveMesh mesh(h);
-  for (const std::size_t budget : {500, 200, 600, 60}) {
-    CAPTURE(budget);
-    view.max_triangles = budget;
-    mesh.update(view);
-    CHECK(mesh.triangle_count() <= budget);
-    CHECK(mesh.triangle_count() + 20 > budget);
+  for (const bool consistent : {false, true}) {
+    CAPTURE(consistent);
+    view.consistent = consistent;
+    AdaptiveMesh mesh(h);
+    for (const std::size_t budget : {500, 200, 600, 60, 333, 123, 456}) {
+      CAPTURE(budget);
+      view.max_triangles = budget;
+      mesh.update(view);
+      CHECK(mesh.triangle_count() <= budget);
+      CHECK(mesh.triangle_count() + 20 > budget);
+    }
   }
 }
 
