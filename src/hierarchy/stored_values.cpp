@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 namespace crease {
@@ -14,6 +15,21 @@ constexpr int kShift = 16;
 
 OctahedralCode unpacked(std::uint32_t code) {
   return {code & ((1u << kShift) - 1), code >> kShift};
+}
+
+// Of four vectors.
+void store_by_turns(const FourFloats& x, const FourFloats& y, const FourFloats& z, Vec3f* found) {
+  static_assert(sizeof(Vec3f) == 12);
+  const FourFloats z0_x1 = __builtin_shufflevector(z, x, 0, 0, 5, 5);
+  const FourFloats y1_z1 = __builtin_shufflevector(y, z, 1, 1, 5, 5);
+  const FourFloats z2_x3 = __builtin_shufflevector(z, x, 2, 2, 7, 7);
+  const FourFloats y3_z3 = __builtin_shufflevector(y, z, 3, 3, 7, 7);
+  const FourFloats x0_y0 = __builtin_shufflevector(x, y, 0, 4, 1, 5);
+  const FourFloats x2_y2 = __builtin_shufflevector(x, y, 2, 6, 3, 7);
+  const FourFloats by_turns[] = {__builtin_shufflevector(x0_y0, z0_x1, 0, 1, 4, 6),
+                                 __builtin_shufflevector(y1_z1, x2_y2, 0, 2, 4, 5),
+                                 __builtin_shufflevector(z2_x3, y3_z3, 0, 2, 4, 6)};
+  std::memcpy(found, by_turns, sizeof(by_turns));
 }
 
 }  // namespace
@@ -38,13 +54,12 @@ void StoredValues::directions(std::span<const std::uint32_t> which, std::span<Ve
   const std::uint32_t* const codes = codes_.data();
   const std::size_t in_fours = which.size() - which.size() % 4;
   for (std::size_t i = 0; i < in_fours; i += 4) {
-    FourInts u, v;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const OctahedralCode code = unpacked(codes[which[i + k]]);
-      u[k] = static_cast<std::int32_t>(code.u), v[k] = static_cast<std::int32_t>(code.v);
-    }
-    const auto [x, y, z] = octahedral_directions(max_component, u, v);
-    for (std::size_t k = 0; k < 4; ++k) found[i + k] = {x[k], y[k], z[k]};
+    const auto code = [&](std::size_t k) { return static_cast<std::int32_t>(codes[which[i + k]]); };
+    const FourInts four{code(0), code(1), code(2), code(3)};
+    constexpr std::int32_t kMask = (1 << kShift) - 1;
+    const auto [x, y, z] =
+        octahedral_directions(max_component, four & kMask, four >> kShift & kMask);
+    store_by_turns(x, y, z, &found[i]);
   }
   for (std::size_t i = in_fours; i < which.size(); ++i) {
     found[i] = octahedral_direction(max_component, unpacked(codes[which[i]]));

@@ -52,6 +52,29 @@ TEST_CASE("directions of a lattice take four bytes and stay the same to the bit"
   }
 }
 
+// Of one octant, with x no more than y: the others differ in signs and in the order of components.
+TEST_CASE("to multiply by one over the length gives the floats that a division gives") {
+  constexpr int kMostWhole = 12;
+  std::size_t different = 0;
+  for (int bits = 8; bits <= 16; ++bits) {
+    const OctahedralCoding coding(bits);
+    const auto m = static_cast<std::int32_t>(coding.max_component() / 2);
+    const std::int32_t step = bits <= kMostWhole ? 1 : 61;
+    for (std::int32_t x = 0; 2 * x <= m; x += step) {
+      for (std::int32_t y = x; x + y <= m; y += bits <= kMostWhole ? 1 : 7) {
+        const Vec3d n{double(x), double(y), double(m - x - y)};
+        const double size = std::sqrt(dot(n, n));
+        const Vec3f divided{static_cast<float>(n.x / size), static_cast<float>(n.y / size),
+                            static_cast<float>(n.z / size)};
+        const Vec3f found =
+            coding.decode({static_cast<std::uint32_t>(x + m), static_cast<std::uint32_t>(y + m)});
+        different += found == divided ? 0 : 1;
+      }
+    }
+  }
+  CHECK(different == 0);
+}
+
 TEST_CASE("one value that is of no lattice, and all stay numbers") {
   const float odd[][3] = {{0.6f, 0.8f, 0},
                           {2, 0, 0},
