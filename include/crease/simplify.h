@@ -38,7 +38,7 @@ struct SimplifyStatistics {
 };
 
 // `snapped` must lie on `grid` and hold check_mesh(). The result is the same to the bit for any
-// number of threads. Memory beside the input: about 150 bytes a triangle and 6 MB a thread. Fails
+// number of threads. Memory beside the input: about 165 bytes a triangle and 6 MB a thread. Fails
 // only when interrupted. `statistics` may be null.
 Result<ContractionSequence> simplify(const Mesh& snapped, const Grid& grid,
                                      const SimplifyOptions& options,

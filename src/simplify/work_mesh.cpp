@@ -103,6 +103,7 @@ WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
   add_layers(mesh, work);
   find_categories(mesh, work);
   find_represented(mesh, work);
+  work.witnesses = witnesses_of(mesh, work.positions);
   return work;
 }
 
