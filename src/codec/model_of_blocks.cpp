@@ -64,10 +64,31 @@ void ModelOfBlocks::fill_mesh(Mesh& mesh) {
   mesh = join_ends(schema_, pieces, triangles, positions_, layers_.pools());
 }
 
+// Where the finest block's fine end is not the input, that may be as far away as the block says.
+void ModelOfBlocks::find_witnesses(const Mesh& mesh) {
+  witnesses_ = witnesses_of(mesh, positions_);
+  const double step = schema_.facts.grid.step;
+  std::vector<float> from_of_triangle(triangle_count_, 0);
+  bool any = false;
+  for (const UnfoldedBlock& block : blocks_) {  // finest last
+    any = any || block.fine.surface > 0;
+    const auto from = static_cast<float>(double(block.fine.surface) / step);
+    for (const std::uint32_t t : block.triangles) from_of_triangle[t] = from;
+  }
+  if (!any) return;
+  witnesses_.from.resize(witnesses_.places.size());
+  for (std::uint32_t t = 0; t < triangle_count_; ++t) {
+    for (std::uint32_t w = witnesses_.first[t]; w != kNone; w = witnesses_.next[w]) {
+      witnesses_.from[w] = witnesses_.told[w] = from_of_triangle[t];
+    }
+  }
+}
+
 void ModelOfBlocks::fill_sequence(const Mesh& mesh, std::size_t contracted_bands,
                                   const ForEach& for_each, ContractionSequence& sequence) {
   sequence.placement = Placement::Endpoint;
   if (contracted_bands == 0) return;
+  find_witnesses(mesh);
   std::vector<std::vector<std::uint32_t>> of_corner(mesh.layers.size());
   for (std::size_t l = 0; l < of_corner.size(); ++l) {
     of_corner[l].reserve(mesh.layers[l].of_corner.size());
@@ -102,8 +123,8 @@ void ModelOfBlocks::contract_band(std::span<const UnfoldedBlock> blocks,
   }
   std::vector<ContractionOrder> orders(blocks.size());
   for_each(blocks.size(), [&](std::size_t b) {
-    orders[b] =
-        order_contractions(blocks[b], schema_.coding, schema_.facts.layers, layers_.values());
+    orders[b] = order_contractions(blocks[b], schema_.coding, schema_.facts.layers,
+                                   layers_.values(), witnesses_);
   });
   std::vector<CornerChanges> changes(blocks.size());
   std::vector<Pending> all;
@@ -132,9 +153,11 @@ void ModelOfBlocks::append(const UnfoldedBlock& block, const OrderedContraction&
   LevelError& base = base_of_slot_[index_of(c.kept)];
   base = larger(base, base_of_slot_[index_of(c.removed)]);
   LevelError& error = error_of_slot_[index_of(c.kept)];
-  own_errors_.push_back(in_units(contraction.own, schema_.facts.grid.step));
+  LevelError& own = own_errors_.emplace_back(in_units(contraction.own, schema_.facts.grid.step));
+  const auto far = static_cast<float>(schema_.facts.grid.step * double(contraction.far));
+  own.surface = std::max(own.surface, far - base.surface);
   error = larger(larger(error, error_of_slot_[index_of(c.removed)]),
-                 added_error(base, own_errors_.back(), block.coarse));
+                 added_error(base, own, block.coarse));
   c.error = error;
   Vec3i& kept = positions_[index_of(c.kept)];
   if (c.position != kept && c.position != positions_[index_of(c.removed)]) {

@@ -27,12 +27,14 @@ class ModelOfBlocks {
   // The mesh, and the contractions of as many of the finest bands. Order and cost of each block's
   // are worked out by `for_each`.
   void fill(DecodedModel& model, std::size_t contracted_bands, const ForEach& for_each);
-  // Afterwards, per contraction: what it adds to the errors at its block's fine end.
+  // Afterwards, per contraction: what it adds to the errors at its block's fine end, as much as
+  // witnesses of the finest mesh and the block's quadrics tell.
   std::span<const LevelError> own_errors() const { return own_errors_; }
 
  private:
   struct Pending;  // a contraction of the present band
   void fill_mesh(Mesh& mesh);
+  void find_witnesses(const Mesh& mesh);
   void fill_sequence(const Mesh& mesh, std::size_t contracted_bands, const ForEach& for_each,
                      ContractionSequence& sequence);
   void contract_band(std::span<const UnfoldedBlock> blocks, AttributeRejoiner& rejoiner,
@@ -49,6 +51,7 @@ class ModelOfBlocks {
   std::vector<LevelError> error_of_slot_;
   std::vector<LevelError> base_of_slot_;  // at the present band's fine end
   std::vector<LevelError> own_errors_;
+  Witnesses witnesses_;  // the finest mesh's, by slots and numbers
 };
 
 }  // namespace crease::codec

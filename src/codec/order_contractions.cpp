@@ -7,6 +7,7 @@
 #include "codec/patch_geometry.h"
 #include "codec/patch_lines.h"
 #include "hierarchy/quadric.h"
+#include "hierarchy/witnesses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,8 +40,10 @@ class CostEstimator {
  public:
   CostEstimator(const UnfoldedBlock& block, const BlockCoding& coding,
                 std::span<const LayerSchema> layers, std::span<const LayerValues> values,
-                const ContractingPatch& patch)
-      : geometry_(block.end),
+                const ContractingPatch& patch, Witnesses& witnesses)
+      : block_(block),
+        witnesses_(witnesses),
+        geometry_(block.end),
         surface_(block.end.positions.size()),
         is_contracted_(contracted_vertices(block)),
         is_face_(faces_of(block.end, coding)),
@@ -78,6 +81,7 @@ class CostEstimator {
       }
       surface += std::sqrt(longest);  // what it stood for is gone
     }
+    const bool stays = geometry_.place(first) == at;
     geometry_.move(first, at);
     for (const std::uint32_t t : around) {
       const ScaledNormal before = geometry_.normal(t);
@@ -91,6 +95,7 @@ class CostEstimator {
     own_ = {static_cast<float>(surface),
             static_cast<float>(lines ? mean_distance(line_off, lines->weight) : 0),
             std::max(wedges_.degrees(), turned(patch, vanished, first, parent)), wedges_.texture()};
+    far_ = distance_of_witnesses(patch, vanished, first, parent, stays);
     flat_count_ += cost <= 2 * tie;
     return cost <= kMostCost ? cost : kMostCost;  // also if it is no number
   }
@@ -100,6 +105,7 @@ class CostEstimator {
 
   // Of the last contraction: see OrderedContraction.
   const LevelError& own() const { return own_; }
+  float far() const { return far_; }
 
   std::vector<WedgeValues> take_wedges() { return std::move(wedges_).take(); }
 
@@ -142,6 +148,26 @@ class CostEstimator {
     }
   }
 
+  CREASE_WIDE float distance_of_witnesses(const ContractingPatch& patch,
+                                          std::span<const std::uint32_t> vanished,
+                                          std::uint32_t first, const Vec3i& parent, bool stays) {
+    const std::span<const std::uint32_t> around = patch.around(first);
+    const std::size_t first_changed = stays ? around.size() - patch.moved_count() : 0;
+    const Vec3d at = geometry_.place(first);
+    witness_mover_.start();
+    for (std::uint32_t i = 0; i < around.size(); ++i) {
+      const Corners& corners = patch.corners(around[i]);
+      const std::uint32_t c = corner_of(corners, first), t = block_.triangles[around[i]];
+      witness_mover_.add(t, geometry_.place(corners[kCornerAfter[c]]) - at,
+                         geometry_.place(corners[kCornerBefore[c]]) - at);
+      if (i >= first_changed) witness_mover_.take(t, i, witnesses_);
+    }
+    for (const std::uint32_t t : vanished) {
+      witness_mover_.take(block_.triangles[t], kNone, witnesses_);
+    }
+    return witness_mover_.settle(witnesses_, parent);
+  }
+
   // The root of the mean.
   static double mean_distance(double sum, double weight) {
     return weight > 0 ? std::sqrt(sum / weight) : 0;
@@ -173,6 +199,9 @@ class CostEstimator {
     return faces_->contract(patch, vanished, first, positions_);
   }
 
+  const UnfoldedBlock& block_;
+  Witnesses& witnesses_;  // of the model
+  WitnessMover witness_mover_;
   PatchGeometry geometry_;
   std::vector<Quadric> surface_;     // per vertex, about the origin
   std::vector<char> is_contracted_;  // per vertex: a contraction touches it
@@ -181,6 +210,7 @@ class CostEstimator {
   PatchLines lines_;
   std::optional<FaceNormals> faces_;
   std::vector<Vec3i> positions_;  // for faces_
+  float far_ = 0;
   LevelError own_;
   double turn_weight_ = 0;
   std::size_t flat_count_ = 0;
@@ -190,9 +220,9 @@ class CostEstimator {
 
 ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCoding& coding,
                                     std::span<const LayerSchema> layers,
-                                    std::span<const LayerValues> values) {
+                                    std::span<const LayerValues> values, Witnesses& witnesses) {
   ContractingPatch patch(block.end);
-  CostEstimator estimator(block, coding, layers, values, patch);
+  CostEstimator estimator(block, coding, layers, values, patch, witnesses);
   std::vector<double> cost_of_vertex(block.vertices.size(), 0);
   std::vector<OrderedContraction> order;
   order.reserve(block.splits.size());
@@ -202,7 +232,7 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCodin
     const double cost = std::max({estimator.contract(patch, first, second, split.parent_position),
                                   cost_of_vertex[first], cost_of_vertex[second]});
     cost_of_vertex[first] = cost;
-    order.push_back({static_cast<std::uint32_t>(i), cost, estimator.own()});
+    order.push_back({static_cast<std::uint32_t>(i), cost, estimator.own(), estimator.far()});
   }
   std::stable_sort(
       order.begin(), order.end(),

@@ -6,6 +6,7 @@
 #include "codec/unfold_blocks.h"
 #include "codec/wedge_quadrics.h"
 #include "crease/contraction.h"
+#include "hierarchy/witnesses.h"
 
 #include <cstdint>
 #include <span>
@@ -19,6 +20,7 @@ struct OrderedContraction {
   // What it adds to the errors that its vertex has at the fine end, as the simplifier counts them;
   // lengths in grid units.
   LevelError own;
+  float far = 0;  // of witnesses around it, the farthest that counts; grid units
 };
 
 struct ContractionOrder {
@@ -30,9 +32,10 @@ struct ContractionOrder {
 // of quadrics from the block's fine end: squared distances of where the parent stands from the
 // planes of what it stands for, by area, and from borders and creases, by squared length; how far
 // attributes are from those of what their wedges stand for; and how far faces turn. `values`: one a
-// layer. Time O(splits * triangles around a vertex).
+// layer. `witnesses`: by the model's triangles, of which it moves the block's; they are where the
+// blocks of finer bands have left them. Time O(splits * triangles around a vertex).
 ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCoding& coding,
                                     std::span<const LayerSchema> layers,
-                                    std::span<const LayerValues> values);
+                                    std::span<const LayerValues> values, Witnesses& witnesses);
 
 }  // namespace crease::codec

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "hierarchy/quadric.h"
+#include "hierarchy/witnesses.h"
 #include "simplify/cost_heap.h"
 #include "simplify/flat_shading.h"
 #include "simplify/ring_block.h"
@@ -220,6 +221,7 @@ class PatchSimplifier {
   void combine_quadrics(std::size_t layer, std::span<const Index> members, Wedge& result);
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
                      const Vec3d& target, Wedge& result);
+  float distance_of_witnesses(const Vec3d& target, std::size_t first);
 
   // Of a place on the grid, less center_.
   static Vec3i whole(const Vec3d& p) {
@@ -354,6 +356,7 @@ class PatchSimplifier {
   ScratchList<Index> touching_, common_;
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
+  WitnessMover witness_mover_;
   std::vector<Index> mark_;
   Index mark_now_ = 0;
 };

@@ -155,6 +155,7 @@ class Simplifier {
  public:
   Simplifier(const Mesh& mesh, const Grid& grid, const SimplifyOptions& options)
       : options_(options), work_(make_work(mesh, grid)) {
+    if (options.measures_errors) work_.witnesses = witnesses_of(mesh, work_.positions);
     find_parts(work_);
     sequence_.grid = grid;
     sequence_.placement = options.placement;

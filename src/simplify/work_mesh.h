@@ -5,6 +5,7 @@
 
 #include "crease/contraction.h"
 #include "crease/mesh.h"
+#include "hierarchy/witnesses.h"
 
 #include <cstdint>
 #include <span>
@@ -59,6 +60,7 @@ struct WorkMesh {
   std::vector<std::uint32_t> triangles_of_part;  // by the part's vertex, at the pass's start
   std::vector<std::uint32_t> live;               // the triangles that are left, ascending
   std::vector<WorkLayer> layers;
+  Witnesses witnesses;  // of the input, or none
 };
 
 // The input, nothing contracted; `mesh` must outlive it. Who owns a vertex and what part it is of

@@ -1,6 +1,7 @@
 // A file says how wrong its blocks are at both ends; what a contraction between them adds is worked
 // out again from the shape, and should be what the simplifier said.
 #include "codec/encoded_model.h"
+#include "crease/compare.h"
 #include "crease/decode_model.h"
 #include "crease/import.h"
 #include "support/mesh_zoo.h"
@@ -67,7 +68,7 @@ void check_errors(const EncodedCase& c) {
   CHECK(r.surface.size() * 4 > c.sequence.contractions.size());
   CHECK(median(r.surface) == doctest::Approx(1).epsilon(0.05));
   const auto is_far = [](double ratio) { return ratio > 1.5 || ratio < 1 / 1.5; };
-  CHECK(10 * std::size_t(std::count_if(r.surface.begin(), r.surface.end(), is_far)) <
+  CHECK(8 * std::size_t(std::count_if(r.surface.begin(), r.surface.end(), is_far)) <
         r.surface.size());
   CHECK(std::abs(median(r.turned)) < 1);
 }
@@ -84,6 +85,63 @@ TEST_CASE("what is decoded is as wrong as the simplifier said") {
     REQUIRE(in.ok());
     check_errors(simplified_case(std::move(in->mesh), 8000, 20, kCoarsePrecision));
   }
+}
+
+// By how much levels are farther from the full mesh, both ways and everywhere, than they say: the
+// most, of some levels. Distances below a few steps of the grid are left out.
+double most_understated(const Mesh& full, const ContractionSequence& sequence, double said) {
+  double most = 0;
+  for (const double left : {0.8, 0.5, 0.2, 0.05}) {
+    const std::size_t count =
+        sequence.contractions.size() - std::size_t(left * double(sequence.contractions.size()));
+    const Level level = apply_contractions(full, sequence, count);
+    const Mesh mesh = mesh_of_level(full, sequence, level);
+    if (mesh.triangle_count() == 0) continue;
+    LevelError error;
+    for (std::size_t i = 0; i < count; ++i) {
+      error = larger(error, sequence.contractions[i].error);
+    }
+    const Result<Comparison> measured = compare_meshes(full, mesh, {.samples = 1000, .threads = 1});
+    REQUIRE(measured.ok());
+    const double far = std::max(measured->distance.a_to_b.max, measured->distance.b_to_a.max);
+    if (far < 8 * sequence.grid.step) continue;
+    const double stated = said * double(std::max(error.surface, error.line));
+    most = std::max(most, stated > 0 ? far / stated : HUGE_VAL);
+  }
+  return most;
+}
+
+// Witnesses are points, and a tenth farther away does not count. Of quadrics alone, which are
+// means, it was up to 4.1, decoded or not.
+constexpr double kUnderstated = 1.75, kUnderstatedDecoded = 1.3;
+
+void check_stated(const EncodedCase& c) {
+  CHECK(most_understated(c.mesh, c.sequence, 1) <= kUnderstated);
+  const BlockFile file = opened(c.bytes);
+  const Result<DecodedModel> model = decode_model(file);
+  REQUIRE(model.ok());
+  CHECK(most_understated(model->mesh, model->sequence, 1) <= kUnderstatedDecoded);
+}
+
+TEST_CASE("a level is hardly farther from the full mesh than it says") {
+  for (ZooMesh& z : mesh_zoo()) {
+    if (z.mesh.triangle_count() < 100) continue;
+    INFO(z.name);
+    check_stated(simplified_case(std::move(z.mesh), 400, 16, kCoarsePrecision));
+  }
+  for (const std::string name : {"cad/fandisk.off", "city/delft_36k.obj.zst"}) {
+    const std::filesystem::path path = shared_model(name);
+    if (path.empty() || !std::filesystem::exists(path) || kSanitized) continue;
+    INFO(name);
+    Result<Imported> in = import_mesh(path, {});
+    REQUIRE(in.ok());
+    check_stated(simplified_case(std::move(in->mesh), 8000, 20, kCoarsePrecision));
+  }
+}
+
+TEST_CASE("a level that says half of how far it is from the full mesh is found out") {
+  const EncodedCase c = simplified_case(smooth_sphere(40, 60), 400, 16, kCoarsePrecision);
+  CHECK(most_understated(c.mesh, c.sequence, 0.5) > kUnderstated);
 }
 
 }  // namespace
