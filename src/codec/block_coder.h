@@ -23,6 +23,7 @@
 #include "codec/patch_mesh.h"
 #include "codec/place_model.h"
 #include "codec/predict_position.h"
+#include "codec/predict_value.h"
 #include "codec/ring.h"
 #include "codec/spot.h"
 #include "codec/stream.h"
@@ -74,6 +75,7 @@ class BlockCoder {
   // False: the bytes are not a block of these limits.
   bool run() {
     coder_.enter(Stream::Roots);
+    keep_coarse_positions();
     keep_coarse_normals();
     if (!code_roots() || !code_splits()) return false;
     coder_.enter(Stream::Categories);
@@ -183,14 +185,27 @@ class BlockCoder {
   struct LayerModels {
     std::array<std::array<AdaptiveBit, kBends>, 3> is_uniform;
     std::array<std::array<std::array<AdaptiveBit, kBends>, 2>, 4> same_as;
-    std::array<SignedModel, 4> residual, residual_in_grains;  // by component
-    std::array<AdaptiveBit, 2> is_of_grain;                   // by whether what is expected is
-    std::array<std::array<AdaptiveBit, 2>, 2> is_kept;        // by whether the vertex stays, is new
+    std::array<SignedModel, kDoubts + 1> residual;  // by doubt; the last: to what it is like
+    std::array<SignedModel, 4> residual_in_grains;  // by component
+    // Of predict_value(), and of another value that a new one may be like: the bits that they were
+    // off by, of late.
+    std::array<std::uint32_t, 2> misses{};
+    void learn_misses(const CodedValue& value, const CodedValue& by_map, const CodedValue& like,
+                      std::size_t dimension) {
+      for (std::uint32_t& miss : misses) miss -= miss / 16;
+      for (std::size_t k = 0; k < dimension; ++k) {
+        misses[0] += bits_between(value[k], by_map[k]);
+        misses[1] += bits_between(value[k], like[k]);
+      }
+    }
+    std::array<AdaptiveBit, 2> is_of_grain;             // by whether what is expected is
+    std::array<std::array<AdaptiveBit, 2>, 2> is_kept;  // by whether the vertex stays, is new
     DirectionModel direction{false}, corner_direction{true};
   };
   struct Normals {  // of a vertex, at a layer of directions; zero where there is none
     Spot geometric{}, stored{};
   };
+  void keep_coarse_positions();
   void keep_coarse_normals();
   void start_directions(const std::vector<CodedValue>& values, const OctahedralCoding& coding);
   DirectionCandidates direction_candidates(std::uint32_t v, const Spot& had, Sizes& sizes) const;
@@ -204,7 +219,9 @@ class BlockCoder {
   void code_vertex(const BlockLayer& layer, std::vector<CodedValue>& values, LayerModels& models,
                    std::uint32_t v);
   CodedValue code_value(const BlockLayer& layer, LayerModels& models, const CodedValue& value,
-                        const CodedValue& predicted);
+                        const CodedValue& like, const ValuePrediction& by_map);
+  ValuePrediction expected_value(const BlockLayer& layer, const std::vector<CodedValue>& values,
+                                 std::span<const std::uint32_t> corners);
   CodedValue code_corner_direction(const BlockLayer& layer, const std::vector<CodedValue>& values,
                                    LayerModels& models, std::size_t i, bool fan,
                                    const CodedValue& value);
@@ -238,10 +255,11 @@ class BlockCoder {
   float mean_size_ = 0;           // of an edge at the coarse end
   std::vector<Split> splits_;
   std::vector<std::uint32_t> labels_;
-  std::vector<std::uint32_t> origin_;  // per vertex: the one at the coarse end it comes from
-  std::vector<char> has_moved_;        // per vertex, from there
-  std::vector<Spot> coarse_normals_;   // per vertex of the coarse end, if a layer has directions
-  std::vector<Normals> normals_;       // per vertex
+  std::vector<std::uint32_t> origin_;    // per vertex: the one at the coarse end it comes from
+  std::vector<char> has_moved_;          // per vertex, from there
+  std::vector<Spot> coarse_normals_;     // per vertex of the coarse end, if a layer has directions
+  std::vector<Vec3i> coarse_positions_;  // likewise, if a layer is on a lattice
+  std::vector<Normals> normals_;         // per vertex
 
   Ring ring_;
   Shape shape_, wanted_shape_;
@@ -259,6 +277,7 @@ class BlockCoder {
   std::vector<CodedValue> wanted_;      // likewise; of an encoder
   std::vector<std::uint32_t> corners_;  // of the present vertex
   std::vector<CodedValue> tried_;
+  std::vector<ValueSample> samples_;
   std::vector<RingVertex> ranked_;
   std::vector<LabelBox> boxes_;
 

@@ -145,7 +145,8 @@ void BlockCoder<Coder, Guide>::code_vertex(const BlockLayer& layer, std::vector<
       values[corner] =
           layer.octahedral_bits > 0
               ? code_corner_direction(layer, values, models, i, fan, value)
-              : code_value(layer, models, value, tried_.empty() ? CodedValue{} : tried_.front());
+              : code_value(layer, models, value, tried_.empty() ? CodedValue{} : tried_.front(),
+                           expected_value(layer, values, std::span(&corner, 1)));
     }
     is_known_[corner] = 1;
   }
@@ -180,7 +181,9 @@ CodedValue BlockCoder<Coder, Guide>::code_shared_value(const BlockLayer& layer,
   if (has_had && coder_.bit(models.is_kept[has_moved_[v]][v >= coarse_vertices_], value == had)) {
     return had;
   }
-  if (layer.octahedral_bits == 0) return code_value(layer, models, value, had);
+  if (layer.octahedral_bits == 0) {
+    return code_value(layer, models, value, had, expected_value(layer, values, corners_));
+  }
   Sizes sizes;
   const DirectionCandidates candidates =
       direction_candidates(v, has_had ? direction_of(layer, had) : Spot{}, sizes);
@@ -244,6 +247,13 @@ CodedValue BlockCoder<Coder, Guide>::code_corner_direction(const BlockLayer& lay
   const CodedValue result = coded(code_direction(coder_, coding, mixture, octahedral_code(value)));
   models.corner_direction.learn(mixture, sizes);
   return result;
+}
+
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::keep_coarse_positions() {
+  for (const BlockLayer& layer : coding_.layers) {
+    if (layer.is_lattice()) coarse_positions_ = mesh_.positions;
+  }
 }
 
 template <class Coder, class Guide>
@@ -348,10 +358,44 @@ DirectionCandidates BlockCoder<Coder, Guide>::direction_candidates(std::uint32_t
   return result;
 }
 
+// Of corners at one vertex that share a value: from what they had at the coarse end, and from what
+// the others of their triangles have, or had there.
+template <class Coder, class Guide>
+ValuePrediction BlockCoder<Coder, Guide>::expected_value(const BlockLayer& layer,
+                                                         const std::vector<CodedValue>& values,
+                                                         std::span<const std::uint32_t> corners) {
+  if (!layer.is_lattice()) return {};
+  samples_.clear();
+  const Vec3i q = mesh_.positions[mesh_.triangles[corners[0] / 3][corners[0] % 3]];
+  const auto add = [&](std::uint32_t corner) {
+    const std::uint32_t w = mesh_.triangles[corner / 3][corner % 3];
+    if (is_known_[corner]) {
+      samples_.push_back({seen_from(q, mesh_.positions[w]), values[corner]});
+    } else if (had_at_coarse_end(layer, corner)) {  // so w comes from a vertex there
+      samples_.push_back({seen_from(q, coarse_positions_[origin_[w]]), values[corner]});
+    }
+  };
+  for (const std::uint32_t corner : corners) {
+    if (!samples_.empty()) break;
+    add(corner);
+  }
+  Spot normal{};
+  for (const std::uint32_t corner : corners) {
+    const std::uint32_t t = corner / 3, c = corner % 3;
+    normal += areas_[t].twice;
+    add(3 * t + std::uint32_t(kCornerAfter[c]));
+    add(3 * t + std::uint32_t(kCornerBefore[c]));
+  }
+  return predict_value(samples_, normal, std::size_t(layer.dimension));
+}
+
 template <class Coder, class Guide>
 CodedValue BlockCoder<Coder, Guide>::code_value(const BlockLayer& layer, LayerModels& models,
-                                                const CodedValue& value,
-                                                const CodedValue& predicted) {
+                                                const CodedValue& value, const CodedValue& like,
+                                                const ValuePrediction& by_map) {
+  const bool is_by_map = models.misses[0] <= models.misses[1];
+  const CodedValue& predicted = is_by_map ? by_map.value : like;
+  SignedModel& residual = models.residual[is_by_map ? by_map.doubt : kDoubts];
   CodedValue result{};
   const std::size_t dimension = std::size_t(layer.dimension);
   const auto is_of_grain = [&](const CodedValue& code) {
@@ -368,6 +412,7 @@ CodedValue BlockCoder<Coder, Guide>::code_value(const BlockLayer& layer, LayerMo
       result[k] = wrapped_product(
           wrapped_sum(expected, code_signed(coder_, models.residual_in_grains[k], step)), grain);
     }
+    models.learn_misses(result, by_map.value, like, dimension);
     return result;
   }
   for (std::size_t k = 0; k < dimension; ++k) {
@@ -378,10 +423,10 @@ CodedValue BlockCoder<Coder, Guide>::code_value(const BlockLayer& layer, LayerMo
       result[k] = static_cast<std::int32_t>(high << 16 | low);
     } else {
       result[k] = wrapped_sum(
-          predicted[k],
-          code_signed(coder_, models.residual[k], wrapped_difference(value[k], predicted[k])));
+          predicted[k], code_signed(coder_, residual, wrapped_difference(value[k], predicted[k])));
     }
   }
+  models.learn_misses(result, by_map.value, like, dimension);
   return result;
 }
 

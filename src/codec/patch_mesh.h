@@ -58,6 +58,8 @@ struct BlockLayer {
   bool is_raw = false;      // all 32 bits of every component, with no order among them
   std::array<std::int32_t, 4> grains{1, 1, 1, 1};  // by component: NumberLattice::grain
 
+  // Numbers that lie in order, so that what is between two is between their values.
+  bool is_lattice() const { return octahedral_bits == 0 && !is_raw; }
   bool has_grain() const { return grains != std::array<std::int32_t, 4>{1, 1, 1, 1}; }
 };
 

@@ -106,6 +106,7 @@ Block decode_block(std::span<const std::byte> payload, std::uint32_t number,
   block.coarse_vertices = static_cast<std::uint32_t>(coarse.places.size());
   block.coarse_triangles = static_cast<std::uint32_t>(coarse.triangles.size());
   block.was_derived = coarse.derived;
+  block.coarse_place = block.surface.places;
   block.coarse_normal = normals_of_vertices(block.surface);
 
   RangeDecoder in(payload);

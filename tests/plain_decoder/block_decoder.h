@@ -30,6 +30,7 @@ struct BlockState {
   std::vector<VertexState> vertices;
   std::vector<bool> was_derived;           // per triangle of the coarse end
   std::vector<FloatVector> coarse_normal;  // per vertex of the coarse end
+  std::vector<Point> coarse_place;         // likewise
   End end;                                 // what is known of the fine end
   std::vector<Split> splits;
 

@@ -1,6 +1,9 @@
 // docs/format-block.md, "Layers". Directions are in directions.cpp.
 #include "plain_decoder/block_decoder.h"
 #include "plain_decoder/directions.h"
+#include "plain_decoder/value_map.h"
+
+#include <bit>
 
 namespace plain {
 
@@ -24,7 +27,9 @@ class LayerReader {
   void read_corner(std::uint32_t v, const std::vector<std::uint32_t>& corners, std::size_t i,
                    const std::optional<Fan>& fan);
   Code read_code_of_vertex(std::uint32_t v, const std::vector<std::uint32_t>& corners);
-  Code read_new_code(const Code& expected);
+  Code read_new_code(const Code& like, const std::vector<std::uint32_t>& corners);
+  Expected expected_code(const std::vector<std::uint32_t>& corners) const;
+  void learn_misses(const Code& code, const Code& by_map, const Code& like);
 
   RangeDecoder& in_;
   BlockState& block_;
@@ -37,7 +42,9 @@ class LayerReader {
   BitsBy<2> have_one_code_, is_kept_;
   BitsBy<3> is_like_;
   BitsBy<1> is_of_grain_;
-  std::array<Signed, 4> difference_, difference_in_grains_;
+  std::array<Signed, kDoubts + 1> difference_;
+  std::array<Signed, 4> difference_in_grains_;
+  std::array<std::uint32_t, 2> misses_{};
 };
 
 bool LayerReader::had_code(std::uint32_t corner) const {
@@ -142,7 +149,7 @@ void LayerReader::read_corner(std::uint32_t v, const std::vector<std::uint32_t>&
     if (!tried.empty()) asked.tried = tried.front();
     codes_[corner] = directions_->read_of_corner(asked);
   } else {
-    codes_[corner] = read_new_code(tried.empty() ? Code{} : tried.front());
+    codes_[corner] = read_new_code(tried.empty() ? Code{} : tried.front(), {corner});
   }
   is_known_[corner] = true;
 }
@@ -156,12 +163,17 @@ Code LayerReader::read_code_of_vertex(std::uint32_t v, const std::vector<std::ui
   const bool is_new = v >= block_.coarse_vertices;
   if (had && is_kept_[{block_.vertices[v].moved, is_new}].read(in_)) return *had;
   if (directions_) return directions_->read_of_vertex(v, had);
-  return read_new_code(had ? *had : Code{});
+  return read_new_code(had ? *had : Code{}, corners);
 }
 
 // "New code".
-Code LayerReader::read_new_code(const Code& expected) {
+Code LayerReader::read_new_code(const Code& like, const std::vector<std::uint32_t>& corners) {
   Code code{};
+  const bool is_lattice = layer_.kind == BlockLayer::Kind::Lattice;
+  const Expected by_map = is_lattice ? expected_code(corners) : Expected{};
+  const bool is_by_map = misses_[0] <= misses_[1];
+  const Code& expected = is_by_map ? by_map.code : like;
+  Signed& difference = difference_[is_by_map ? by_map.doubt : kDoubts];
   bool has_grain = false, expects_grain = true;
   for (std::size_t k = 0; k < layer_.numbers(); ++k) {
     has_grain = has_grain || layer_.grains[k] > 1;
@@ -175,17 +187,58 @@ Code LayerReader::read_new_code(const Code& expected) {
           sum_of(static_cast<std::int32_t>(nearest), difference_in_grains_[k].read(in_));
       code[k] = static_cast<std::int32_t>(static_cast<std::uint32_t>(grains * grain));
     }
+    learn_misses(code, by_map.code, like);
     return code;
   }
   for (std::size_t k = 0; k < layer_.numbers(); ++k) {
-    if (layer_.kind == BlockLayer::Kind::Lattice) {
-      code[k] = sum_of(expected[k], difference_[k].read(in_));
+    if (is_lattice) {
+      code[k] = sum_of(expected[k], difference.read(in_));
     } else {
       const std::uint32_t upper = in_.uniform(65'536), lower = in_.uniform(65'536);
       code[k] = static_cast<std::int32_t>(65'536 * upper + lower);
     }
   }
+  if (is_lattice) learn_misses(code, by_map.code, like);
   return code;
+}
+
+void LayerReader::learn_misses(const Code& code, const Code& by_map, const Code& like) {
+  const auto bits_of = [](std::int32_t off) {
+    return std::uint32_t(std::bit_width(std::uint64_t(std::abs(std::int64_t(off)))));
+  };
+  for (std::uint32_t& miss : misses_) miss -= miss / 16;
+  for (std::size_t k = 0; k < layer_.numbers(); ++k) {
+    misses_[0] += bits_of(less(code[k], by_map[k]));
+    misses_[1] += bits_of(less(code[k], like[k]));
+  }
+}
+
+// "Expected by the map".
+Expected LayerReader::expected_code(const std::vector<std::uint32_t>& corners) const {
+  std::vector<Sample> samples;
+  const auto vertex_at = [&](std::uint32_t corner) {
+    return surface_.triangles[corner / 3][corner % 3];
+  };
+  const Point& v = surface_.places[vertex_at(corners[0])];
+  const auto add = [&](std::uint32_t corner) {
+    const std::uint32_t w = vertex_at(corner);
+    if (is_known_[corner]) {
+      samples.push_back({step(surface_.places[w], v), codes_[corner]});
+    } else if (had_code(corner)) {
+      samples.push_back({step(block_.coarse_place[block_.vertices[w].origin], v), codes_[corner]});
+    }
+  };
+  for (const std::uint32_t corner : corners) {
+    if (samples.empty()) add(corner);
+  }
+  FloatVector normal;
+  for (const std::uint32_t corner : corners) {
+    const std::uint32_t t = corner / 3, c = corner % 3;
+    normal = normal + surface_.twice_area(t);
+    add(3 * t + (c + 1) % 3);
+    add(3 * t + (c + 2) % 3);
+  }
+  return expected_by_map(samples, normal, layer_.numbers());
 }
 
 }  // namespace
