@@ -1,5 +1,5 @@
-// Where numbers of an attribute go from what is around: an affine map over the tangent plane, fitted
-// to the values that are known, the nearest with the most weight.
+// Where numbers of an attribute go from what is around: an affine map over the tangent plane,
+// fitted to the values that are known, the nearest with the most weight.
 //
 //   ValuePrediction expected = predict_value(samples, normal, dimension);
 #pragma once
@@ -105,8 +105,7 @@ inline ValuePrediction predict_value(std::span<const ValueSample> samples, const
   for (std::size_t k = 0; k < dimension; ++k) {
     const float x = here[k] + 0.5f;
     const bool is_near = x > -1e9f && x < 1e9f;
-    result.value[k] =
-        wrapped_sum(base[k], is_near ? static_cast<std::int32_t>(std::floor(x)) : 0);
+    result.value[k] = wrapped_sum(base[k], is_near ? static_cast<std::int32_t>(std::floor(x)) : 0);
     all += off[k];
   }
   const float doubt = rough_log2(std::min(all / weights, 1e12f) + 1) * 0.5f;

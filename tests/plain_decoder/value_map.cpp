@@ -55,8 +55,7 @@ Expected expected_by_map(const std::vector<Sample>& samples, const FloatVector& 
     const float here = U * (1 / W) - gx * mx - gy * my;
     float off_of_k = 0;
     for (const Sample& s : samples) {
-      const float rest =
-          value(s) - here - gx * s.place.along(first) - gy * s.place.along(second);
+      const float rest = value(s) - here - gx * s.place.along(first) - gy * s.place.along(second);
       off_of_k += rest * rest * weight(s);
     }
     off += off_of_k;
