@@ -11,7 +11,7 @@ namespace crease {
 namespace {
 
 // A value at a vertex of the joined mesh: where it was seen first.
-struct Seen {
+struct SeenValue {
   std::size_t mesh = 0;
   std::uint32_t id = 0;
 };
@@ -62,7 +62,7 @@ class MeshJoiner {
     }
     same_.resize(offsets_.back());
     for (std::uint32_t i = 0; i < same_.size(); ++i) same_[i] = i;
-    std::vector<std::vector<Seen>> at_vertex(joined_.positions.size());
+    std::vector<std::vector<SeenValue>> at_vertex(joined_.positions.size());
     for (std::size_t m = 0; m < meshes_.size(); ++m) find_same(l, m, at_vertex);
     AttributeLayer& layer = joined_.layers.emplace_back(layer_like(meshes_[0].mesh.layers[l]));
     std::vector<std::uint32_t> id_of(same_.size(), kNone);
@@ -80,15 +80,15 @@ class MeshJoiner {
     }
   }
 
-  void find_same(std::size_t l, std::size_t m, std::vector<std::vector<Seen>>& at_vertex) {
+  void find_same(std::size_t l, std::size_t m, std::vector<std::vector<SeenValue>>& at_vertex) {
     const Mesh& mesh = meshes_[m].mesh;
     for (std::size_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
       const VertexId v = mesh.triangles[corner / 3][corner % 3];
       const AttributeId a = mesh.layers[l].of_corner[corner];
       const auto id = static_cast<std::uint32_t>(index_of(a));
-      std::vector<Seen>& seen = at_vertex[vertices_[m][index_of(v)]];
+      std::vector<SeenValue>& seen = at_vertex[vertices_[m][index_of(v)]];
       bool is_known = false;
-      for (const Seen& s : seen) {
+      for (const SeenValue& s : seen) {
         is_known |= s.mesh == m && s.id == id;
         if (s.mesh == m) continue;
         const std::span<const float> other =
