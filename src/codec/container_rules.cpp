@@ -46,7 +46,9 @@ std::string broken_rule_of_layer(const LayerSchema& layer) {
   if (layer.role == AttributeRole::Normal && layer.dimension != 3) {
     return "normals are not of dimension 3";
   }
-  if (layer.coding > AttributeCoding::Sextant) return "unknown coding";
+  if (layer.coding > AttributeCoding::Sextant) {
+    return "unknown coding, or one that is no longer read: build the file again";
+  }
   const CodingRow& row = kCodings[static_cast<std::size_t>(layer.coding)];
   if (layer.bits < row.min_bits || layer.bits > row.max_bits) return "bits out of range";
   if (row.of_directions &&

@@ -28,13 +28,21 @@ std::uint8_t decode_reserved(ByteReader& in, int count) {
   return any;
 }
 
+// An unknown one is none of the enumeration, for broken_rule().
+AttributeCoding decode_coding(std::uint8_t code) {
+  constexpr AttributeCoding kUnknown{0xff};
+  const auto coding = static_cast<AttributeCoding>(code);
+  if (coding == AttributeCoding::Lattice) return kUnknown;
+  return code == format::kLatticeCode ? AttributeCoding::Lattice : coding;
+}
+
 LayerSchema decode_layer(ByteReader& in, std::uint8_t& reserved) {
   LayerSchema layer;
   layer.name = in.text();
   layer.role = static_cast<AttributeRole>(in.u8());
   layer.interpolation = static_cast<Interpolation>(in.u8());
   layer.dimension = in.u8();
-  layer.coding = static_cast<AttributeCoding>(in.u8());
+  layer.coding = decode_coding(in.u8());
   layer.bits = in.u8();
   reserved |= decode_reserved(in, 3);
   return layer;

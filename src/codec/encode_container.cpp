@@ -69,7 +69,8 @@ void encode_layers_and_bands(ByteWriter& out, const ModelFacts& facts) {
     out.u8(static_cast<std::uint8_t>(layer.role));
     out.u8(static_cast<std::uint8_t>(layer.interpolation));
     out.u8(layer.dimension);
-    out.u8(static_cast<std::uint8_t>(layer.coding));
+    out.u8(layer.coding == AttributeCoding::Lattice ? format::kLatticeCode
+                                                    : static_cast<std::uint8_t>(layer.coding));
     out.u8(layer.bits);
     encode_reserved(out, 3);
   }

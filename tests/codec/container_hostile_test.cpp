@@ -342,6 +342,7 @@ TEST_CASE("what the container promises is looked at behind the checksums") {
       {92, 0, "head: there are not as many names as parts"},
       {92, 2, "part names: their number is not as many as there are"},
       {144 + 4 + 6, 4, "head: layer 0: unknown role"},
+      {144 + 4 + 6, 0x01030000, "head: layer 0: unknown coding"},
       {page + 16 + 16, 3, "block 0: there is no such band"},
       {page + 16 + 18, 1, "block 0: a reserved byte is not 0"},
       {page + 16 + 56, 0x0000ff00, "block 0: an error is no finite number from 0 on"},

@@ -78,10 +78,12 @@ Layer read_layer(Reader& in) {
   layer.role = in.u8();
   layer.interpolation = in.u8();
   layer.dimension = in.u8();
-  layer.coding = in.u8();
+  const std::uint8_t coding = in.u8();
+  demand(coding != 1 && coding <= 4, "an unknown code");
+  layer.coding = coding == 4 ? 1 : coding;  // lattices are second below
   layer.bits = in.u8();
   in.reserved(3);
-  demand(layer.role <= 3 && layer.interpolation <= 2 && layer.coding <= 3, "an unknown code");
+  demand(layer.role <= 3 && layer.interpolation <= 2, "an unknown code");
   demand(layer.dimension >= 1 && layer.dimension <= 4, "a layer's dimension");
   demand(layer.role != 0 || layer.dimension == 3, "normals of another dimension than 3");
   const Rule& rule = kRules[layer.coding];
