@@ -20,16 +20,6 @@
 namespace crease {
 namespace {
 
-BlockMesh mesh_of(const BlockFile& file) {
-  Result<BlockMesh> mesh = BlockMesh::open(file);
-  REQUIRE(mesh.ok());
-  while (const std::optional<std::uint32_t> page = mesh->next_page()) {
-    REQUIRE(mesh->add_page(*file.read_page(*page)).ok());
-  }
-  mesh->set_part_names(*file.read_parts());
-  return *std::move(mesh);
-}
-
 void load_block(const BlockFile& file, BlockMesh& mesh, const BlockEntry& entry) {
   const std::optional<BlockDecodeJob> job = mesh.decode_job(entry.id);
   if (job) mesh.insert(*job->run(*file.read_block(entry)));

@@ -4,8 +4,12 @@
 #include "codec/encoded_model.h"
 #include "crease/block_mesh.h"
 
+#include <doctest/doctest.h>
+
+#include <optional>
 #include <random>
 #include <set>
+#include <utility>
 
 namespace crease {
 
@@ -25,5 +29,16 @@ BlockViewParameters view_of_all();
 
 // Some camera near the mesh, which has vertices.
 BlockViewParameters random_view(const Mesh& mesh, std::mt19937_64& random);
+
+// With all pages and names, and no block.
+inline BlockMesh mesh_of(const BlockFile& file) {
+  Result<BlockMesh> mesh = BlockMesh::open(file);
+  REQUIRE(mesh.ok());
+  while (const std::optional<std::uint32_t> page = mesh->next_page()) {
+    REQUIRE(mesh->add_page(*file.read_page(*page)).ok());
+  }
+  mesh->set_part_names(*file.read_parts());
+  return *std::move(mesh);
+}
 
 }  // namespace crease

@@ -22,16 +22,6 @@
 namespace crease {
 namespace {
 
-BlockMesh mesh_of(const BlockFile& file) {
-  Result<BlockMesh> mesh = BlockMesh::open(file);
-  REQUIRE(mesh.ok());
-  while (const std::optional<std::uint32_t> page = mesh->next_page()) {
-    REQUIRE(mesh->add_page(*file.read_page(*page)).ok());
-  }
-  mesh->set_part_names(*file.read_parts());
-  return *std::move(mesh);
-}
-
 // One thing that is missing, whichever. False: nothing is.
 bool bring(const BlockFile& file, BlockMesh& mesh, std::mt19937_64& random) {
   const std::vector<BlockEntry> blocks(mesh.missing().begin(), mesh.missing().end());
