@@ -1,29 +1,9 @@
 #include "codec/model_of_blocks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace crease::codec {
-
-namespace {
-
-// Lengths in model units.
-LevelError in_units(const LevelError& own, double step) {
-  return {static_cast<float>(step * double(own.surface)),
-          static_cast<float>(step * double(own.line)), own.degrees, own.texture};
-}
-
-}  // namespace
-
-LevelError added_error(const LevelError& base, const LevelError& own, const LevelError& most) {
-  const auto at_most = [](float x, float limit) { return x < limit ? x : limit; };  // or no number
-  const double from = double(base.degrees), by = double(own.degrees);
-  const float degrees = static_cast<float>(std::sqrt(from * from + by * by));
-  return {at_most(base.surface + own.surface, most.surface),
-          at_most(base.line + own.line, most.line), at_most(degrees, most.degrees),
-          at_most(base.texture + own.texture, most.texture)};
-}
 
 ModelOfBlocks::ModelOfBlocks(const ModelSchema& schema, const BlockUnfolder& unfolder)
     : schema_(schema),
@@ -76,10 +56,9 @@ void ModelOfBlocks::find_witnesses(const Mesh& mesh) {
     for (const std::uint32_t t : block.triangles) from_of_triangle[t] = from;
   }
   if (!any) return;
-  witnesses_.from.resize(witnesses_.places.size());
   for (std::uint32_t t = 0; t < triangle_count_; ++t) {
-    for (std::uint32_t w = witnesses_.first[t]; w != kNone; w = witnesses_.next[w]) {
-      witnesses_.from[w] = witnesses_.told[w] = from_of_triangle[t];
+    for (std::uint32_t w = witnesses_.first[t]; w != kNone; w = witnesses_.all[w].next) {
+      witnesses_.all[w].from = witnesses_.all[w].told = from_of_triangle[t];
     }
   }
 }
@@ -117,14 +96,10 @@ struct ModelOfBlocks::Pending {
 void ModelOfBlocks::contract_band(std::span<const UnfoldedBlock> blocks,
                                   AttributeRejoiner& rejoiner, const ForEach& for_each,
                                   ContractionSequence& sequence) {
-  base_of_slot_.resize(error_of_slot_.size());
-  for (const UnfoldedBlock& block : blocks) {
-    for (const std::uint32_t v : block.vertices) base_of_slot_[v] = error_of_slot_[v];
-  }
   std::vector<ContractionOrder> orders(blocks.size());
   for_each(blocks.size(), [&](std::size_t b) {
-    orders[b] = order_contractions(blocks[b], schema_.coding, schema_.facts.layers,
-                                   layers_.values(), witnesses_);
+    orders[b] =
+        order_contractions(blocks[b], schema_, layers_.values(), error_of_slot_, witnesses_);
   });
   std::vector<CornerChanges> changes(blocks.size());
   std::vector<Pending> all;
@@ -150,15 +125,8 @@ void ModelOfBlocks::append(const UnfoldedBlock& block, const OrderedContraction&
   c.kept = VertexId{block.vertices[split.vertex]};
   c.removed = VertexId{block.vertices[block.second_child(contraction.split)]};
   c.position = split.parent_position;
-  LevelError& base = base_of_slot_[index_of(c.kept)];
-  base = larger(base, base_of_slot_[index_of(c.removed)]);
-  LevelError& error = error_of_slot_[index_of(c.kept)];
-  LevelError& own = own_errors_.emplace_back(in_units(contraction.own, schema_.facts.grid.step));
-  const auto far = static_cast<float>(schema_.facts.grid.step * double(contraction.far));
-  own.surface = std::max(own.surface, far - base.surface);
-  error = larger(larger(error, error_of_slot_[index_of(c.removed)]),
-                 added_error(base, own, block.coarse));
-  c.error = error;
+  c.error = error_of_slot_[index_of(c.kept)] = contraction.error;
+  own_errors_.push_back(contraction.own);
   Vec3i& kept = positions_[index_of(c.kept)];
   if (c.position != kept && c.position != positions_[index_of(c.removed)]) {
     sequence.placement = Placement::Optimal;

@@ -14,10 +14,6 @@
 
 namespace crease::codec {
 
-// The errors of a contraction whose vertex has `base` at the fine end, as the simplifier adds them
-// up, but none above those of the block's coarse end, `most`. `own`: what it adds.
-LevelError added_error(const LevelError& base, const LevelError& own, const LevelError& most);
-
 using ForEach = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
 
 class ModelOfBlocks {
@@ -49,7 +45,6 @@ class ModelOfBlocks {
   LayerPools layers_;
   std::vector<Vec3i> positions_;  // per slot
   std::vector<LevelError> error_of_slot_;
-  std::vector<LevelError> base_of_slot_;  // at the present band's fine end
   std::vector<LevelError> own_errors_;
   Witnesses witnesses_;  // the finest mesh's, by slots and numbers
 };

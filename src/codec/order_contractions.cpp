@@ -38,19 +38,24 @@ using simplification::Quadric;
 
 class CostEstimator {
  public:
-  CostEstimator(const UnfoldedBlock& block, const BlockCoding& coding,
-                std::span<const LayerSchema> layers, std::span<const LayerValues> values,
-                const ContractingPatch& patch, Witnesses& witnesses)
+  CostEstimator(const UnfoldedBlock& block, const ModelSchema& schema,
+                std::span<const LayerValues> values, std::span<const LevelError> error_of_slot,
+                const ContractingPatch& patch, const Witnesses& witnesses)
       : block_(block),
-        witnesses_(witnesses),
+        step_(schema.facts.grid.step),
+        witnesses_(witnesses, block.triangles),
         geometry_(block.end),
         surface_(block.end.positions.size()),
         is_contracted_(contracted_vertices(block)),
-        is_face_(faces_of(block.end, coding)),
-        wedges_(block, layers, values, geometry_, is_contracted_),
-        lines_(block, coding, patch, geometry_, is_contracted_, is_face_, wedges_) {
+        is_face_(faces_of(block.end, schema.coding)),
+        wedges_(block, schema.facts.layers, values, geometry_, is_contracted_),
+        lines_(block, schema.coding, patch, geometry_, is_contracted_, is_face_, wedges_) {
+    errors_.reserve(block.vertices.size());
+    for (const std::uint32_t slot : block.vertices) {
+      errors_.push_back({error_of_slot[slot], error_of_slot[slot]});
+    }
     if (std::find(is_face_.begin(), is_face_.end(), 1) != is_face_.end()) {
-      faces_.emplace(block, coding, values, is_face_);
+      faces_.emplace(block, schema.coding, values, is_face_);
       if (!faces_->is_empty()) positions_ = block.end.positions;
       const double count = 3 * double(std::max<std::size_t>(1, block.end.triangles.size()));
       turn_weight_ = kTurnWeight * geometry_.edge_sum(block.end.triangles) / count;
@@ -92,10 +97,17 @@ class CostEstimator {
       if (is_face_[t]) cost += vanishing_cost(geometry_.normal(t), around);
     }
     cost += wedges_.contract(patch, vanished, first, second, at);
-    own_ = {static_cast<float>(surface),
-            static_cast<float>(lines ? mean_distance(line_off, lines->weight) : 0),
+    own_ = {in_units(surface), in_units(lines ? mean_distance(line_off, lines->weight) : 0),
             std::max(wedges_.degrees(), turned(patch, vanished, first, parent)), wedges_.texture()};
-    far_ = distance_of_witnesses(patch, vanished, first, parent, stays);
+    Errors& errors = errors_[first];
+    errors.at_fine_end = larger(errors.at_fine_end, errors_[second].at_fine_end);
+    errors.now = larger(larger(errors.now, errors_[second].now),
+                        added_error(errors.at_fine_end, own_, block_.coarse));
+    const auto known = static_cast<float>(double(errors.now.surface) / step_);
+    const float far =
+        in_units(double(distance_of_witnesses(patch, vanished, first, parent, stays, known)));
+    own_.surface = std::max(own_.surface, far - errors.at_fine_end.surface);
+    errors.now = larger(errors.now, added_error(errors.at_fine_end, own_, block_.coarse));
     flat_count_ += cost <= 2 * tie;
     return cost <= kMostCost ? cost : kMostCost;  // also if it is no number
   }
@@ -103,13 +115,22 @@ class CostEstimator {
   // Contractions so far that change nothing.
   std::size_t flat_count() const { return flat_count_; }
 
-  // Of the last contraction: see OrderedContraction.
+  // Of the last contraction, and of `first` since.
   const LevelError& own() const { return own_; }
-  float far() const { return far_; }
+  const LevelError& error(std::uint32_t first) const { return errors_[first].now; }
 
+  void give_back_witnesses(Witnesses& model) const {
+    witnesses_.give_back(block_.triangles, block_.coarse_triangle_count(), model);
+  }
   std::vector<WedgeValues> take_wedges() { return std::move(wedges_).take(); }
 
  private:
+  struct Errors {
+    LevelError at_fine_end, now;
+  };
+
+  float in_units(double length) const { return static_cast<float>(step_ * length); }
+
   static std::vector<char> contracted_vertices(const UnfoldedBlock& block) {
     std::vector<char> is_contracted(block.end.positions.size(), 0);
     for (std::size_t i = 0; i < block.splits.size(); ++i) {
@@ -150,22 +171,23 @@ class CostEstimator {
 
   CREASE_WIDE float distance_of_witnesses(const ContractingPatch& patch,
                                           std::span<const std::uint32_t> vanished,
-                                          std::uint32_t first, const Vec3i& parent, bool stays) {
+                                          std::uint32_t first, const Vec3i& parent, bool stays,
+                                          float known) {
     const std::span<const std::uint32_t> around = patch.around(first);
     const std::size_t first_changed = stays ? around.size() - patch.moved_count() : 0;
     const Vec3d at = geometry_.place(first);
     witness_mover_.start();
     for (std::uint32_t i = 0; i < around.size(); ++i) {
       const Corners& corners = patch.corners(around[i]);
-      const std::uint32_t c = corner_of(corners, first), t = block_.triangles[around[i]];
-      witness_mover_.add(t, geometry_.place(corners[kCornerAfter[c]]) - at,
+      const std::uint32_t c = corner_of(corners, first);
+      witness_mover_.add(around[i], geometry_.place(corners[kCornerAfter[c]]) - at,
                          geometry_.place(corners[kCornerBefore[c]]) - at);
-      if (i >= first_changed) witness_mover_.take(t, i, witnesses_);
+      if (i >= first_changed) witness_mover_.take(around[i], i, witnesses_.here());
     }
     for (const std::uint32_t t : vanished) {
-      witness_mover_.take(block_.triangles[t], kNone, witnesses_);
+      witness_mover_.take(t, kNone, witnesses_.here());
     }
-    return witness_mover_.settle(witnesses_, parent);
+    return witness_mover_.settle(witnesses_.here(), parent, known);
   }
 
   // The root of the mean.
@@ -200,7 +222,8 @@ class CostEstimator {
   }
 
   const UnfoldedBlock& block_;
-  Witnesses& witnesses_;  // of the model
+  double step_;  // of the grid
+  WitnessesOfPart witnesses_;
   WitnessMover witness_mover_;
   PatchGeometry geometry_;
   std::vector<Quadric> surface_;     // per vertex, about the origin
@@ -210,7 +233,7 @@ class CostEstimator {
   PatchLines lines_;
   std::optional<FaceNormals> faces_;
   std::vector<Vec3i> positions_;  // for faces_
-  float far_ = 0;
+  std::vector<Errors> errors_;    // per vertex
   LevelError own_;
   double turn_weight_ = 0;
   std::size_t flat_count_ = 0;
@@ -218,11 +241,21 @@ class CostEstimator {
 
 }  // namespace
 
-ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCoding& coding,
-                                    std::span<const LayerSchema> layers,
-                                    std::span<const LayerValues> values, Witnesses& witnesses) {
+LevelError added_error(const LevelError& base, const LevelError& own, const LevelError& most) {
+  const auto at_most = [](float x, float limit) { return x < limit ? x : limit; };  // or no number
+  const double from = double(base.degrees), by = double(own.degrees);
+  const float degrees = static_cast<float>(std::sqrt(from * from + by * by));
+  return {at_most(base.surface + own.surface, most.surface),
+          at_most(base.line + own.line, most.line), at_most(degrees, most.degrees),
+          at_most(base.texture + own.texture, most.texture)};
+}
+
+ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchema& schema,
+                                    std::span<const LayerValues> values,
+                                    std::span<const LevelError> error_of_slot,
+                                    Witnesses& witnesses) {
   ContractingPatch patch(block.end);
-  CostEstimator estimator(block, coding, layers, values, patch, witnesses);
+  CostEstimator estimator(block, schema, values, error_of_slot, patch, witnesses);
   std::vector<double> cost_of_vertex(block.vertices.size(), 0);
   std::vector<OrderedContraction> order;
   order.reserve(block.splits.size());
@@ -232,8 +265,9 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCodin
     const double cost = std::max({estimator.contract(patch, first, second, split.parent_position),
                                   cost_of_vertex[first], cost_of_vertex[second]});
     cost_of_vertex[first] = cost;
-    order.push_back({static_cast<std::uint32_t>(i), cost, estimator.own(), estimator.far()});
+    order.push_back({static_cast<std::uint32_t>(i), cost, estimator.own(), estimator.error(first)});
   }
+  estimator.give_back_witnesses(witnesses);
   std::stable_sort(
       order.begin(), order.end(),
       [](const OrderedContraction& a, const OrderedContraction& b) { return a.cost < b.cost; });

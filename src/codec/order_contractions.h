@@ -3,6 +3,7 @@
 #pragma once
 
 #include "codec/layer_values.h"
+#include "codec/model_schema.h"
 #include "codec/unfold_blocks.h"
 #include "codec/wedge_quadrics.h"
 #include "crease/contraction.h"
@@ -17,10 +18,8 @@ namespace crease::codec {
 struct OrderedContraction {
   std::uint32_t split = 0;  // in UnfoldedBlock::splits
   double cost = 0;          // grid units^4; never below those before it
-  // What it adds to the errors that its vertex has at the fine end, as the simplifier counts them;
-  // lengths in grid units.
-  LevelError own;
-  float far = 0;  // of witnesses around it, the farthest that counts; grid units
+  LevelError own;           // what it adds to the errors that its vertex has at the fine end
+  LevelError error;         // of its vertex
 };
 
 struct ContractionOrder {
@@ -28,14 +27,20 @@ struct ContractionOrder {
   std::vector<WedgeValues> wedges;  // per layer
 };
 
+// The errors of a contraction whose vertex has `base` at the fine end, as the simplifier adds them
+// up, but none above those of the block's coarse end, `most`. `own`: what it adds.
+LevelError added_error(const LevelError& base, const LevelError& own, const LevelError& most);
+
 // Cheapest first, children before their parents, the same in any subset of blocks. The cost is that
 // of quadrics from the block's fine end: squared distances of where the parent stands from the
 // planes of what it stands for, by area, and from borders and creases, by squared length; how far
 // attributes are from those of what their wedges stand for; and how far faces turn. `values`: one a
-// layer. `witnesses`: by the model's triangles, of which it moves the block's; they are where the
-// blocks of finer bands have left them. Time O(splits * triangles around a vertex).
-ContractionOrder order_contractions(const UnfoldedBlock& block, const BlockCoding& coding,
-                                    std::span<const LayerSchema> layers,
-                                    std::span<const LayerValues> values, Witnesses& witnesses);
+// layer. `error_of_slot`: as the blocks of finer bands have left them. So are the witnesses, by the
+// model's triangles, of which it moves the block's. Errors are in model units, of which a grid unit
+// has `step`. Time O(splits * triangles around a vertex).
+ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchema& schema,
+                                    std::span<const LayerValues> values,
+                                    std::span<const LevelError> error_of_slot,
+                                    Witnesses& witnesses);
 
 }  // namespace crease::codec

@@ -1,6 +1,6 @@
 #include "runtime/block_errors.h"
 
-#include "codec/model_of_blocks.h"
+#include "codec/order_contractions.h"
 
 #include <utility>
 

@@ -97,7 +97,8 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   }
   if (!shading_.empty()) derive_where_better(kept, errors.now);
   errors.now.surface =
-      std::max(errors.now.surface, distance_of_witnesses(target, stays ? ring_kept_ : 0));
+      std::max(errors.now.surface,
+               distance_of_witnesses(target, stays ? ring_kept_ : 0, errors.now.surface));
 
   contraction.error = errors.now;
   contraction.change_count = static_cast<Index>(result_.changes.size()) - contraction.first_change;
@@ -117,9 +118,10 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
 
 // Once the ring has changed: how far from it the input is, by witnesses of what changed, `first` of
 // the ring on, and of what vanished.
-CREASE_WIDE float PatchSimplifier::distance_of_witnesses(const Vec3d& target, std::size_t first) {
+CREASE_WIDE float PatchSimplifier::distance_of_witnesses(const Vec3d& target, std::size_t first,
+                                                         float known) {
   Witnesses& witnesses = work_->witnesses;
-  if (witnesses.places.empty()) return 0;
+  if (witnesses.all.empty()) return 0;
   witness_mover_.start();
   for (Index i = 0; i < ring_.size(); ++i) {
     const RingTriangle& ring = ring_[i];
@@ -130,7 +132,7 @@ CREASE_WIDE float PatchSimplifier::distance_of_witnesses(const Vec3d& target, st
   for (const Vanishing& vanishing : vanishing_) {
     witness_mover_.take(global_triangle_[vanishing.triangle], kNone, witnesses);
   }
-  return witness_mover_.settle(witnesses, on_grid(target));
+  return witness_mover_.settle(witnesses, on_grid(target), known);
 }
 
 CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {

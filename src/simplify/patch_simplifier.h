@@ -221,7 +221,7 @@ class PatchSimplifier {
   void combine_quadrics(std::size_t layer, std::span<const Index> members, Wedge& result);
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
                      const Vec3d& target, Wedge& result);
-  float distance_of_witnesses(const Vec3d& target, std::size_t first);
+  float distance_of_witnesses(const Vec3d& target, std::size_t first, float known);
 
   // Of a place on the grid, less center_.
   static Vec3i whole(const Vec3d& p) {

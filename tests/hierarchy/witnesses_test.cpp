@@ -48,25 +48,23 @@ Case random_case(std::mt19937& random, int count, int witness_count) {
   }
   c.witnesses.first.assign(std::size_t(count) + 1, kNone);
   for (int i = 0; i < witness_count; ++i) {
-    c.witnesses.places.push_back(point());
-    c.witnesses.next.push_back(kNone);
-    c.witnesses.told.push_back(0);
+    c.witnesses.all.push_back({point()});
     c.witnesses.put(std::uint32_t(i), std::uint32_t(count));  // of one that has vanished
   }
   return c;
 }
 
-float settle(Case& c) {
+float settle(Case& c, float known = 0) {
   WitnessMover mover;
   mover.start();
   for (std::uint32_t i = 0; i < c.ring.size(); ++i) mover.add(i, c.ring[i][0], c.ring[i][1]);
   for (std::uint32_t i = 0; i < c.ring.size(); ++i) mover.take(i, i, c.witnesses);
   mover.take(std::uint32_t(c.ring.size()), kNone, c.witnesses);
-  return mover.settle(c.witnesses, {});
+  return mover.settle(c.witnesses, {}, known);
 }
 
 double nearest(const Case& c, std::uint32_t witness) {
-  const Vec3i& place = c.witnesses.places[witness];
+  const Vec3i& place = c.witnesses.all[witness].place;
   const Vec3d p{double(place.x), double(place.y), double(place.z)};
   double best = length(p);
   for (const auto& [a, b] : c.ring) best = std::min(best, distance_from(p, a, b));
@@ -82,12 +80,12 @@ TEST_CASE("witnesses go to the nearest triangle around the vertex") {
       double most = 0;
       for (std::uint32_t w = 0; w < 5; ++w) {
         most = std::max(most, nearest(c, w));
-        CHECK(double(c.witnesses.told[w]) == doctest::Approx(nearest(c, w)).epsilon(1e-4));
+        CHECK(double(c.witnesses.all[w].told) == doctest::Approx(nearest(c, w)).epsilon(1e-4));
       }
       CHECK(double(far) == doctest::Approx(most).epsilon(1e-4));
       for (std::uint32_t t = 0; t < c.ring.size(); ++t) {
-        for (std::uint32_t w = c.witnesses.first[t]; w != kNone; w = c.witnesses.next[w]) {
-          const Vec3i& p = c.witnesses.places[w];
+        for (std::uint32_t w = c.witnesses.first[t]; w != kNone; w = c.witnesses.all[w].next) {
+          const Vec3i& p = c.witnesses.all[w].place;
           const double own =
               distance_from({double(p.x), double(p.y), double(p.z)}, c.ring[t][0], c.ring[t][1]);
           CHECK(own == doctest::Approx(nearest(c, w)).epsilon(1e-4));
@@ -104,7 +102,7 @@ TEST_CASE("a triangle keeps the farthest of many witnesses, whatever their order
   for (std::uint32_t w = 60; w-- > 0;) d.witnesses.put(w, 1);
   CHECK(settle(c) == settle(d));
   std::vector<std::uint32_t> kept;
-  for (std::uint32_t w = c.witnesses.first[0]; w != kNone; w = c.witnesses.next[w]) {
+  for (std::uint32_t w = c.witnesses.first[0]; w != kNone; w = c.witnesses.all[w].next) {
     kept.push_back(w);
   }
   CHECK(kept.size() == kMostWitnesses);
@@ -114,23 +112,63 @@ TEST_CASE("a triangle keeps the farthest of many witnesses, whatever their order
   }
   CHECK(std::find(kept.begin(), kept.end(), farthest) != kept.end());
   CHECK(c.witnesses.first == d.witnesses.first);
-  CHECK(c.witnesses.next[kept[0]] == d.witnesses.next[kept[0]]);
+  CHECK(c.witnesses.all[kept[0]].next == d.witnesses.all[kept[0]].next);
 }
 
 TEST_CASE("a witness that is no farther away than before does not count") {
   Case c;
   c.ring = {{Vec3d{100, 0, 0}, Vec3d{0, 100, 0}}};
   c.witnesses.first = {kNone, kNone};
-  c.witnesses.places = {{10, 10, 50}};
-  c.witnesses.next = {kNone};
-  c.witnesses.told = {0};
+  c.witnesses.all = {{{10, 10, 50}}};
   c.witnesses.put(0, 1);
   CHECK(settle(c) == 50);
   CHECK(settle(c) == 0);
-  c.witnesses.places = {{10, 10, 54}};
+  c.witnesses.all[0].place.z = 54;
   CHECK(settle(c) == 0);
-  c.witnesses.places = {{10, 10, 60}};
+  c.witnesses.all[0].place.z = 60;
   CHECK(settle(c) == 60);
+}
+
+// It is 10 above the triangle that it is with, and 1 away from another one, which stands upright.
+TEST_CASE("a witness stays where it is while it is no farther away than is known") {
+  for (const float known : {0.0f, 9.0f, 11.0f}) {
+    Case c;
+    c.ring = {{Vec3d{100, 0, 0}, Vec3d{0, 100, 0}}, {Vec3d{0, 0, 100}, Vec3d{100, 0, 100}}};
+    c.witnesses.first = {kNone, kNone, kNone};
+    c.witnesses.all = {{{10, 1, 10}}};
+    c.witnesses.put(0, 0);
+    const bool stays = known > 10;
+    CHECK(settle(c, known) == (stays ? 10 : doctest::Approx(1)));
+    CHECK(c.witnesses.first[stays ? 0 : 1] == 0);
+    CHECK(c.witnesses.all[0].told == (stays ? 10 : doctest::Approx(1)));
+  }
+}
+
+TEST_CASE("witnesses of a part come back with what was done to them") {
+  std::mt19937 random(5);
+  Case c = random_case(random, 3, 20);
+  settle(c);
+  const std::vector<std::uint32_t> part{2, 0};
+  const auto told_at = [](const Witnesses& witnesses, std::uint32_t triangle) {
+    std::vector<float> told;
+    for (std::uint32_t w = witnesses.first[triangle]; w != kNone; w = witnesses.all[w].next) {
+      told.push_back(witnesses.all[w].told);
+    }
+    std::sort(told.begin(), told.end());
+    return told;
+  };
+  const std::vector<float> first = told_at(c.witnesses, 0), second = told_at(c.witnesses, 1);
+  const std::vector<float> third = told_at(c.witnesses, 2);
+  REQUIRE(!third.empty());
+  WitnessesOfPart of_part(c.witnesses, part);
+  CHECK(told_at(of_part.here(), 0) == third);
+  CHECK(told_at(of_part.here(), 1) == first);
+  of_part.here().all[of_part.here().first[0]].told = 1e9f;
+  of_part.give_back(part, 1, c.witnesses);
+  CHECK(c.witnesses.first[0] == kNone);
+  CHECK(told_at(c.witnesses, 1) == second);
+  CHECK(told_at(c.witnesses, 2).back() == 1e9f);
+  CHECK(told_at(c.witnesses, 2).size() == third.size());
 }
 
 }  // namespace
