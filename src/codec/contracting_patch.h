@@ -26,6 +26,8 @@ class ContractingPatch {
   // The triangles at v, all of them alive; good until the next call of contract().
   std::span<const std::uint32_t> around(std::uint32_t v) const { return around_[v]; }
 
+  void prefetch_around(std::uint32_t v) const { around_.prefetch(v); }
+
   // Replaces `second` by `first`. Those that have both vanish; they are what is returned, with
   // their corners as they were, until the next call.
   std::span<const std::uint32_t> contract(std::uint32_t first, std::uint32_t second) {

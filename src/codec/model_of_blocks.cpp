@@ -104,6 +104,7 @@ void ModelOfBlocks::contract_band(std::span<const UnfoldedBlock> blocks,
   std::vector<CornerChanges> changes(blocks.size());
   std::vector<Pending> all;
   for (std::uint32_t b = 0; b < blocks.size(); ++b) {
+    if (orders[b].placement == Placement::Optimal) sequence.placement = Placement::Optimal;
     changes[b] = rejoiner.rejoin(blocks[b], orders[b].contractions, std::move(orders[b].wedges));
     for (std::uint32_t i = 0; i < orders[b].contractions.size(); ++i) {
       all.push_back({orders[b].contractions[i].cost, b, i});
@@ -127,11 +128,6 @@ void ModelOfBlocks::append(const UnfoldedBlock& block, const OrderedContraction&
   c.position = split.parent_position;
   c.error = error_of_slot_[index_of(c.kept)] = contraction.error;
   own_errors_.push_back(contraction.own);
-  Vec3i& kept = positions_[index_of(c.kept)];
-  if (c.position != kept && c.position != positions_[index_of(c.removed)]) {
-    sequence.placement = Placement::Optimal;
-  }
-  kept = c.position;
   c.first_change = static_cast<std::uint32_t>(sequence.changes.size());
   c.change_count = static_cast<std::uint32_t>(changes.size());
   sequence.changes.insert(sequence.changes.end(), changes.begin(), changes.end());

@@ -33,6 +33,8 @@ constexpr double kPartWeight = 3;
 constexpr double kLengthShare = 1e-8;
 constexpr std::size_t kFewOfThem = 8;  // one of so many
 constexpr double kMostCost = 1e300;    // of nonsense, that a hostile block may have
+// How many contractions before it the memory of one is asked for.
+constexpr std::size_t kVerticesAhead = 4, kTrianglesAhead = 2;
 
 using simplification::Quadric;
 
@@ -40,7 +42,7 @@ class CostEstimator {
  public:
   CostEstimator(const UnfoldedBlock& block, const ModelSchema& schema,
                 std::span<const LayerValues> values, std::span<const LevelError> error_of_slot,
-                const ContractingPatch& patch, const Witnesses& witnesses)
+                const Witnesses& witnesses, const ContractingPatch& patch)
       : block_(block),
         step_(schema.facts.grid.step),
         witnesses_(witnesses, block.triangles),
@@ -81,14 +83,18 @@ class CostEstimator {
       double longest = 0;
       for (const std::uint32_t t : vanished) {
         const double side2 = geometry_.longest_side2(patch.corners(t));
-        cost += kPartWeight * 0.5 * geometry_.normal(t).size * side2;
+        cost += kPartWeight * 0.5 * length(geometry_.twice_area(patch.corners(t))) * side2;
         longest = std::max(longest, side2);
       }
       surface += std::sqrt(longest);  // what it stood for is gone
     }
     const bool stays = geometry_.place(first) == at;
     geometry_.move(first, at);
+    // From here on only faces ask for normals, of what is around as well if they vanish.
+    const bool any_face_vanishes = std::any_of(vanished.begin(), vanished.end(),
+                                               [&](std::uint32_t t) { return is_face_[t] != 0; });
     for (const std::uint32_t t : around) {
+      if (!is_face_[t] && !any_face_vanishes) continue;
       const ScaledNormal before = geometry_.normal(t);
       geometry_.find_normal(t, patch.corners(t));
       if (is_face_[t]) cost += turning_cost(before, geometry_.normal(t));
@@ -106,12 +112,39 @@ class CostEstimator {
     const auto known = static_cast<float>(double(errors.now.surface) / step_);
     const float far =
         in_units(double(distance_of_witnesses(patch, vanished, first, parent, stays, known)));
-    own_.surface = std::max(own_.surface, far - errors.at_fine_end.surface);
-    errors.now = larger(errors.now, added_error(errors.at_fine_end, own_, block_.coarse));
+    if (const float added = far - errors.at_fine_end.surface; added > own_.surface) {
+      own_.surface = added;
+      errors.now = larger(errors.now, added_error(errors.at_fine_end, own_, block_.coarse));
+    }
+    moves_to_end_ = moves_to_end_ && (stays || geometry_.place(second) == at);
     flat_count_ += cost <= 2 * tie;
     return cost <= kMostCost ? cost : kMostCost;  // also if it is no number
   }
 
+  // What contracting two vertices will read of them, and then of the triangles around them.
+  void prefetch_vertices(const ContractingPatch& patch, std::uint32_t first,
+                         std::uint32_t second) const {
+    for (const std::uint32_t v : {first, second}) {
+      patch.prefetch_around(v);
+      __builtin_prefetch(&surface_[v]);
+      __builtin_prefetch(&surface_[v].row[2]);
+      __builtin_prefetch(&geometry_.place(v));
+      __builtin_prefetch(&errors_[v]);
+    }
+  }
+  void prefetch_triangles(const ContractingPatch& patch, std::uint32_t first,
+                          std::uint32_t second) const {
+    for (const std::uint32_t v : {first, second}) {
+      for (const std::uint32_t t : patch.around(v)) {
+        __builtin_prefetch(&patch.corners(t));
+        __builtin_prefetch(&geometry_.normal(t));
+        __builtin_prefetch(&witnesses_.here().first[t]);
+      }
+    }
+  }
+
+  // Whether all contractions so far ended where one of the two was.
+  bool moves_to_end() const { return moves_to_end_; }
   // Contractions so far that change nothing.
   std::size_t flat_count() const { return flat_count_; }
 
@@ -237,6 +270,7 @@ class CostEstimator {
   LevelError own_;
   double turn_weight_ = 0;
   std::size_t flat_count_ = 0;
+  bool moves_to_end_ = true;
 };
 
 }  // namespace
@@ -255,25 +289,39 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
                                     std::span<const LevelError> error_of_slot,
                                     Witnesses& witnesses) {
   ContractingPatch patch(block.end);
-  CostEstimator estimator(block, schema, values, error_of_slot, patch, witnesses);
+  CostEstimator estimator(block, schema, values, error_of_slot, witnesses, patch);
   std::vector<double> cost_of_vertex(block.vertices.size(), 0);
-  std::vector<OrderedContraction> order;
-  order.reserve(block.splits.size());
+  std::vector<OrderedContraction> undone;
+  std::vector<std::pair<double, std::uint32_t>> ranks;  // by cost, then as they were undone
+  undone.reserve(block.splits.size());
+  ranks.reserve(block.splits.size());
   for (std::size_t i = block.splits.size(); i-- > 0;) {
     const Split& split = block.splits[i];
     const std::uint32_t first = split.vertex, second = block.second_child(i);
+    if (i >= kVerticesAhead) {
+      const std::size_t later = i - kVerticesAhead;
+      estimator.prefetch_vertices(patch, block.splits[later].vertex, block.second_child(later));
+    }
+    if (i >= kTrianglesAhead) {
+      const std::size_t next = i - kTrianglesAhead;
+      estimator.prefetch_triangles(patch, block.splits[next].vertex, block.second_child(next));
+    }
     const double cost = std::max({estimator.contract(patch, first, second, split.parent_position),
                                   cost_of_vertex[first], cost_of_vertex[second]});
     cost_of_vertex[first] = cost;
-    order.push_back({static_cast<std::uint32_t>(i), cost, estimator.own(), estimator.error(first)});
+    ranks.emplace_back(cost, static_cast<std::uint32_t>(undone.size()));
+    undone.push_back(
+        {static_cast<std::uint32_t>(i), cost, estimator.own(), estimator.error(first)});
   }
   estimator.give_back_witnesses(witnesses);
-  std::stable_sort(
-      order.begin(), order.end(),
-      [](const OrderedContraction& a, const OrderedContraction& b) { return a.cost < b.cost; });
+  std::sort(ranks.begin(), ranks.end());
+  std::vector<OrderedContraction> order;
+  order.reserve(ranks.size());
+  for (const auto& [cost, place] : ranks) order.push_back(undone[place]);
   if (estimator.flat_count() > order.size() / kFewOfThem)
     order = defer_folds(block, std::move(order));
-  return {std::move(order), estimator.take_wedges()};
+  const Placement placement = estimator.moves_to_end() ? Placement::Endpoint : Placement::Optimal;
+  return {std::move(order), estimator.take_wedges(), placement};
 }
 
 }  // namespace crease::codec

@@ -25,6 +25,7 @@ struct OrderedContraction {
 struct ContractionOrder {
   std::vector<OrderedContraction> contractions;
   std::vector<WedgeValues> wedges;  // per layer
+  Placement placement = Placement::Endpoint;
 };
 
 // The errors of a contraction whose vertex has `base` at the fine end, as the simplifier adds them
@@ -35,9 +36,9 @@ LevelError added_error(const LevelError& base, const LevelError& own, const Leve
 // of quadrics from the block's fine end: squared distances of where the parent stands from the
 // planes of what it stands for, by area, and from borders and creases, by squared length; how far
 // attributes are from those of what their wedges stand for; and how far faces turn. `values`: one a
-// layer. `error_of_slot`: as the blocks of finer bands have left them. So are the witnesses, by the
-// model's triangles, of which it moves the block's. Errors are in model units, of which a grid unit
-// has `step`. Time O(splits * triangles around a vertex).
+// layer. `error_of_slot`, in model units, is as the blocks of finer bands have left it. So are the
+// witnesses, by the model's triangles, of which it moves the block's. Time O(splits * triangles
+// around a vertex).
 ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchema& schema,
                                     std::span<const LayerValues> values,
                                     std::span<const LevelError> error_of_slot,

@@ -19,6 +19,8 @@ class TriangleLists {
     const List& list = lists_[vertex];
     return {triangles_.data() + list.first, list.count};
   }
+  // Where the list of the vertex is, not yet what is in it.
+  void prefetch(std::uint32_t vertex) const { __builtin_prefetch(&lists_[vertex]); }
   void add_vertex() { lists_.push_back({}); }
   void resize(std::size_t vertices) { lists_.resize(vertices); }
   // Every triangle at each of its corners, in order, with room for some more.
