@@ -165,7 +165,9 @@ class CostEstimator {
     for (const std::uint32_t t : vanished) {
       witness_mover_.take(block_.triangles[t], kNone, witnesses_);
     }
-    return witness_mover_.settle(witnesses_, parent);
+    const float farthest = witness_mover_.measure(witnesses_, parent);
+    witness_mover_.settle(witnesses_);
+    return farthest;
   }
 
   // The root of the mean.

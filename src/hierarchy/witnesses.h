@@ -6,7 +6,8 @@
 //   mover.start();                                        // after a contraction to the place v
 //   for (t : triangles around v) mover.add(t, next - v, previous - v);
 //   for (t : those, and those that vanished) mover.take(t, i, witnesses);
-//   const float far = mover.settle(witnesses, v);
+//   const float far = mover.measure(witnesses, v);        // changes nothing yet
+//   mover.settle(witnesses);
 //
 // Distances are measured to the triangles around the vertex alone, so they are no less than those
 // to the whole surface; and at some points only, so that the rest can be farther away than they
@@ -56,6 +57,7 @@ class WitnessMover {
     blocks_.clear();
     triangles_.clear();
     taken_.clear();
+    left_.clear();
   }
 
   // One of the triangles around the vertex, which stands at the origin.
@@ -72,23 +74,20 @@ class WitnessMover {
 
   // The witnesses of a triangle that changed: the `place`-th that was added, or kNone if it
   // vanished.
-  void take(std::uint32_t triangle, std::uint32_t place, Witnesses& witnesses) {
+  void take(std::uint32_t triangle, std::uint32_t place, const Witnesses& witnesses) {
     std::uint32_t w = witnesses.first[triangle];
-    witnesses.first[triangle] = kNone;
-    for (; w != kNone; w = witnesses.next[w]) taken_.push_back({w, place, 0});
+    if (w != kNone) left_.push_back(triangle);
+    for (; w != kNone; w = witnesses.next[w]) taken_.push_back({w, place, 0, 0});
   }
 
-  // Gives each of those taken to the triangle nearest to it; returns how far from it the farthest
-  // one is of those that count. Where there is no triangle: from the vertex, and nobody has them
-  // any more.
-  [[gnu::always_inline]] inline float settle(Witnesses& witnesses, const Vec3i& vertex) {
+  // Finds the triangle nearest to each of those taken; returns how far from it the farthest one is
+  // of those that count. Where there is no triangle: from the vertex.
+  [[gnu::always_inline]] inline float measure(const Witnesses& witnesses, const Vec3i& vertex) {
     if (taken_.empty()) return 0;
     for (Block& block : blocks_) block.prepare();
     fill_up();
-    count_.assign(triangles_.size(), 0);
     std::size_t looks = kMostLooks;
     float farthest = 0;
-    bool is_crowded = false;
     for (Taken& taken : taken_) {
       const std::uint32_t w = taken.witness;
       const Vec3i& place = witnesses.places[w];
@@ -119,18 +118,28 @@ class WitnessMover {
         looks -= blocks_.size();
       }
       taken.squared = best;
-      if (const float away = std::sqrt(best) + from; away > told) {
-        witnesses.told[w] = away;
-        farthest = std::max(farthest, away);
-      }
+      const float away = std::sqrt(best) + from;
+      taken.counts_as = away > told ? away : 0;
+      farthest = std::max(farthest, taken.counts_as);
       if (triangles_.empty()) continue;
-      at = std::min(at, triangles_.size() - 1);
-      taken.place = static_cast<std::uint32_t>(at);
-      witnesses.put(w, triangles_[at]);
-      is_crowded |= ++count_[at] > kMostWitnesses;
+      taken.place = static_cast<std::uint32_t>(std::min(at, triangles_.size() - 1));
+    }
+    return farthest;
+  }
+
+  // Gives each of those taken to the triangle that measure() found; where there is none, nobody has
+  // them any more.
+  void settle(Witnesses& witnesses) {
+    for (std::uint32_t triangle : left_) witnesses.first[triangle] = kNone;
+    count_.assign(triangles_.size(), 0);
+    bool is_crowded = false;
+    for (const Taken& taken : taken_) {
+      if (taken.counts_as > 0) witnesses.told[taken.witness] = taken.counts_as;
+      if (triangles_.empty()) continue;
+      witnesses.put(taken.witness, triangles_[taken.place]);
+      is_crowded |= ++count_[taken.place] > kMostWitnesses;
     }
     if (is_crowded) thin_out(witnesses);
-    return farthest;
   }
 
  private:
@@ -141,7 +150,7 @@ class WitnessMover {
 
   struct Taken {
     std::uint32_t witness, place;
-    float squared;
+    float squared, counts_as;  // how far away; 0: not farther than it ever was
   };
 
   // Eight triangles with a corner at the origin.
@@ -255,6 +264,7 @@ class WitnessMover {
 
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> triangles_, count_;  // around the vertex
+  std::vector<std::uint32_t> left_;               // by those taken
   std::vector<Taken> taken_;
 };
 

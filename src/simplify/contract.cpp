@@ -76,7 +76,6 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   const Index first = static_cast<Index>(corner_pool_.size());
   for (const RingTriangle& ring : ring_) corner_pool_.push_back(ring.corner);
   q.corners = {first, static_cast<Index>(corner_pool_.size()) - first};
-  const bool stays = positions_[kept] == target;
   positions_[kept] = target;
   for (const RingTriangle& ring : ring_) facing_[ring.triangle] = facing_of(ring.triangle);
   if (!work_->category_of_triangle.empty() && category_around_[kept] != category_around_[removed]) {
@@ -96,8 +95,8 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
     release(t);
   }
   if (!shading_.empty()) derive_where_better(kept, errors.now);
-  errors.now.surface =
-      std::max(errors.now.surface, distance_of_witnesses(target, stays ? ring_kept_ : 0));
+  errors.now.surface = std::max(errors.now.surface, farthest_witness_);
+  if (!work_->witnesses.places.empty()) witness_mover_.settle(work_->witnesses);
 
   contraction.error = errors.now;
   contraction.change_count = static_cast<Index>(result_.changes.size()) - contraction.first_change;
@@ -115,22 +114,24 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   for (const RingTriangle& ring : ring_) release(ring.triangle);
 }
 
-// Once the ring has changed: how far from it the input is, by witnesses of what changed, `first` of
-// the ring on, and of what vanished.
-CREASE_WIDE float PatchSimplifier::distance_of_witnesses(const Vec3d& target, std::size_t first) {
-  Witnesses& witnesses = work_->witnesses;
-  if (witnesses.places.empty()) return 0;
+// How far from the ring the input will be, by witnesses of what changes of it and of what vanishes.
+CREASE_WIDE void PatchSimplifier::measure_witnesses(Index a, Index b, const Vec3d& target) {
+  const Witnesses& witnesses = work_->witnesses;
+  farthest_witness_ = 0;
+  if (witnesses.places.empty()) return;
+  const std::size_t begin = target == positions_[a] ? ring_kept_ : 0;
+  const std::size_t end = target == positions_[b] ? ring_kept_ : ring_.size();
   witness_mover_.start();
   for (Index i = 0; i < ring_.size(); ++i) {
     const RingTriangle& ring = ring_[i];
     const Index t = global_triangle_[ring.triangle];
     witness_mover_.add(t, positions_[ring.next] - target, positions_[ring.previous] - target);
-    if (i >= first) witness_mover_.take(t, i, witnesses);
+    if (i >= begin && i < end) witness_mover_.take(t, i, witnesses);
   }
   for (const Vanishing& vanishing : vanishing_) {
     witness_mover_.take(global_triangle_[vanishing.triangle], kNone, witnesses);
   }
-  return witness_mover_.settle(witnesses, on_grid(target));
+  farthest_witness_ = witness_mover_.measure(witnesses, on_grid(target));
 }
 
 CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {

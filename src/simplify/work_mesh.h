@@ -6,6 +6,7 @@
 #include "crease/contraction.h"
 #include "crease/mesh.h"
 #include "hierarchy/witnesses.h"
+#include "simplify/far_area.h"
 
 #include <cstdint>
 #include <span>
@@ -79,6 +80,7 @@ struct PatchResult {
   std::vector<TriangleId> derived;
   std::vector<std::vector<float>> new_values;  // per layer
   std::size_t triangles_left = 0;
+  FarCounts far_counts;
 
   // Nothing, but the memory stays.
   void clear() {
@@ -87,6 +89,7 @@ struct PatchResult {
     derived.clear();
     for (std::vector<float>& values : new_values) values.clear();
     triangles_left = 0;
+    far_counts = {};
   }
 };
 

@@ -62,7 +62,9 @@ float settle(Case& c) {
   for (std::uint32_t i = 0; i < c.ring.size(); ++i) mover.add(i, c.ring[i][0], c.ring[i][1]);
   for (std::uint32_t i = 0; i < c.ring.size(); ++i) mover.take(i, i, c.witnesses);
   mover.take(std::uint32_t(c.ring.size()), kNone, c.witnesses);
-  return mover.settle(c.witnesses, {});
+  const float farthest = mover.measure(c.witnesses, {});
+  mover.settle(c.witnesses);
+  return farthest;
 }
 
 double nearest(const Case& c, std::uint32_t witness) {
