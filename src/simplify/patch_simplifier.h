@@ -186,6 +186,7 @@ class PatchSimplifier {
   double ring_cost(Index a, Index b, const Vec3d& target, double bound);
   double category_cost(Index a, Index b, const Vec3d& target);
   double vanishing_cost(Index a, Index b);
+  bool is_of_card(Index v) const;
   void gather(std::size_t first, RingBlock& block) const;
   void gather_shading(std::size_t first, RingBlock& block) const;
   double fold_cost(Index a, Index b, const Vec3d& target, double bound);

@@ -47,7 +47,7 @@ constexpr double kNoLimit = 1e300;
 // no triangle away but moves both: while they have triangles to give, it only tears them. A part of
 // fewer than kCard has none to give, a tile of a roof or a leaf, and may join at any time: else
 // half a roof of tiles would be single triangles.
-constexpr std::uint32_t kFewTriangles = 6, kCard = 4;
+constexpr std::uint32_t kFewTriangles = 6;
 
 // Positions are rounded to the grid: this much surface error is not error, grid units.
 constexpr double kGridNoise = 0.6;

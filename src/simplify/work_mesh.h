@@ -16,6 +16,9 @@ namespace crease::simplification {
 
 inline constexpr std::uint32_t kShared = 0xfffffffeu;  // owner of a vertex that patches share
 
+// A part of fewer triangles than this, a leaf, a tile of a roof, has none to give.
+inline constexpr std::uint32_t kCard = 4;
+
 struct WorkLayer {
   const AttributeLayer* source = nullptr;
   int dimension = 1;

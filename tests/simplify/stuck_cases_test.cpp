@@ -248,6 +248,23 @@ TEST_CASE("posts on rough ground stand as long as the ground is rough") {
   CHECK(reached.apart.distance.a_to_b.max < 0.5);
 }
 
+TEST_CASE("leaves vanish one by one before they join to something else") {
+  constexpr int kLeaves = 600;
+  MeshBuilder builder;
+  for (std::uint32_t leaf = 0; leaf < kLeaves; ++leaf) {
+    const auto vector = [&](std::uint32_t first) {
+      return Vec3d{hashed(9 * leaf + first), hashed(9 * leaf + first + 1),
+                   hashed(9 * leaf + first + 2)};
+    };
+    const Vec3d u = normalized(vector(3)), v = normalized(cross(u, vector(6)));
+    builder.grid(vector(0) * 10, u * 0.4, v * 0.4, 1, 1);
+  }
+  const Mesh mesh = builder.take();
+  const Reached reached = reduce(mesh, mesh.triangle_count() / 2);
+  CHECK(reached.apart.distance.b_to_a.max < 0.2);
+  CHECK(reached.apart.normal_deviation.mean < 25);
+}
+
 // A scan's: holes that are smaller than what the level shows close, where they once swelled.
 TEST_CASE("a sphere's pinholes close and its window stays") {
   Mesh sphere = smooth_sphere(60, 60);
