@@ -22,8 +22,8 @@ struct SimplifyOptions {
   // How much a wrong normal costs beside a wrong distance: a normal that is off by one radian over
   // an area costs as much as a distance of normal_weight mean edge lengths there.
   double normal_weight = 0.97;
-  // LevelError::surface is then nearly a bound: the input's vertices are followed from triangle to
-  // triangle. Else it is an estimate, often several times too small, and a third of the time less.
+  // The input's vertices are followed: LevelError::surface is nearly a bound, thin parts stay long.
+  // Else it is an estimate, often several times too small, and it takes a third of the time less.
   bool measures_errors = true;
   bool record_bands = false;  // ContractionSequence::bands, which a file needs: 14 bytes a triangle
   ProgressCallback progress;

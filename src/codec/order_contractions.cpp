@@ -220,7 +220,9 @@ class CostEstimator {
     for (const std::uint32_t t : vanished) {
       witness_mover_.take(t, kNone, witnesses_.here());
     }
-    return witness_mover_.settle(witnesses_.here(), parent, known);
+    const float farthest = witness_mover_.measure(witnesses_.here(), parent, known);
+    witness_mover_.settle(witnesses_.here());
+    return farthest;
   }
 
   // The root of the mean.

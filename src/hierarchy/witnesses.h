@@ -2,11 +2,12 @@
 // about nearest to it, so that whoever contracts a vertex knows how far the surface has gone from
 // them.
 //
-//   Witnesses witnesses = witnesses_of(mesh, positions);  // on the grid
-//   mover.start();                                        // after a contraction to the place v
+//   Witnesses witnesses = witnesses_of(mesh, positions);   // on the grid
+//   mover.start();                                         // of a contraction to the place v
 //   for (t : triangles around v) mover.add(t, next - v, previous - v);
 //   for (t : those, and those that vanished) mover.take(t, i, witnesses);
-//   const float far = mover.settle(witnesses, v, known);  // what is said of v without them
+//   const float far = mover.measure(witnesses, v, known);  // changes nothing yet
+//   mover.settle(witnesses);
 //
 // Distances are measured to the triangles around the vertex alone, so they are no less than those
 // to the whole surface; and at some points only, so that the rest can be farther away than they
@@ -82,6 +83,7 @@ class WitnessMover {
   void start() {
     triangles_.clear();
     taken_.clear();
+    left_.clear();
   }
 
   // One of the triangles around the vertex, which stands at the origin.
@@ -104,18 +106,18 @@ class WitnessMover {
 
   // The witnesses of a triangle that changed: the `place`-th that was added, or kNone if it
   // vanished. In the order of places, which is quicker.
-  void take(std::uint32_t triangle, std::uint32_t place, Witnesses& witnesses) {
+  void take(std::uint32_t triangle, std::uint32_t place, const Witnesses& witnesses) {
     std::uint32_t w = witnesses.first[triangle];
-    witnesses.first[triangle] = kNone;
-    for (; w != kNone; w = witnesses.all[w].next) taken_.push_back({w, place});
+    if (w != kNone) left_.push_back(triangle);
+    for (; w != kNone; w = witnesses.all[w].next) taken_.push_back({w, place, 0, 0});
   }
 
-  // Gives each of those taken to the triangle nearest to it; but it stays where it is if it is no
-  // farther from there than `known`, which is said of the vertex anyway, or too near to count.
-  // Returns how far from the surface the farthest one is of those that count. Where there is no
-  // triangle: from the vertex, and nobody has them any more.
-  [[gnu::always_inline]] inline float settle(Witnesses& witnesses, const Vec3i& vertex,
-                                             float known) {
+  // Finds the triangle nearest to each of those taken; but it stays where it is if it is no farther
+  // from there than `known`, which is said of the vertex anyway, or too near to count. Returns how
+  // far from the surface the farthest one is of those that count. Where there is no triangle: from
+  // the vertex.
+  [[gnu::always_inline]] inline float measure(const Witnesses& witnesses, const Vec3i& vertex,
+                                              float known) {
     if (taken_.empty()) return 0;
     const std::size_t block_count = (triangles_.size() + kLanes - 1) / kLanes;
     for (std::size_t b = 0; b < block_count; ++b) blocks_[b].prepare();
@@ -152,15 +154,31 @@ class WitnessMover {
       }
       group.tell(known, farthest);
       for (std::size_t i = 0; i < taken.size(); ++i) {
-        Witness& w = witnesses.all[taken[i].witness];
-        w.told = group.told[i];
-        w.squared = group.squared[i];
+        taken[i].told = group.told[i];
+        taken[i].squared = group.squared[i];
       }
     }
-    if (!triangles_.empty()) put_back(witnesses);
     float result = 0;
     for (std::size_t i = 0; i < kLanes; ++i) result = std::max(result, farthest[i]);
     return result;
+  }
+
+  // Gives each of those taken to the triangle that measure() found; where there is none, nobody has
+  // them any more.
+  void settle(Witnesses& witnesses) {
+    for (const std::uint32_t t : left_) witnesses.first[t] = kNone;
+    count_.assign(triangles_.size(), 0);
+    crowded_.clear();
+    for (const Taken& taken : taken_) {
+      Witness& w = witnesses.all[taken.witness];
+      w.told = taken.told;
+      w.squared = taken.squared;
+      if (triangles_.empty()) continue;
+      const std::size_t at = std::min<std::size_t>(taken.place, triangles_.size() - 1);
+      witnesses.put(taken.witness, triangles_[at]);
+      if (++count_[at] == kMostWitnesses + 1) crowded_.push_back(triangles_[at]);
+    }
+    for (const std::uint32_t t : crowded_) thin_out(t, witnesses);
   }
 
  private:
@@ -172,6 +190,7 @@ class WitnessMover {
 
   struct Taken {
     std::uint32_t witness, place;
+    float told, squared;  // as the witness will have them
   };
 
   // Results of eight floats go where they are told, since not all callers know such registers.
@@ -330,17 +349,6 @@ class WitnessMover {
     return end;
   }
 
-  void put_back(Witnesses& witnesses) {
-    count_.assign(triangles_.size(), 0);
-    crowded_.clear();
-    for (const Taken& taken : taken_) {
-      const std::size_t at = std::min<std::size_t>(taken.place, triangles_.size() - 1);
-      witnesses.put(taken.witness, triangles_[at]);
-      if (++count_[at] == kMostWitnesses + 1) crowded_.push_back(triangles_[at]);
-    }
-    for (const std::uint32_t t : crowded_) thin_out(t, witnesses);
-  }
-
   void thin_out(std::uint32_t triangle, Witnesses& witnesses) {
     ranked_.clear();
     for (std::uint32_t w = witnesses.first[triangle]; w != kNone; w = witnesses.all[w].next) {
@@ -384,7 +392,8 @@ class WitnessMover {
   std::vector<Block> blocks_;             // those that were ever needed
   std::vector<std::uint32_t> triangles_;  // around the vertex
   std::vector<Taken> taken_;
-  std::vector<std::uint32_t> count_, crowded_;  // of those given back
+  std::vector<std::uint32_t> left_;             // by those taken
+  std::vector<std::uint32_t> count_, crowded_;  // scratch of settle()
   std::vector<std::uint64_t> ranked_;           // scratch of thin_out()
 };
 

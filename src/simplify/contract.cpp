@@ -36,34 +36,20 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   contraction.first_change = static_cast<Index>(result_.changes.size());
   contraction.first_derived = static_cast<Index>(result_.derived.size());
 
+  if (kept != a) find_ring(kept, removed);  // else make_legal() has
+
   // Errors: the bands before, and this band's quadrics on top.
   Errors& errors = errors_[kept];
   errors.base = larger(errors.base, errors_[removed].base);
   LevelError error = errors.base;
+  error.surface = surface_error(kept, removed, target);
   surface_[kept].add(surface_[removed]);
   if (!turn_.empty()) turn_[kept].add(turn_[removed]);
-  if (surface_[kept].weight > 0) {
-    error.surface =
-        raised(error.surface, std::sqrt(surface_[kept].at(target) / surface_[kept].weight));
-  }
   const Index line_p = line_of_vertex_[removed], line_q = line_of_vertex_[kept];
   if (line_p != kNone && line_q != kNone) line_[line_q].add(line_[line_p]);
   if (line_q == kNone) line_of_vertex_[kept] = line_p;
   if (const Index line = line_of_vertex_[kept]; line != kNone && line_[line].weight > 0) {
     error.line = raised(error.line, std::sqrt(line_[line].at(target) / line_[line].weight));
-  }
-
-  if (kept != a) find_ring(kept, removed);  // else make_legal() has
-  if (ring_.empty()) {
-    // A part disappears: its planes fit what is left of it, but what it stood for is gone.
-    double longest2 = 0;
-    for (const Vanishing& vanishing : vanishing_) {
-      const Index* v = &vertex_of_corner_[4 * vanishing.triangle];
-      for (Index c = 0; c < 3; ++c) {
-        longest2 = std::max(longest2, squared(positions_[v[c]] - positions_[v[(c + 1) % 3]]));
-      }
-    }
-    error.surface = raised(error.surface, std::sqrt(longest2));
   }
 
   // Wedges are joined while the vanishing triangles still stand.
@@ -76,7 +62,6 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   const Index first = static_cast<Index>(corner_pool_.size());
   for (const RingTriangle& ring : ring_) corner_pool_.push_back(ring.corner);
   q.corners = {first, static_cast<Index>(corner_pool_.size()) - first};
-  const bool stays = positions_[kept] == target;
   positions_[kept] = target;
   for (const RingTriangle& ring : ring_) facing_[ring.triangle] = facing_of(ring.triangle);
   if (!work_->category_of_triangle.empty() && category_around_[kept] != category_around_[removed]) {
@@ -96,9 +81,8 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
     release(t);
   }
   if (!shading_.empty()) derive_where_better(kept, errors.now);
-  errors.now.surface =
-      std::max(errors.now.surface,
-               distance_of_witnesses(target, stays ? ring_kept_ : 0, errors.now.surface));
+  errors.now.surface = std::max(errors.now.surface, farthest_witness_);
+  witness_mover_.settle(work_->witnesses);
 
   contraction.error = errors.now;
   contraction.change_count = static_cast<Index>(result_.changes.size()) - contraction.first_change;
@@ -116,23 +100,48 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   for (const RingTriangle& ring : ring_) release(ring.triangle);
 }
 
-// Once the ring has changed: how far from it the input is, by witnesses of what changed, `first` of
-// the ring on, and of what vanished.
-CREASE_WIDE float PatchSimplifier::distance_of_witnesses(const Vec3d& target, std::size_t first,
-                                                         float known) {
-  Witnesses& witnesses = work_->witnesses;
-  if (witnesses.all.empty()) return 0;
+// Of their contraction, of which find_ring() knows the triangles, without what witnesses tell.
+CREASE_WIDE float PatchSimplifier::surface_error(Index a, Index b, const Vec3d& target) const {
+  float error = std::max(errors_[a].base.surface, errors_[b].base.surface);
+  Quadric surface = surface_[a];
+  surface.add(surface_[b]);
+  if (surface.weight > 0) error = raised(error, std::sqrt(surface.at(target) / surface.weight));
+  if (!ring_.empty()) return error;
+  // A part disappears: its planes fit what is left of it, but what it stood for is gone.
+  double longest2 = 0;
+  for (const Vanishing& vanishing : vanishing_) {
+    const Index* v = &vertex_of_corner_[4 * vanishing.triangle];
+    for (Index c = 0; c < 3; ++c) {
+      longest2 = std::max(longest2, squared(positions_[v[c]] - positions_[v[(c + 1) % 3]]));
+    }
+  }
+  return raised(error, std::sqrt(longest2));
+}
+
+// How far from the ring the input will be, by witnesses of what changes of it and of what vanishes.
+// A witness's distance is known if it changes nothing: neither the error, which is as large without
+// it, nor the cost.
+CREASE_WIDE void PatchSimplifier::measure_witnesses(Index a, Index b, const Placed& placed) {
+  const Vec3d& target = placed.position;
+  const Witnesses& witnesses = work_->witnesses;
+  farthest_witness_ = 0;
   witness_mover_.start();
+  if (witnesses.all.empty()) return;
+  const std::size_t begin = target == positions_[a] ? ring_kept_ : 0;
+  const std::size_t end = target == positions_[b] ? ring_kept_ : ring_.size();
   for (Index i = 0; i < ring_.size(); ++i) {
     const RingTriangle& ring = ring_[i];
     const Index t = global_triangle_[ring.triangle];
     witness_mover_.add(t, positions_[ring.next] - target, positions_[ring.previous] - target);
-    if (i >= first) witness_mover_.take(t, i, witnesses);
+    if (i >= begin && i < end) witness_mover_.take(t, i, witnesses);
   }
   for (const Vanishing& vanishing : vanishing_) {
     witness_mover_.take(global_triangle_[vanishing.triangle], kNone, witnesses);
   }
-  return witness_mover_.settle(witnesses, on_grid(target), known);
+  const float error =
+      std::max({errors_[a].now.surface, errors_[b].now.surface, surface_error(a, b, target)});
+  const double known = std::min(double(error), std::sqrt(placed.cost / steering_.far_area));
+  farthest_witness_ = witness_mover_.measure(witnesses, on_grid(target), static_cast<float>(known));
 }
 
 CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {

@@ -34,6 +34,10 @@ constexpr double kCategoryShare = 1;
 // What the area of a part that disappears counts: quadrics count it at each of its three corners.
 constexpr double kPartWeight = 3;
 
+// To join a card to something takes no triangle away: what does will cost as well. So leaves vanish
+// one by one as long as there are others beside them.
+constexpr double kJoinWeight = 6;
+
 using Lane = long long;
 constexpr Lanes kLane = {0, 1, 2, 3};
 
@@ -240,6 +244,12 @@ double PatchSimplifier::ring_cost(Index a, Index b, const Vec3d& target, double 
   return cost <= bound ? cost + category_cost(a, b, target) : cost;
 }
 
+// At the pass's start.
+bool PatchSimplifier::is_of_card(Index v) const {
+  if (work_->part_count < 2) return false;
+  return work_->triangles_of_part[work_->part_of_vertex[vertices_[v].global]] < kCard;
+}
+
 // The place with the triangles around it included: where the optimum would fold one, an end of the
 // pair or its middle may not. A cost above `bound` is a lower one.
 CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair, double bound) {
@@ -269,6 +279,7 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair,
   }
   if (best.cost <= bound) {
     best.cost += vanishing_cost(a, b);
+    if (vanishing_.empty() && (is_of_card(a) || is_of_card(b))) best.cost *= kJoinWeight;
     best.lasts = !ring_.empty();
   }
   return best;

@@ -36,6 +36,7 @@ struct Steering {
   // 17 for the other.
   double leaves_ends = 0.6, leaves_pair = 0.3;
   double normal_scale = 0;  // what a normal off by one radian is worth, grid units
+  double far_area = 0;      // see far_area.h
   bool keep_one_triangle = true;
 };
 
@@ -185,6 +186,7 @@ class PatchSimplifier {
   double ring_cost(Index a, Index b, const Vec3d& target, double bound);
   double category_cost(Index a, Index b, const Vec3d& target);
   double vanishing_cost(Index a, Index b);
+  bool is_of_card(Index v) const;
   void gather(std::size_t first, RingBlock& block) const;
   void gather_shading(std::size_t first, RingBlock& block) const;
   double fold_cost(Index a, Index b, const Vec3d& target, double bound);
@@ -210,6 +212,8 @@ class PatchSimplifier {
   }
   Index survivor(Index v);
   bool claim(Index pair, Index a, Index b);
+  bool is_next(const Entry& entry, double cost) const;
+  void contract_or_hold(const Entry& entry, Index a, Index b, double cost, Placed placed);
   void hold(const Entry& entry, double cost, const Placed& placed);
   void release(Index triangle);
 
@@ -221,7 +225,9 @@ class PatchSimplifier {
   void combine_quadrics(std::size_t layer, std::span<const Index> members, Wedge& result);
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
                      const Vec3d& target, Wedge& result);
-  float distance_of_witnesses(const Vec3d& target, std::size_t first, float known);
+  float surface_error(Index a, Index b, const Vec3d& target) const;
+  // Into farthest_witness_; contract() settles them.
+  void measure_witnesses(Index a, Index b, const Placed& placed);
 
   // Of a place on the grid, less center_.
   static Vec3i whole(const Vec3d& p) {
@@ -357,6 +363,7 @@ class PatchSimplifier {
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
   WitnessMover witness_mover_;
+  float farthest_witness_ = 0;
   std::vector<Index> mark_;
   Index mark_now_ = 0;
 };

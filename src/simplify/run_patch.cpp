@@ -18,6 +18,9 @@ constexpr std::uint32_t kTries = 2;
 // need not be known.
 constexpr double kDear = 8;
 
+// From this share of the limit on a contraction is near it.
+constexpr double kNearLimit = 0.25;
+
 }  // namespace
 
 std::vector<double> PatchSimplifier::initial_costs() {
@@ -65,6 +68,32 @@ PatchSimplifier::Index PatchSimplifier::survivor(Index v) {
     v = into;
   }
   return v;
+}
+
+// Whether a cost is the least that waits, or no more than its pair was taken for.
+bool PatchSimplifier::is_next(const Entry& entry, double cost) const {
+  const float rounded = static_cast<float>(cost);
+  return rounded <= entry.cost() || rounded <= next_cost();
+}
+
+// What make_legal() found, if it is next also when the witness that is farthest away has its say.
+void PatchSimplifier::contract_or_hold(const Entry& entry, Index a, Index b, double cost,
+                                       Placed placed) {
+  const auto is_due = [&] {
+    return placed.cost <= steering_.cost_limit && is_next(entry, placed.cost);
+  };
+  if (!is_due()) return hold(entry, cost, placed);
+  measure_witnesses(a, b, placed);
+  const double far = double(farthest_witness_), least = steering_.far_area * far * far;
+  if (placed.cost > kNearLimit * steering_.cost_limit) {
+    result_.far_counts.add(least / placed.cost);
+  }
+  if (least > placed.cost) {
+    placed.cost = least;
+    blamed_ = kNone;
+    if (!is_due()) return hold(entry, cost, placed);
+  }
+  contract(a, b, placed.position, placed.cost);
 }
 
 void PatchSimplifier::hold(const Entry& entry, double cost, const Placed& placed) {
@@ -170,10 +199,11 @@ PatchResult PatchSimplifier::run() {
     if (waited != nullptr && waited->lasts &&
         std::max(changed_around_[a], changed_around_[b]) <= waited->looked_at) {
       find_ring(a, b);
-      contract(a, b, to_double(waited->position), waited->cost_with_ring);
+      blamed_ = kNone;
+      const double known = waited->cost_with_ring;
+      contract_or_hold(entry, a, b, known, {known, known, to_double(waited->position), true});
       continue;
     }
-    const float next = next_cost();
 
     if (std::max(vertices_[a].changed_at, vertices_[b].changed_at) >= std::max(pair.known_at, 1u)) {
       keep_placed(place(a, b, steering_.cost_limit), pair);
@@ -181,19 +211,12 @@ PatchResult PatchSimplifier::run() {
     pair.known_at = static_cast<Index>(result_.contractions.size()) + 1;
     const double cost = pair.cost;
     if (!(cost <= steering_.cost_limit)) continue;
-    if (static_cast<float>(cost) > entry.cost() && static_cast<float>(cost) > next) {
+    if (!is_next(entry, cost)) {
       heap_.push({static_cast<float>(cost), entry.pair(), kNone, entry.tries});
       continue;
     }
-    const double bound =
-        std::min(steering_.cost_limit, kDear * double(std::max(next, static_cast<float>(cost))));
-    const Placed placed = make_legal(pair, bound);
-    if (!(placed.cost <= steering_.cost_limit) || (static_cast<float>(placed.cost) > entry.cost() &&
-                                                   static_cast<float>(placed.cost) > next)) {
-      hold(entry, cost, placed);
-      continue;
-    }
-    contract(a, b, placed.position, placed.cost);
+    const double dear = kDear * double(std::max(next_cost(), static_cast<float>(cost)));
+    contract_or_hold(entry, a, b, cost, make_legal(pair, std::min(steering_.cost_limit, dear)));
   }
   write_back();
   result_.triangles_left = live_triangles_;

@@ -5,6 +5,7 @@
 #include "base/assert.h"
 #include "parallel/parallel.h"
 #include "parallel/shared_progress.h"
+#include "simplify/far_area.h"
 #include "simplify/partition.h"
 #include "simplify/pass_limits.h"
 #include "simplify/patch_simplifier.h"
@@ -46,7 +47,7 @@ constexpr double kNoLimit = 1e300;
 // no triangle away but moves both: while they have triangles to give, it only tears them. A part of
 // fewer than kCard has none to give, a tile of a roof or a leaf, and may join at any time: else
 // half a roof of tiles would be single triangles.
-constexpr std::uint32_t kFewTriangles = 6, kCard = 4;
+constexpr std::uint32_t kFewTriangles = 6;
 
 // Positions are rounded to the grid: this much surface error is not error, grid units.
 constexpr double kGridNoise = 0.6;
@@ -197,6 +198,7 @@ class Simplifier {
       steering.virtual_distance = 2 * step;
       steering.joins_below = last || parts_join ? kNone : kCard;
       steering.turn_distance = 4 * step;
+      steering.far_area = far_area_.share() * triangle_area;
       if (!run_pass(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");
       }
@@ -291,6 +293,9 @@ class Simplifier {
     });
     patch_simplifiers_.emplace();  // their memory is for what follows
     if (progress.stopped()) return false;
+    FarCounts far_counts;
+    for (const PatchResult& result : results_) far_counts.add(result.far_counts);
+    far_area_.learn(far_counts);
     number_new_values();
     append_contractions();
     std::erase_if(work_.live,
@@ -425,6 +430,7 @@ class Simplifier {
   std::vector<PatchResult> results_;
   std::vector<std::uint32_t> first_new_;  // patch by patch, layer by layer
   std::optional<PerThread<PatchSimplifier>> patch_simplifiers_{std::in_place};
+  FarArea far_area_;
   int stalled_ = 0;
   std::uint32_t contractions_in_band_ = 0;
   float worst_surface_ = 0;

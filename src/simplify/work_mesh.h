@@ -6,6 +6,7 @@
 #include "crease/contraction.h"
 #include "crease/mesh.h"
 #include "hierarchy/witnesses.h"
+#include "simplify/far_area.h"
 
 #include <cstdint>
 #include <span>
@@ -14,6 +15,9 @@
 namespace crease::simplification {
 
 inline constexpr std::uint32_t kShared = 0xfffffffeu;  // owner of a vertex that patches share
+
+// A part of fewer triangles than this, a leaf, a tile of a roof, has none to give.
+inline constexpr std::uint32_t kCard = 4;
 
 struct WorkLayer {
   const AttributeLayer* source = nullptr;
@@ -79,6 +83,7 @@ struct PatchResult {
   std::vector<TriangleId> derived;
   std::vector<std::vector<float>> new_values;  // per layer
   std::size_t triangles_left = 0;
+  FarCounts far_counts;
 
   // Nothing, but the memory stays.
   void clear() {
@@ -87,6 +92,7 @@ struct PatchResult {
     derived.clear();
     for (std::vector<float>& values : new_values) values.clear();
     triangles_left = 0;
+    far_counts = {};
   }
 };
 

@@ -111,9 +111,9 @@ double most_understated(const Mesh& full, const ContractionSequence& sequence, d
   return most;
 }
 
-// Witnesses are points, and a tenth farther away does not count. Of quadrics alone, which are
-// means, it was up to 4.1, decoded or not.
-constexpr double kUnderstated = 1.75, kUnderstatedDecoded = 1.3;
+// Witnesses are points, all of them of the full mesh, and a tenth farther away does not count. Of
+// quadrics alone, which are means, it was up to 4.1, decoded or not.
+constexpr double kUnderstated = 1.8, kUnderstatedDecoded = 1.3;
 
 void check_stated(const EncodedCase& c) {
   CHECK(most_understated(c.mesh, c.sequence, 1) <= kUnderstated);

@@ -54,13 +54,19 @@ Case random_case(std::mt19937& random, int count, int witness_count) {
   return c;
 }
 
-float settle(Case& c, float known = 0) {
-  WitnessMover mover;
+float measure(const Case& c, float known, WitnessMover& mover) {
   mover.start();
   for (std::uint32_t i = 0; i < c.ring.size(); ++i) mover.add(i, c.ring[i][0], c.ring[i][1]);
   for (std::uint32_t i = 0; i < c.ring.size(); ++i) mover.take(i, i, c.witnesses);
   mover.take(std::uint32_t(c.ring.size()), kNone, c.witnesses);
-  return mover.settle(c.witnesses, {}, known);
+  return mover.measure(c.witnesses, {}, known);
+}
+
+float settle(Case& c, float known = 0) {
+  WitnessMover mover;
+  const float farthest = measure(c, known, mover);
+  mover.settle(c.witnesses);
+  return farthest;
 }
 
 double nearest(const Case& c, std::uint32_t witness) {
@@ -141,6 +147,21 @@ TEST_CASE("a witness stays where it is while it is no farther away than is known
     CHECK(settle(c, known) == (stays ? 10 : doctest::Approx(1)));
     CHECK(c.witnesses.first[stays ? 0 : 1] == 0);
     CHECK(c.witnesses.all[0].told == (stays ? 10 : doctest::Approx(1)));
+  }
+}
+
+TEST_CASE("what was measured and not settled is forgotten") {
+  std::mt19937 random(6);
+  Case c = random_case(random, 9, 30), d = c;
+  WitnessMover mover;
+  measure(random_case(random, 20, 30), 0, mover);
+  const float farthest = measure(c, 0, mover);
+  mover.settle(c.witnesses);
+  CHECK(farthest == settle(d));
+  CHECK(c.witnesses.first == d.witnesses.first);
+  for (std::uint32_t w = 0; w < 30; ++w) {
+    CHECK(c.witnesses.all[w].next == d.witnesses.all[w].next);
+    CHECK(c.witnesses.all[w].told == d.witnesses.all[w].told);
   }
 }
 
