@@ -173,7 +173,10 @@ class BlockCoder {
   Miss expected_miss(std::uint32_t v, const Surroundings& around) const;
   ChildRing child_ring(bool second, const Vec3i& s, const Vec3i& sibling) const;
   Vec3i code_position(std::uint32_t v, bool second, const Vec3i& position,
-                      const Surroundings& around, Leaving leaving, const ChildRing& ring);
+                      const Surroundings& around, Leaving leaving, const ChildRing& ring,
+                      const Vec3i& sibling);
+  void see_neighbours(std::uint32_t v, const Surroundings& around, const Vec3i& sibling,
+                      SeenPlace& seen) const;
   void note_miss(std::uint32_t v, const PlaceMixture& mixture, const Step& place);
   bool code_between(std::uint32_t t, std::uint32_t u, Vec3i& at_t, Vec3i& at_u,
                     const Surroundings& around);
@@ -281,6 +284,7 @@ class BlockCoder {
   std::vector<RingVertex> ranked_;
   std::vector<LabelBox> boxes_;
 
+  static constexpr std::size_t kMostSeen = 16;  // neighbours whose coordinates a child may have
   static constexpr std::size_t kMostTried = 6, kFarthestBeside = 17;
   static constexpr std::size_t kGenerations = 6, kSizes = 12, kValences = 12;
   MagnitudeModel root_count_, root_triangle_count_, root_block_, root_vertex_;
@@ -313,6 +317,8 @@ class BlockCoder {
   std::array<PlaceModel, 5> place_models_{
       PlaceModel(Leaving::One), PlaceModel(Leaving::SecondOfBoth), PlaceModel(Leaving::FirstOfBoth),
       PlaceModel(Leaving::SecondBetween), PlaceModel(Leaving::FirstBetween)};
+  SeenModels seen_models_;
+  SeenGate seen_gate_;
   AdaptiveBit is_between_{0.75, 10};
   EighthsModel eighths_;
   StepAxisModel step_axes_;

@@ -26,13 +26,13 @@ void BlockCoder<Coder, Guide>::code_positions(std::uint32_t t, std::uint32_t u, 
       at_u = s;
     } else {
       at_u = code_position(u, true, at_u, around, both ? Leaving::SecondOfBoth : Leaving::One,
-                           child_ring(true, s, s));
+                           child_ring(true, s, s), s);
     }
     if (t_stays) {
       at_t = s;
     } else {
       at_t = code_position(t, false, at_t, around, both ? Leaving::FirstOfBoth : Leaving::One,
-                           child_ring(false, s, at_u));
+                           child_ring(false, s, at_u), both ? at_u : s);
     }
   }
   mesh_.positions[u] = at_u;
@@ -104,15 +104,31 @@ ChildRing BlockCoder<Coder, Guide>::child_ring(bool second, const Vec3i& s,
   return result;
 }
 
+// Where the parent was, where the sibling is if that is known to be elsewhere, and the neighbours.
+template <class Coder, class Guide>
+void BlockCoder<Coder, Guide>::see_neighbours(std::uint32_t v, const Surroundings& around,
+                                              const Vec3i& sibling, SeenPlace& seen) const {
+  seen.add({0, 0, 0});
+  if (sibling != around.parent) seen.add(from_parent(around, sibling));
+  for (const std::uint32_t t : around_[v].first(std::min(around_[v].size(), kMostSeen))) {
+    const Corners& corners = mesh_.triangles[t];
+    const std::uint32_t w = corners[kCornerAfter[corner_of(corners, v)]];
+    seen.add(from_parent(around, mesh_.positions[w]));
+  }
+}
+
 template <class Coder, class Guide>
 Vec3i BlockCoder<Coder, Guide>::code_position(std::uint32_t v, bool second, const Vec3i& position,
                                               const Surroundings& around, Leaving leaving,
-                                              const ChildRing& ring) {
+                                              const ChildRing& ring, const Vec3i& sibling) {
   PlaceModel& model = place_models_[std::size_t(leaving)];
   const std::size_t triangles = around_[v].size();
   const Sizes expected = sizes(around, expected_miss(v, around));
   PlaceMixture mixture = model.mixture(around, second, triangles, ring, expected);
-  const Step place = code_place(coder_, mixture, from_parent(around, position));
+  SeenPlace seen(seen_models_, seen_gate_, std::size_t(leaving));
+  if (seen.looks()) see_neighbours(v, around, sibling, seen);
+  const Step place = code_place(coder_, mixture, from_parent(around, position), seen);
+  seen.finish();
   model.learn(mixture, triangles, expected);
   note_miss(v, mixture, place);
   return beside_parent(around, place);
@@ -149,7 +165,7 @@ bool BlockCoder<Coder, Guide>::code_between(std::uint32_t t, std::uint32_t u, Ve
   between.axis = code_step_axis(coder_, step_axes_, {steep(0), steep(1), steep(2)}, between.axis);
   ChildRing ring = child_ring(true, around.parent, around.parent);
   ring.share = static_cast<float>(between.eighths) / 8;
-  at_u = code_position(u, true, at_u, around, Leaving::SecondBetween, ring);
+  at_u = code_position(u, true, at_u, around, Leaving::SecondBetween, ring, around.parent);
   at_t = code_other_end(t, at_t, at_u, around, between);
   return true;
 }

@@ -11,8 +11,8 @@
 namespace crease::format {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'C', 'R', 'E', 'A', 'S', 'E', '\n'};
-// Version 3 is version 2 with images; a file without any is version 2.
-inline constexpr std::uint16_t kContainerVersion = 2, kVersionWithImages = 3;
+// Version 5 is version 4 with images; a file without any is version 4.
+inline constexpr std::uint16_t kContainerVersion = 4, kVersionWithImages = 5;
 // Of AttributeCoding::Lattice. Values of the code that the enumeration has are coded as no program
 // reads any more.
 inline constexpr std::uint8_t kLatticeCode = 4;

@@ -91,7 +91,7 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head, boo
   if (has_images) {
     head.images.bytes = in.u64();
     if (head.image_list.range.bytes == 0 || head.images.bytes == 0) {
-      return bad_head("version 3 without images");
+      return bad_head("version 5 without images");
     }
   }
   if (!place_last_sections(head)) return bad_head("images that end after the file");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "codec/axis_mixture.h"
+#include "codec/seen_coordinates.h"
 #include "codec/spot.h"
 
 #include <algorithm>
@@ -55,7 +56,7 @@ inline EightFloats excess(const EightFloats& z2, float least, const EightFloats&
 // Leaves in `mixture.weight` how likely each component was right.
 template <class Coder>
 std::array<std::int32_t, 3> code_place(Coder& coder, PlaceMixture& mixture,
-                                       const std::array<std::int32_t, 3>& place) {
+                                       const std::array<std::int32_t, 3>& place, SeenPlace& seen) {
   constexpr float kLeast = 0.2f;  // of scales, beside which the grid is coarse
   const auto& [n0, n1, n2] = mixture.direction;
   const float across = std::sqrt(std::max(1 - n0 * n0, 0.0f));
@@ -65,8 +66,14 @@ std::array<std::int32_t, 3> code_place(Coder& coder, PlaceMixture& mixture,
   const EightFloats tangent(mixture.tangent);
   EightFloats scale = tangent * across + kLeast, inverse = 1.0f / scale;
   inverse.store(axis.inverse_scale);
+  const auto code_along = [&](std::size_t i, std::int32_t less, std::int32_t value) {
+    const std::int32_t start = rounded(axis.center[0]);
+    return seen.code(coder, i, less, axis, start, value, [&](std::int32_t other) {
+      return code_axis(coder, axis, start, scale.low[0], other);
+    });
+  };
   std::array<std::int32_t, 3> result;
-  result[0] = code_axis(coder, axis, rounded(axis.center[0]), scale.low[0], place[0]);
+  result[0] = code_along(0, 0, place[0]);
 
   // A step along the first axis leads some way along the second; one that is long for a component
   // makes it expect more there as well.
@@ -79,7 +86,7 @@ std::array<std::int32_t, 3> code_place(Coder& coder, PlaceMixture& mixture,
   inverse = 1.0f / scale;
   inverse.store(axis.inverse_scale);
   (EightFloats(mixture.center[1]) - along * off).store(axis.center);
-  result[1] = code_axis(coder, axis, rounded(axis.center[0]), scale.low[0], place[1]);
+  result[1] = code_along(1, 0, place[1]);
 
   const float place_1 = static_cast<float>(result[1]);
   z = (place_1 - EightFloats(axis.center)) * inverse;
@@ -92,7 +99,7 @@ std::array<std::int32_t, 3> code_place(Coder& coder, PlaceMixture& mixture,
       static_cast<std::uint32_t>(rounded(rise(mixture.direction, place_0, place_1)));
   const std::int32_t above =
       static_cast<std::int32_t>(static_cast<std::uint32_t>(place[2]) - plane);
-  const std::int32_t beside = code_axis(coder, axis, rounded(axis.center[0]), scale.low[0], above);
+  const std::int32_t beside = code_along(2, static_cast<std::int32_t>(plane), above);
   const float beside_as_float = static_cast<float>(beside);
   z = (beside_as_float - EightFloats(axis.center)) * inverse;
   excess(z * z, kLeast, inverse).store(mixture.normal_excess);

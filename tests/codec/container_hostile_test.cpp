@@ -275,11 +275,11 @@ TEST_CASE("what a file says of its images is looked at behind the checksums") {
     const char* message;
   };
   const Lie lies[] = {
-      {8, 2, "head"},  // then its layers begin elsewhere
+      {8, 4, "head"},  // then its layers begin elsewhere
       {144, 0xffffffff, "head: names or tables that end after the file"},
       {144, 0, "head"},
       {160, 0xffffffff, "head: images that end after the file"},
-      {160, 0, "head: version 3 without images"},
+      {160, 0, "head: version 5 without images"},
       {160, 40, "behind"},
       {list, 0xffffffff, "list of images: their number is not as many as there are"},
       {list, 0, "list of images: their number is not as many as there are"},
@@ -332,8 +332,8 @@ TEST_CASE("what the container promises is looked at behind the checksums") {
     const char* message;
   };
   const Lie lies[] = {
-      {8, 0x00010002, "version or flags at byte 8"},
-      {8, 3, "head"},         // whose layers begin later
+      {8, 0x00010004, "version or flags at byte 8"},
+      {8, 5, "head"},         // whose layers begin later
       {80, 0, "head: grid"},  // the step's lower half; its upper one follows
       {88, 32, "head: grid: more than 31 bits"},
       {89, 0x03000003, "head: unknown axis for up"},  // and three parts

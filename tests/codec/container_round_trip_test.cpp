@@ -88,8 +88,8 @@ TEST_CASE("images come back, behind everything else, and are read when they are 
   const std::vector<std::byte> without = bytes_of(file);
   file.content.images = some_images();
   const std::vector<std::byte> bytes = bytes_of(file);
-  CHECK(without[8] == std::byte{2});
-  CHECK(bytes[8] == std::byte{3});
+  CHECK(without[8] == std::byte{4});
+  CHECK(bytes[8] == std::byte{5});
   const Result<BlockFile> read = BlockFile::open(memory_source(bytes));
   REQUIRE_MESSAGE(read.ok(), (read.ok() ? "" : read.failure().message));
   CHECK(read->validate().empty());

@@ -172,9 +172,13 @@ TEST_CASE("more blocks or dependencies than a head or a page has room for are re
 TEST_CASE("older layouts and newer versions are told apart") {
   std::vector<std::byte> bytes = bytes_of(random_file(2, 3, 20));
   CHECK(BlockFile::open(memory_source(bytes)).ok());
-  bytes[8] = std::byte(1);
-  CHECK(BlockFile::open(memory_source(bytes)).failure().error == Error::NotSupported);
-  bytes[8] = std::byte(4);
+  for (const int older : {1, 2, 3}) {
+    bytes[8] = std::byte(older);
+    const Failure refused = BlockFile::open(memory_source(bytes)).failure();
+    CHECK(refused.error == Error::NotSupported);
+    CHECK(refused.message.ends_with("build the file again"));
+  }
+  bytes[8] = std::byte(6);
   CHECK(BlockFile::open(memory_source(bytes)).failure().error == Error::VersionTooNew);
 }
 

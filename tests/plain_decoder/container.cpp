@@ -116,13 +116,13 @@ Head read_head(const Bytes& file) {
   Reader start(file);
   for (const std::uint8_t byte : kMagic) demand(start.u8() == byte, "not a file of this kind");
   const std::uint16_t version = start.u16();
-  demand(version == 2 || version == 3, "neither version 2 nor 3");
+  demand(version == 4 || version == 5, "neither version 4 nor 5");
   start.u16();  // flags; below
   Head head;
   head.bytes = start.u32();
   head.file_bytes = start.u64();
   const std::uint64_t told = start.u64();
-  demand(head.bytes >= (version == 3 ? 168 : 144) && head.bytes <= kMaxHead,
+  demand(head.bytes >= (version == 5 ? 168 : 144) && head.bytes <= kMaxHead,
          "the size of the head");
   const Bytes whole = part_of(file, 0, head.bytes);
   Bytes covered = whole;
@@ -150,10 +150,10 @@ Head read_head(const Bytes& file) {
   head.materials = read_part(in);
   head.part_names = read_part(in);
   head.tables = read_part(in);
-  if (version == 3) {
+  if (version == 5) {
     head.image_list = read_part(in);
     head.image_bytes = in.u64();
-    demand(head.image_list.bytes > 0 && head.image_bytes > 0, "version 3 without images");
+    demand(head.image_list.bytes > 0 && head.image_bytes > 0, "version 5 without images");
   }
   for (int l = 0; l < layers; ++l) head.layers.push_back(read_layer(in));
   for (int b = 0; b < bands; ++b) head.bands.push_back(read_band(in));

@@ -10,7 +10,21 @@ std::size_t group_of(std::size_t component) {
   return component < 2 ? 0 : 1;
 }
 
+// `centre` is less by the start.
+float g_of(const Axis& axis, std::size_t k, float centre, float y) {
+  const float z = (y - centre) * axis.inverse_scale[k];
+  return z / std::sqrt(1 + z * z);
+}
+
 }  // namespace
+
+void weigh(Axis& axis, std::int32_t start, std::int64_t low, std::int64_t width) {
+  for (std::size_t k = 0; k < kComponents; ++k) {
+    const float centre = axis.centre[k] - float(start);
+    const float end = g_of(axis, k, centre, float(low + width) - 0.5f);
+    axis.weight[k] = axis.weight[k] * (end - g_of(axis, k, centre, float(low) - 0.5f));
+  }
+}
 
 std::int32_t read_axis(RangeDecoder& in, Axis& axis, std::int32_t start, float size) {
   const float least = sum_by_fours({axis.weight.begin(), axis.weight.end()}) * (1.0f / 256);
@@ -23,14 +37,10 @@ std::int32_t read_axis(RangeDecoder& in, Axis& axis, std::int32_t start, float s
     if (axis.weight[k] > least) I = std::max(I, axis.inverse_scale[k]);
   }
   const float W = sum_by_fours(counting);
-  const auto g = [&](std::size_t k, float y) {
-    const float z = (y - centre[k]) * axis.inverse_scale[k];
-    return z / std::sqrt(1 + z * z);
-  };
   const auto G = [&](float y) {
     float sum = 0;
     for (std::size_t k = 0; k < kComponents; ++k) {
-      if (axis.weight[k] > least) sum += axis.weight[k] * g(k, y);
+      if (axis.weight[k] > least) sum += axis.weight[k] * g_of(axis, k, centre[k], y);
     }
     return sum;
   };
@@ -79,9 +89,7 @@ std::int32_t read_axis(RangeDecoder& in, Axis& axis, std::int32_t start, float s
   }
   // 4.
   const std::int64_t width = std::int64_t(1) << bits;
-  for (std::size_t k = 0; k < kComponents; ++k) {
-    axis.weight[k] = axis.weight[k] * (g(k, float(low + width) - 0.5f) - g(k, float(low) - 0.5f));
-  }
+  weigh(axis, start, low, width);
   low += in.index(static_cast<std::size_t>(width));
   return sum_of(start, static_cast<std::int32_t>(static_cast<std::uint32_t>(low)));
 }

@@ -20,6 +20,9 @@ struct Axis {
 // "axis(start, size)".
 std::int32_t read_axis(RangeDecoder& in, Axis& axis, std::int32_t start, float size);
 
+// Its step 4: a number is one of `width` from `low` on, from `start`.
+void weigh(Axis& axis, std::int32_t start, std::int64_t low, std::int64_t width);
+
 // "round(x)" and "excess(q)".
 std::int32_t round_of(float x);
 float excess(float q);

@@ -166,7 +166,7 @@ Miss PlaceModel::miss_of(const Expected& expected, const Along& place) {
 
 // Positions: coding.
 Along PlaceModel::read(RangeDecoder& in, const Surroundings& around, const Child& child,
-                       const Sizes& sizes, Miss& miss) {
+                       const Sizes& sizes, SeenPlace& seen, Miss& miss) {
   Expected expected = expect(around, child, sizes);
   const Direction& D = expected.D;
   Axis now;
@@ -181,7 +181,7 @@ Along PlaceModel::read(RangeDecoder& in, const Surroundings& around, const Child
     now.centre[k] = expected.centre[0][k];
     now.inverse_scale[k] = 1 / scale[k];
   }
-  place[0] = read_axis(in, now, round_of(now.centre[0]), scale[0]);
+  place[0] = seen.read(in, 0, 0, now, scale[0]);
 
   // 2.
   const float along = D[0] * D[1] / (across * across), rest = std::abs(D[2]) / across;
@@ -192,7 +192,7 @@ Along PlaceModel::read(RangeDecoder& in, const Surroundings& around, const Child
     now.centre[k] = expected.centre[1][k] - along * off;
     now.inverse_scale[k] = 1 / scale[k];
   }
-  place[1] = read_axis(in, now, round_of(now.centre[0]), scale[0]);
+  place[1] = seen.read(in, 1, 0, now, scale[0]);
   for (std::size_t k = 0; k < kComponents; ++k) {
     const float i = now.inverse_scale[k], z = (float(place[1]) - now.centre[k]) * i;
     expected.tangent_excess[k] += excess(z * z) * (1 - 0.2f * i);
@@ -205,7 +205,8 @@ Along PlaceModel::read(RangeDecoder& in, const Surroundings& around, const Child
     now.inverse_scale[k] = 1 / scale[k];
   }
   const std::int32_t plane = round_of(rise(D, float(place[0]), float(place[1])));
-  const std::int32_t above = read_axis(in, now, round_of(now.centre[0]), scale[0]);
+  const std::int32_t above = seen.read(in, 2, plane, now, scale[0]);
+  seen.finish();
   for (std::size_t k = 0; k < kComponents; ++k) {
     const float i = now.inverse_scale[k], z = (float(above) - now.centre[k]) * i;
     expected.normal_excess[k] = excess(z * z) * (1 - 0.2f * i);

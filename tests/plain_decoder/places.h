@@ -3,6 +3,7 @@
 
 #include "plain_decoder/around.h"
 #include "plain_decoder/mixture.h"
+#include "plain_decoder/seen.h"
 
 #include <array>
 #include <cstddef>
@@ -46,9 +47,6 @@ struct Child {
   float share = 0;  // of a second or first between
 };
 
-// Along the three axes, from where the parent stood.
-using Along = std::array<std::int32_t, 3>;
-
 // The steps of a first between: which axis they go along, "unit" and "offset".
 struct Steps {
   std::size_t axis = 2;
@@ -61,7 +59,7 @@ class PlaceModel {
 
   // The child's place. Sets its new miss.
   Along read(RangeDecoder& in, const Surroundings& around, const Child& child, const Sizes& sizes,
-             Miss& miss);
+             SeenPlace& seen, Miss& miss);
   // Of a first between: how many steps, when `place` is known along the other two axes. `finish`
   // makes it known along the third, given the steps.
   template <class Finish>

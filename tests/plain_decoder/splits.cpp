@@ -44,7 +44,10 @@ class SplitReader {
   Miss expected_miss(std::uint32_t v, const Surroundings& around) const;
   Child child(bool second, Who who, std::uint32_t v, const Point& s, const Point& sibling,
               const Shape& shape) const;
-  Point read_place(std::uint32_t v, const Point& s, const Surroundings& around, const Child& child);
+  std::vector<Along> vertices_around(std::uint32_t v, const Point& s, const Point& at_u,
+                                     const std::array<std::size_t, 3>& axis) const;
+  Point read_place(std::uint32_t v, const Point& s, const Point& at_u, const Surroundings& around,
+                   const Child& child);
   void read_between(std::uint32_t v, std::uint32_t u, const Point& s, const Surroundings& around,
                     const Shape& shape, Point& at_v, Point& at_u);
 
@@ -69,6 +72,7 @@ class SplitReader {
   };
   std::array<StaysModels, 3> stays_;
   BetweenModel between_;
+  SeenModels seen_;
   std::array<PlaceModel, 5> places_{PlaceModel(Who::One), PlaceModel(Who::SecondOfBoth),
                                     PlaceModel(Who::FirstOfBoth), PlaceModel(Who::SecondBetween),
                                     PlaceModel(Who::FirstBetween)};
@@ -298,11 +302,11 @@ void SplitReader::read_positions(std::uint32_t v, std::uint32_t u, const Point& 
   } else {
     if (!second_stays) {
       const Who who = both ? Who::SecondOfBoth : Who::One;
-      at_u = read_place(u, s, around, child(true, who, u, s, s, shape));
+      at_u = read_place(u, s, s, around, child(true, who, u, s, s, shape));
     }
     if (!first_stays) {
       const Who who = both ? Who::FirstOfBoth : Who::One;
-      at_v = read_place(v, s, around, child(false, who, v, s, at_u, shape));
+      at_v = read_place(v, s, at_u, around, child(false, who, v, s, at_u, shape));
     }
   }
   surface_.places[v] = at_v;
@@ -361,12 +365,32 @@ Child SplitReader::child(bool second, Who who, std::uint32_t v, const Point& s,
   return child;
 }
 
-Point SplitReader::read_place(std::uint32_t v, const Point& s, const Surroundings& around,
-                              const Child& child) {
+// Seen coordinates: who is around, where u is known to be at `at_u`.
+std::vector<Along> SplitReader::vertices_around(std::uint32_t v, const Point& s, const Point& at_u,
+                                                const std::array<std::size_t, 3>& axis) const {
+  std::vector<Point> places{s};
+  if (at_u != s) places.push_back(at_u);
+  for (std::size_t k = 0; k < surface_.list(v).size() && k < 16; ++k) {
+    places.push_back(surface_.places[surface_.start_of(surface_.list(v)[k], v)]);
+  }
+  std::vector<Along> result;
+  for (const Point& p : places) {
+    result.push_back({less(p.along(axis[0]), s.along(axis[0])),
+                      less(p.along(axis[1]), s.along(axis[1])),
+                      less(p.along(axis[2]), s.along(axis[2]))});
+  }
+  return result;
+}
+
+Point SplitReader::read_place(std::uint32_t v, const Point& s, const Point& at_u,
+                              const Surroundings& around, const Child& child) {
+  std::vector<Along> seen_from_here;
+  if (seen_.looks()) seen_from_here = vertices_around(v, s, at_u, around.axis);
+  SeenPlace seen(seen_, std::size_t(child.who), seen_from_here);
   const Sizes sizes = sizes_of_place(around, expected_miss(v, around));
   Miss miss;
   const std::array<std::int32_t, 3> steps =
-      places_[std::size_t(child.who)].read(in_, around, child, sizes, miss);
+      places_[std::size_t(child.who)].read(in_, around, child, sizes, seen, miss);
   block_.vertices[v].miss = miss;
   Point place;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -386,7 +410,7 @@ void SplitReader::read_between(std::uint32_t v, std::uint32_t u, const Point& s,
   const float eighths = float(between.eighths);
   Child second = child(true, Who::SecondBetween, u, s, s, shape);
   second.share = eighths / 8;
-  at_u = read_place(u, s, around, second);
+  at_u = read_place(u, s, s, around, second);
 
   Along b;
   for (std::size_t k = 0; k < 3; ++k) b[k] = less(at_u.along(axis[k]), s.along(axis[k]));
