@@ -104,8 +104,9 @@ void TriangleBudget::enter(const Step& step, const Terms& terms) {
   }
 }
 
-// To the next level at which the error is less; or as far there as fits, since less of the block is
-// wrong by as much then.
+// To the next level at which the error is less; or as far there as fits and is no worse, since less
+// of the block is wrong by as much then. Where inner splits are undone a level can be worse than
+// the coarse end.
 void TriangleBudget::raise(const Step& step, const Terms& terms) {
   const std::uint32_t block = step.block;
   if (levels_[block] != step.level) return;  // others have needed it since
@@ -119,7 +120,7 @@ void TriangleBudget::raise(const Step& step, const Terms& terms) {
     const int least = is_whole(block, terms) ? kFullLevel : step.level + 1;
     do {
       if (--level < least) return;
-    } while (!fits(more(), terms));
+    } while (error_at(block, level, terms) > step.error || !fits(more(), terms));
     error = 0;  // the next one does not fit
   }
   triangles_ += more();

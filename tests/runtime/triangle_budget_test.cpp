@@ -149,7 +149,10 @@ bool has_room_for_more(const BlockMesh& mesh, const ViewParameters& view) {
   for (const std::uint32_t block : mesh.impl().cut) {
     const int level = levels.shown(block);
     if (level == kFullLevel || !levels.can_choose(block)) continue;
-    if (levels.error_at(block, level, seen) <= 1) continue;
+    const float error = levels.error_at(block, level, seen);
+    if (error <= 1) continue;
+    // The next level can be worse, where inner splits are undone.
+    if (level + 1 < kFullLevel && levels.error_at(block, level + 1, seen) > error) continue;
     const std::span<const std::uint32_t> needed = graph.dependencies(block);
     const bool can_show = std::all_of(needed.begin(), needed.end(), [&](std::uint32_t n) {
       return levels.shown(n) == kFullLevel;
