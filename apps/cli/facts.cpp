@@ -59,10 +59,6 @@ Json attributes_json(const Mesh& mesh) {
   return attributes;
 }
 
-int version_of(const BlockFileHead& head) {
-  return head.images.bytes > 0 ? 3 : 2;
-}
-
 Json bounds_json(const Mesh& mesh) {
   if (mesh.positions.empty()) return nullptr;
   const auto [low, high] = bounds_of(mesh);
@@ -178,7 +174,7 @@ Json file_facts(const ModelFile& file, const DecodedModel& model, const Progress
   const std::uint64_t bytes = head.file_bytes;
   const LinearBytes linear = linear_bytes(arrays);
   Json json = mesh_facts(model.mesh);
-  json.update(Json{{"version", version_of(head)},
+  json.update(Json{{"version", head.version},
                    {"bytes", bytes},
                    {"bits_per_vertex", bits_json(whole_file_per_vertex(file, model))},
                    {"streams", streams_json(sum_of(model.bits))},
@@ -211,7 +207,7 @@ Json head_facts(const ModelFile& file) {
   return {{"triangles", facts.triangle_count},
           {"vertices", facts.vertex_count},
           {"attributes", attributes_json(facts.layers)},
-          {"version", version_of(file.blocks().head())},
+          {"version", file.blocks().head().version},
           {"bytes", file.blocks().head().file_bytes},
           {"image_bytes", file.blocks().head().images.bytes},
           {"bands", bands},

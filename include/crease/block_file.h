@@ -117,6 +117,7 @@ struct ImageEntry {
 };
 
 struct BlockFileHead {
+  std::uint16_t version = 0;     // of docs/format.md
   std::uint64_t file_bytes = 0;  // of the whole, however much of it is there
   std::uint32_t head_bytes = 0;
   std::uint32_t block_count = 0;

@@ -161,6 +161,7 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
   in.u64();  // the magic
   in.u32();  // version and flags
   BlockFileHead head;
+  head.version = *version;
   head.head_bytes = in.u32();
   head.file_bytes = in.u64();
   const std::uint64_t told = in.u64();
