@@ -16,7 +16,7 @@ import tool
 
 def limit_file_size():
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (10000, 10000))
 
 
 def limit_memory():
