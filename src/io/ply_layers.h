@@ -1,9 +1,13 @@
 // Where the properties of a PLY element go, and the attribute layers that they fill row by row.
 #pragma once
 
+#include "io/ply_header.h"
 #include "io/raw_mesh.h"
 
 #include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,5 +45,12 @@ struct PlyLayers {
     }
   }
 };
+
+// The first property of this name that is no list.
+std::optional<std::size_t> find_scalar(const PlyElement& element, std::string_view name);
+
+// By the names of its properties; `notes` says which lists have no place.
+PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
+                      std::vector<std::string>& notes);
 
 }  // namespace crease
