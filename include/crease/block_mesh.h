@@ -314,7 +314,7 @@ class BlockMesh {
   std::size_t resident_bytes() const;
   bool is_resident(BlockId id) const;
   ResidentBlockPtr resident(BlockId id) const;  // null: it is not
-  bool is_refined(BlockId id) const;            // the cut goes through it
+  bool is_refined(BlockId id) const;            // the cut goes through it, above its coarse end
   // At most so many bytes, if it becomes resident.
   std::size_t bytes_of(const BlockFacts& facts) const;
   const ModelFacts& facts() const;

@@ -49,7 +49,7 @@ void BlockChooser::spend_triangles(const ViewParameters& view, const Limits& lim
   const bool has_levels = limits.levels != nullptr;
   const bool is_same = view == spent_view_ && limits.max_bytes == spent_bytes_ &&
                        has_levels == spent_on_levels_ && budget_.levels().size() == graph_.size();
-  if (is_same && !is_there(budget_.chosen(), limits)) return;
+  if (is_same && !is_there(budget_.chosen(), limits) && fits(budget_.chosen(), limits)) return;
   spent_view_ = view;
   spent_bytes_ = limits.max_bytes;
   spent_on_levels_ = has_levels;
@@ -62,6 +62,13 @@ bool BlockChooser::is_there(std::span<const std::uint32_t> blocks, const Limits&
     return limits.resident[block] != nullptr &&
            (limits.levels == nullptr || graph_.is_base(block) || limits.levels->is_settled(block));
   });
+}
+
+// What levels take is known when they are there.
+bool BlockChooser::fits(std::span<const std::uint32_t> blocks, const Limits& limits) {
+  std::size_t bytes = 0;
+  for (const std::uint32_t block : blocks) bytes += limits.bytes_of_block[block];
+  return bytes <= limits.max_bytes;
 }
 
 // False if they are more than the limits, or some are not resident: then their order counts.

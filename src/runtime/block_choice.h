@@ -46,6 +46,7 @@ class BlockChooser {
   void see_wrong(const ViewError& error);
   void spend_triangles(const ViewParameters& view, const Limits& limits, const ViewError& error);
   bool is_there(std::span<const std::uint32_t> blocks, const Limits& limits) const;
+  static bool fits(std::span<const std::uint32_t> blocks, const Limits& limits);
   void choose_most_visible(const Limits& limits);
   void collect_needed(std::uint32_t block);
   bool is_chosen(std::uint32_t block) const { return chosen_at_[block] == round_; }

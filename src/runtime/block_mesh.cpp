@@ -225,7 +225,8 @@ std::size_t BlockMesh::bytes_of(const BlockFacts& facts) const {
 }
 
 bool BlockMesh::is_refined(BlockId id) const {
-  return index_of(id) < impl_->is_refined.size() && impl_->is_refined[index_of(id)] != 0;
+  return index_of(id) < impl_->is_refined.size() && impl_->is_refined[index_of(id)] != 0 &&
+         impl_->levels.shown(static_cast<std::uint32_t>(index_of(id))) > 0;
 }
 
 const ModelFacts& BlockMesh::facts() const {
