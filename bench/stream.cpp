@@ -190,7 +190,7 @@ void report(const Options& options, const BlockStreamer& streamer,
       "  shown: %.0f triangles median; error %.2f px median, %.2f 95 %%; within %.3g px in %.1f %% "
       "of the frames\n"
       "  resident: %.0f blocks median, %.1f MB most; process %.0f MB most\n"
-      "  source: %.1f MB in %llu requests, latency mean %.1f ms, most %.1f ms, %llu retries\n"
+      "  source: %.1f MB in %llu requests; %.1f MB in %llu ranges asked for, %llu of them cancelled; latency mean %.1f ms, most %.1f ms, %llu retries\n"
       "  decoded %zu blocks in %.2f s, prefetched %zu, dropped %zu, failed %zu\n",
       options.file.c_str(), frames.size(), frames.back().at, options.budget_mb, of_all(cpu, 0.5),
       of_all(cpu, 0.99), of_all(cpu, 1), of_all(wall, 0.99), of_all(wall, 1), waiting,
@@ -198,6 +198,9 @@ void report(const Options& options, const BlockStreamer& streamer,
       100.0 * double(within) / double(frames.size()), of_all(blocks, 0.5), double(resident) / 1e6,
       process_mb, double(statistics.source.bytes_transferred) / 1e6,
       static_cast<unsigned long long>(statistics.source.requests),
+      double(statistics.source.bytes_asked) / 1e6,
+      static_cast<unsigned long long>(statistics.source.asked),
+      static_cast<unsigned long long>(statistics.source.cancelled),
       statistics.source.latency_mean_seconds * 1e3, statistics.source.latency_max_seconds * 1e3,
       static_cast<unsigned long long>(statistics.source.retries), statistics.blocks_decoded,
       statistics.decode_seconds, statistics.blocks_prefetched, statistics.blocks_dropped,

@@ -53,9 +53,11 @@ struct AsyncAnswer {
 // How ranges become requests. A single range is never divided.
 struct AsyncOptions {
   int max_in_flight = 4;  // requests at a time
-  // Ranges with a gap of at most so many bytes between them share a request; what lies between is
-  // transferred and thrown away.
+  // Ranges with a gap of at most so many bytes between them share a request.
   std::uint64_t max_gap_bytes = 16 * 1024;
+  // What lies between, and what was cancelled under way, is kept for who asks for it later: at most
+  // so many bytes, each given out once.
+  std::uint64_t max_kept_bytes = 1024 * 1024;
   // A request takes neighbours of any priority along until it has so many bytes ...
   std::uint64_t min_request_bytes = 64 * 1024;
   // ... and neighbours of the same priority until it has so many.

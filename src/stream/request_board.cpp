@@ -36,7 +36,10 @@ Failure beyond_end(const FileRange& range, std::uint64_t size) {
 
 RequestBoard::RequestBoard(std::string name, const AsyncOptions& options,
                            std::function<void()> wake)
-    : name_(std::move(name)), options_(options), wake_(std::move(wake)) {}
+    : name_(std::move(name)),
+      options_(options),
+      wake_(std::move(wake)),
+      kept_(options.max_kept_bytes) {}
 
 std::optional<std::uint64_t> RequestBoard::size() const {
   const std::lock_guard guard(lock_);
@@ -169,9 +172,9 @@ void RequestBoard::set_prefix(std::span<const std::byte> prefix) {
 
 void RequestBoard::append_prefix(std::span<const std::byte> bytes, std::uint64_t expected) {
   const std::lock_guard guard(lock_);
-  if (kept_.capacity() < expected) kept_.reserve(static_cast<std::size_t>(expected));
-  kept_.insert(kept_.end(), bytes.begin(), bytes.end());
-  prefix_ = kept_;
+  if (own_prefix_.capacity() < expected) own_prefix_.reserve(static_cast<std::size_t>(expected));
+  own_prefix_.insert(own_prefix_.end(), bytes.begin(), bytes.end());
+  prefix_ = own_prefix_;
   if (!waiting_.empty() && waiting_.begin()->first.first < prefix_.size()) answer_what_can_be();
 }
 
@@ -192,15 +195,16 @@ bool RequestBoard::answer_at_once(Ticket ticket, const Waiting& waiting) {
     put_answer(ticket, waiting.asked_at, beyond_end(range, *size_));
     return true;
   }
-  if (!size_ || (range.bytes > 0 && end_of(range) > prefix_.size())) return false;
-  if (range.bytes == 0) {
-    put_answer(ticket, waiting.asked_at, std::vector<std::byte>());
+  if (range.bytes == 0 || (size_ && end_of(range) <= prefix_.size())) {
+    if (!size_) return false;
+    const auto bytes = prefix_.subspan(static_cast<std::size_t>(range.bytes == 0 ? 0 : range.offset),
+                                       static_cast<std::size_t>(range.bytes));
+    put_answer(ticket, waiting.asked_at, copy_of(bytes));
     return true;
   }
-  put_answer(ticket, waiting.asked_at,
-             copy_of(prefix_.subspan(static_cast<std::size_t>(range.offset),
-                                     static_cast<std::size_t>(range.bytes))));
-  return true;
+  std::optional<std::vector<std::byte>> kept = kept_.take(range);
+  if (kept) put_answer(ticket, waiting.asked_at, *std::move(kept));
+  return kept.has_value();
 }
 
 void RequestBoard::answer_what_can_be() {
@@ -326,13 +330,21 @@ bool RequestBoard::is_abandoned(const Batch& batch) {
 }
 
 void RequestBoard::deliver(Batch& batch, std::span<const std::byte> bytes) {
-  while (batch.answered < batch.parts.size()) {
+  const auto between = [&](std::uint64_t begin, std::uint64_t end) {
+    return bytes.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+  };
+  for (; batch.answered < batch.parts.size(); ++batch.answered) {
     const BatchPart& part = batch.parts[batch.answered];
-    const std::uint64_t begin = part.range.offset - batch.span.offset;
-    if (begin + part.range.bytes > bytes.size()) return;
-    answer(part, copy_of(bytes.subspan(static_cast<std::size_t>(begin),
-                                       static_cast<std::size_t>(part.range.bytes))));
-    ++batch.answered;
+    const std::uint64_t begin = part.range.offset - batch.span.offset,
+                        end = begin + part.range.bytes;
+    if (end > bytes.size()) return;
+    const std::lock_guard guard(lock_);
+    if (begin > batch.done) keep(batch.span.offset + batch.done, between(batch.done, begin));
+    const std::uint64_t own = std::max(begin, batch.done);  // parts may overlap
+    if (!answer_now(part, copy_of(between(begin, end))) && own < end) {
+      keep(batch.span.offset + own, between(own, end));
+    }
+    batch.done = std::max(batch.done, end);
   }
 }
 
@@ -344,8 +356,28 @@ void RequestBoard::fail(Batch& batch, const Failure& failure) {
 
 void RequestBoard::answer(const BatchPart& part, Result<std::vector<std::byte>> bytes) {
   const std::lock_guard guard(lock_);
-  if (in_flight_.erase(number(part.ticket)) == 0) return;  // cancelled
+  answer_now(part, std::move(bytes));
+}
+
+// False: it was cancelled.
+bool RequestBoard::answer_now(const BatchPart& part, Result<std::vector<std::byte>> bytes) {
+  if (in_flight_.erase(number(part.ticket)) == 0) return false;
   put_answer(part.ticket, part.asked_at, std::move(bytes));
+  return true;
+}
+
+// Some of it may have been asked for since the batch was taken.
+void RequestBoard::keep(std::uint64_t offset, std::span<const std::byte> bytes) {
+  kept_.keep(offset, bytes);
+  auto i = waiting_.lower_bound(Key{offset, Ticket{0}});
+  while (i != waiting_.end() && i->first.first - offset < bytes.size()) {
+    const auto next = std::next(i);
+    if (answer_at_once(i->first.second, i->second)) {
+      offset_of_waiting_.erase(number(i->first.second));
+      waiting_.erase(i);
+    }
+    i = next;
+  }
 }
 
 bool RequestBoard::fail_waiting(const Failure& failure) {

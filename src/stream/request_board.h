@@ -22,6 +22,7 @@
 #include "base/bell.h"
 #include "base/mailbox.h"
 #include "crease/async_source.h"
+#include "stream/kept_bytes.h"
 
 #include <atomic>
 #include <chrono>
@@ -56,6 +57,7 @@ struct Batch {
   FileRange span;                // from the first byte to the last
   std::vector<BatchPart> parts;  // by where they end
   std::size_t answered = 0;      // of the parts, from the front
+  std::uint64_t done = 0;        // bytes from the front that were answers, or are kept
 };
 
 class RequestBoard {
@@ -94,7 +96,8 @@ class RequestBoard {
   // All tickets of it were cancelled.
   bool is_abandoned(const Batch& batch);
 
-  // `bytes` are the first ones of batch.span: parts that end within them are answered.
+  // `bytes` are the first ones of batch.span: parts that end within them are answered. What lies
+  // between, and what is no longer wanted, is kept for who asks for it later.
   void deliver(Batch& batch, std::span<const std::byte> bytes);
   // The parts that are not answered yet.
   void fail(Batch& batch, const Failure& failure);
@@ -133,6 +136,8 @@ class RequestBoard {
   bool carry_out_orders();
   bool answer_at_once(Ticket ticket, const Waiting& waiting);
   void answer_what_can_be();
+  bool answer_now(const BatchPart& part, Result<std::vector<std::byte>> bytes);
+  void keep(std::uint64_t offset, std::span<const std::byte> bytes);
   void put_answer(Ticket ticket, Clock::time_point asked_at, Result<std::vector<std::byte>> bytes);
   Shelf::const_iterator most_urgent() const;
   std::optional<Batch> take_under_lock();
@@ -148,7 +153,8 @@ class RequestBoard {
   Bell has_work_;
   std::optional<std::uint64_t> size_;
   std::span<const std::byte> prefix_;
-  std::vector<std::byte> kept_;  // where prefix_ lies, if it was appended
+  std::vector<std::byte> own_prefix_;  // where prefix_ lies, if it was appended
+  KeptBytes kept_;
   std::atomic<std::uint64_t> next_ticket_{1};
   Mailbox<Order> orders_;
   std::atomic<bool> has_waited_{false};  // since the last poll(), until there were answers

@@ -4,7 +4,9 @@
 #include "base/mailbox.h"
 #include "stream/stream_files.h"
 
+#include <algorithm>
 #include <array>
+#include <random>
 #include <set>
 #include <thread>
 #include <utility>
@@ -98,6 +100,58 @@ TEST_CASE("what was cancelled is not handed out, wherever it is") {
   CHECK(board.statistics().answered == 1);
   board.cancel(first);  // once more is no matter
   CHECK(board.statistics().cancelled == 2);
+}
+
+TEST_CASE("what came along with others is there for who asks for it later, once") {
+  const std::vector<std::byte> file = some_bytes(200);
+  RequestBoard board("", kSmall);
+  const std::vector<RangeRequest> asked = {{{0, 20}}, {{30, 20}}, {{50, 30}}};
+  const Ticket first = board.add(asked);
+  Batch batch = *board.take();
+  CHECK(batch.span == FileRange{0, 80});
+  board.cancel(ticket_after(first, 2));
+  const Ticket gap = board.add(std::vector<RangeRequest>{{{22, 5}}});  // before it has come
+  board.deliver(batch, std::span(file).first(40));
+  board.deliver(batch, std::span(file).first(80));
+  std::vector<AsyncAnswer> answers = board.poll();
+  REQUIRE(answers.size() == 3);
+  CHECK(answers[1].ticket == gap);
+  CHECK(*answers[1].bytes == part_of(file, {22, 5}));
+  CHECK(!board.has_waiting());
+
+  // The rest of the gap, the beginning of what was cancelled, and what has no end among it.
+  board.add(std::vector<RangeRequest>{{{20, 2}}, {{27, 3}}, {{50, 10}}, {{60, 30}}});
+  answers = board.poll();
+  REQUIRE(answers.size() == 3);
+  CHECK(*answers[0].bytes == part_of(file, {20, 2}));
+  CHECK(*answers[1].bytes == part_of(file, {27, 3}));
+  CHECK(*answers[2].bytes == part_of(file, {50, 10}));
+  CHECK(board.take()->span == FileRange{60, 30});
+  board.add(std::vector<RangeRequest>{{{50, 10}}});  // again: as if something was wrong with it
+  CHECK(board.poll().empty());
+  CHECK(board.has_waiting());
+}
+
+TEST_CASE("bytes that are kept stay below the limit, and are what they were") {
+  const std::vector<std::byte> file = some_bytes(3000);
+  std::mt19937 random(5);
+  stream::KeptBytes kept(400);
+  std::vector<char> may_be_there(file.size(), 0);
+  for (int round = 0; round < 20'000; ++round) {
+    const FileRange range{random() % 2900, random() % 100};
+    const std::size_t end = range.offset + range.bytes;
+    if (random() % 2 == 0) {
+      kept.keep(range.offset, std::span(file).subspan(range.offset, range.bytes));
+      std::fill(&may_be_there[range.offset], &may_be_there[end], char(1));
+    } else if (const auto bytes = kept.take(range)) {
+      CHECK(*bytes == part_of(file, range));
+      for (std::size_t i = range.offset; i < end; ++i) CHECK(may_be_there[i] == 1);
+      std::fill(&may_be_there[range.offset], &may_be_there[end], char(0));
+      if (range.bytes > 0) CHECK(!kept.take(range));
+    }
+    CHECK(kept.bytes() <= 400);
+  }
+  CHECK(kept.bytes() > 200);
 }
 
 TEST_CASE("the first bytes and the size answer without a request") {
