@@ -190,7 +190,8 @@ void report(const Options& options, const BlockStreamer& streamer,
       "  shown: %.0f triangles median; error %.2f px median, %.2f 95 %%; within %.3g px in %.1f %% "
       "of the frames\n"
       "  resident: %.0f blocks median, %.1f MB most; process %.0f MB most\n"
-      "  source: %.1f MB in %llu requests; %.1f MB in %llu ranges asked for, %llu of them cancelled; latency mean %.1f ms, most %.1f ms, %llu retries\n"
+      "  source: %.1f MB in %llu requests; %.1f MB in %llu ranges asked for, %llu of them "
+      "cancelled; latency mean %.1f ms, most %.1f ms, %llu retries\n"
       "  decoded %zu blocks in %.2f s, prefetched %zu, dropped %zu, failed %zu\n",
       options.file.c_str(), frames.size(), frames.back().at, options.budget_mb, of_all(cpu, 0.5),
       of_all(cpu, 0.99), of_all(cpu, 1), of_all(wall, 0.99), of_all(wall, 1), waiting,

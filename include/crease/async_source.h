@@ -55,8 +55,8 @@ struct AsyncOptions {
   int max_in_flight = 4;  // requests at a time
   // Ranges with a gap of at most so many bytes between them share a request.
   std::uint64_t max_gap_bytes = 16 * 1024;
-  // What lies between, and what was cancelled under way, is kept for who asks for it later: at most
-  // so many bytes, each given out once.
+  // What lies between, what was cancelled under way and what is given back is kept for who asks for
+  // it later: at most so many bytes, each given out once.
   std::uint64_t max_kept_bytes = 1024 * 1024;
   // A request takes neighbours of any priority along until it has so many bytes ...
   std::uint64_t min_request_bytes = 64 * 1024;
@@ -101,6 +101,9 @@ class AsyncSource {
   virtual void cancel(Ticket ticket) = 0;
   // As if it had been asked for with this priority. No matter for one that no longer waits.
   virtual void prioritize(Ticket ticket, float priority) = 0;
+
+  // An answer that nobody has looked at, for who asks for it again. It may be forgotten.
+  virtual void give_back(std::uint64_t offset, std::vector<std::byte> bytes) = 0;
 
   // What has arrived since the last call.
   virtual std::vector<AsyncAnswer> poll() = 0;

@@ -115,7 +115,7 @@ void BlockStreamer::Impl::forget_unwanted() {
       source->cancel(p.ticket);
       block_of_ticket.erase(static_cast<std::uint64_t>(p.ticket));
     }
-    if (!p.payload.empty()) free(std::move(p.payload));
+    if (!p.payload.empty()) source->give_back(p.entry.offset, std::move(p.payload));
     pending_bytes -= p.entry.bytes;
     at = pending.erase(at);
   }

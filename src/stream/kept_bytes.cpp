@@ -17,10 +17,9 @@ void KeptBytes::keep(std::uint64_t offset, std::span<const std::byte> bytes) {
   pieces_.emplace(offset, Piece{{bytes.begin(), bytes.end()}, next_number_++});
   total_ += bytes.size();
   while (total_ > limit_) {
-    const auto oldest =
-        std::min_element(pieces_.begin(), pieces_.end(), [](const auto& a, const auto& b) {
-          return a.second.number < b.second.number;
-        });
+    const auto oldest = std::min_element(
+        pieces_.begin(), pieces_.end(),
+        [](const auto& a, const auto& b) { return a.second.number < b.second.number; });
     total_ -= oldest->second.bytes.size();
     pieces_.erase(oldest);
   }

@@ -117,6 +117,10 @@ class LimitedSource final : public AsyncSource {
     }
   }
 
+  void give_back(std::uint64_t offset, std::vector<std::byte> bytes) override {
+    source_->give_back(offset, std::move(bytes));
+  }
+
   std::vector<AsyncAnswer> poll() override {
     const std::lock_guard guard(lock_);
     pass();

@@ -48,16 +48,23 @@ std::optional<std::uint64_t> RequestBoard::size() const {
 
 Ticket RequestBoard::add(std::span<const RangeRequest> ranges) {
   const auto first = static_cast<Ticket>(next_ticket_.fetch_add(ranges.size()));
-  put({Order::Kind::Add, first, {ranges.begin(), ranges.end()}, 0, Clock::now()});
+  put({.kind = Order::Kind::Add,
+       .ticket = first,
+       .ranges = {ranges.begin(), ranges.end()},
+       .at = Clock::now()});
   return first;
 }
 
 void RequestBoard::cancel(Ticket ticket) {
-  put({Order::Kind::Cancel, ticket, {}, 0, {}});
+  put({.kind = Order::Kind::Cancel, .ticket = ticket});
 }
 
 void RequestBoard::prioritize(Ticket ticket, float priority) {
-  put({Order::Kind::Prioritize, ticket, {}, priority, {}});
+  put({.kind = Order::Kind::Prioritize, .ticket = ticket, .priority = priority});
+}
+
+void RequestBoard::give_back(std::uint64_t offset, std::vector<std::byte> bytes) {
+  put({.kind = Order::Kind::GiveBack, .offset = offset, .bytes = std::move(bytes)});
 }
 
 // A worker that has the lock may have looked for orders before; so it is told that there are some.
@@ -83,6 +90,9 @@ bool RequestBoard::carry_out_orders() {
         break;
       case Order::Kind::Prioritize:
         prioritize_now(order.ticket, order.priority);
+        break;
+      case Order::Kind::GiveBack:
+        keep(order.offset, order.bytes);
         break;
     }
   });
@@ -197,8 +207,9 @@ bool RequestBoard::answer_at_once(Ticket ticket, const Waiting& waiting) {
   }
   if (range.bytes == 0 || (size_ && end_of(range) <= prefix_.size())) {
     if (!size_) return false;
-    const auto bytes = prefix_.subspan(static_cast<std::size_t>(range.bytes == 0 ? 0 : range.offset),
-                                       static_cast<std::size_t>(range.bytes));
+    const auto bytes =
+        prefix_.subspan(static_cast<std::size_t>(range.bytes == 0 ? 0 : range.offset),
+                        static_cast<std::size_t>(range.bytes));
     put_answer(ticket, waiting.asked_at, copy_of(bytes));
     return true;
   }

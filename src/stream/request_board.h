@@ -74,6 +74,7 @@ class RequestBoard {
   Ticket add(std::span<const RangeRequest> ranges);
   void cancel(Ticket ticket);
   void prioritize(Ticket ticket, float priority);
+  void give_back(std::uint64_t offset, std::vector<std::byte> bytes);
   std::vector<AsyncAnswer> poll();
   bool wait(std::chrono::milliseconds timeout);
   AsyncStatistics statistics() const;  // without orders that nobody has carried out yet
@@ -119,11 +120,13 @@ class RequestBoard {
   using Key = std::pair<std::uint64_t, Ticket>;  // offset
   using Shelf = std::map<Key, Waiting>;
   struct Order {
-    enum class Kind { Add, Cancel, Prioritize } kind = Kind::Add;
-    Ticket ticket{};                   // of the first range
-    std::vector<RangeRequest> ranges;  // Add
-    float priority = 0;                // Prioritize
-    Clock::time_point at;
+    enum class Kind { Add, Cancel, Prioritize, GiveBack } kind = Kind::Add;
+    Ticket ticket{};                     // of the first range
+    std::vector<RangeRequest> ranges{};  // Add
+    float priority = 0;                  // Prioritize
+    Clock::time_point at{};
+    std::uint64_t offset = 0;        // GiveBack
+    std::vector<std::byte> bytes{};  // GiveBack
   };
 
   void put(Order order);
@@ -179,6 +182,9 @@ class BoardSource : public AsyncSource {
   Ticket request(std::span<const RangeRequest> ranges) override { return board_.add(ranges); }
   void cancel(Ticket ticket) override { board_.cancel(ticket); }
   void prioritize(Ticket ticket, float priority) override { board_.prioritize(ticket, priority); }
+  void give_back(std::uint64_t offset, std::vector<std::byte> bytes) override {
+    board_.give_back(offset, std::move(bytes));
+  }
   std::vector<AsyncAnswer> poll() override { return board_.poll(); }
   bool wait(std::chrono::milliseconds timeout) override { return board_.wait(timeout); }
   AsyncStatistics statistics() const override { return board_.statistics(); }

@@ -31,6 +31,7 @@ class UnsteadySource : public AsyncSource {
     for (const RangeRequest& r : ranges) waiting_[Ticket{next_++}] = r.range;
     return first;
   }
+  void give_back(std::uint64_t, std::vector<std::byte>) override {}
   void cancel(Ticket ticket) override { cancelled_ += waiting_.erase(ticket); }
   void prioritize(Ticket, float) override {}
 

@@ -43,6 +43,7 @@ class FaultySource : public AsyncSource {
     for (const RangeRequest& r : ranges) waiting_[Ticket{next_++}] = r.range;
     return first;
   }
+  void give_back(std::uint64_t, std::vector<std::byte>) override {}
   void cancel(Ticket ticket) override { waiting_.erase(ticket); }
   void prioritize(Ticket, float) override {}
   std::vector<AsyncAnswer> poll() override { return std::exchange(answers_, {}); }

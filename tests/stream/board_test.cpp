@@ -132,6 +132,23 @@ TEST_CASE("what came along with others is there for who asks for it later, once"
   CHECK(board.has_waiting());
 }
 
+TEST_CASE("what is given back answers whoever asks again, or asked meanwhile") {
+  const std::vector<std::byte> file = some_bytes(100);
+  RequestBoard board("", kSmall);
+  board.give_back(10, part_of(file, {10, 50}));
+  const Ticket again = board.add(std::vector<RangeRequest>{{{20, 30}}});
+  const Ticket meanwhile = board.add(std::vector<RangeRequest>{{{70, 20}}});
+  CHECK(board.poll().size() == 1);
+  board.give_back(60, part_of(file, {60, 40}));
+  const std::vector<AsyncAnswer> answers = board.poll();
+  REQUIRE(answers.size() == 1);
+  CHECK(answers[0].ticket == meanwhile);
+  CHECK(*answers[0].bytes == part_of(file, {70, 20}));
+  CHECK(!board.has_waiting());
+  board.cancel(again);  // has been polled: no matter
+  CHECK(board.statistics().requests == 0);
+}
+
 TEST_CASE("bytes that are kept stay below the limit, and are what they were") {
   const std::vector<std::byte> file = some_bytes(3000);
   std::mt19937 random(5);
