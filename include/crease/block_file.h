@@ -143,7 +143,7 @@ struct BlockFileLimits {
 
 class BlockFile {
  public:
-  // Versions 2 and 3, which has images; version 1, from before the first release, fails with
+  // Versions 4 and 5, which has images; version 1, from before the first release, fails with
   // NotSupported.
   static Result<BlockFile> open(ByteSourcePtr source, const BlockFileLimits& limits = {});
 
