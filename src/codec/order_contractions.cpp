@@ -83,8 +83,9 @@ class CostEstimator {
       double longest = 0;
       for (const std::uint32_t t : vanished) {
         const double side2 = geometry_.longest_side2(patch.corners(t));
-        cost += kPartWeight * 0.5 * length(geometry_.twice_area(patch.corners(t))) * side2;
-        longest = std::max(longest, side2);
+        const double twice_area = length(geometry_.twice_area(patch.corners(t)));
+        cost += kPartWeight * 0.5 * twice_area * side2;
+        if (twice_area > 0) longest = std::max(longest, side2);
       }
       surface += std::sqrt(longest);  // what it stood for is gone
     }

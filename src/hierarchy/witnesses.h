@@ -131,15 +131,17 @@ class WitnessMover {
       for (std::size_t i = 0; i < taken.size(); ++i) {
         group.load(i, witnesses.all[taken[i].witness], vertex, taken[i].place);
       }
+      Lanes enough2 = Lanes{} - 1.0f;
       if (vanished) {
         product(group.at, group.at, group.squared);
       } else {
         Block own;
         blocks_[taken[0].place / kLanes].pick_into(group.place, own);
         own.measure(group.at, group.squared);
+        Lanes enough;
+        group.find_enough(known, enough);
+        enough2 = own.per_normal > 0 ? enough : enough2;
       }
-      Lanes enough2 = Lanes{} - 1.0f;
-      if (!vanished) group.find_enough(known, enough2);
       for (std::size_t i = 0; i < taken.size(); ++i) {
         if (group.squared[i] <= enough2[i] || looks < block_count) continue;
         if (vanished) taken[i].place = 0;
@@ -186,7 +188,7 @@ class WitnessMover {
   static constexpr std::size_t kMostLooks = 16384;  // at blocks, else fans take the square of time
   using Lanes = float __attribute__((vector_size(32), aligned(16)));
   using Ints = std::int32_t __attribute__((vector_size(32), aligned(16)));
-  static constexpr float kTiny = 1e-30f;
+  static constexpr float kTiny = 1e-30f, kHandicap = 1e-12f;
 
   struct Taken {
     std::uint32_t witness, place;
@@ -252,6 +254,8 @@ class WitnessMover {
     Lanes next[3], previous[3], normal[3];
     Lanes to_next[3], to_previous[3];  // products with them are barycentric coordinates
     Lanes per_next, per_previous, per_side, per_normal;  // one over squared lengths
+    // Without area: so much farther, so that of two that are as near the other one is it.
+    Lanes handicap;
 
     [[gnu::always_inline]] inline void prepare() {
       const Lanes none{};
@@ -266,6 +270,10 @@ class WitnessMover {
       over(previous, per_previous);
       over(side, per_side);
       over(normal, per_normal);
+      product(side, side, handicap);
+      Lanes other;
+      product(next, next, other);
+      handicap = per_normal > none ? none : kHandicap * (handicap + other);
       cross(previous, normal, to_next);
       cross(normal, next, to_previous);
       for (int i = 0; i < 3; ++i) {
@@ -287,6 +295,7 @@ class WitnessMover {
       pick(per_previous, which, result.per_previous);
       pick(per_side, which, result.per_side);
       pick(per_normal, which, result.per_normal);
+      pick(handicap, which, result.handicap);
     }
 
     // Squared distances of p.
@@ -314,7 +323,7 @@ class WitnessMover {
       product(p, to_next, u);
       product(p, to_previous, v);
       const auto is_over = (u > none) & (v > none) & (u + v < one);
-      squared = is_over ? over * per_normal * over : nearest;
+      squared = is_over ? over * per_normal * over : nearest + handicap;
     }
 
     // If one of these triangles, those from place 8 b on, is nearer to p than the best so far; of

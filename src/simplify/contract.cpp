@@ -110,6 +110,7 @@ CREASE_WIDE float PatchSimplifier::surface_error(Index a, Index b, const Vec3d& 
   // A part disappears: its planes fit what is left of it, but what it stood for is gone.
   double longest2 = 0;
   for (const Vanishing& vanishing : vanishing_) {
+    if (!(facing_[vanishing.triangle].area > 0)) continue;
     const Index* v = &vertex_of_corner_[4 * vanishing.triangle];
     for (Index c = 0; c < 3; ++c) {
       longest2 = std::max(longest2, squared(positions_[v[c]] - positions_[v[(c + 1) % 3]]));

@@ -14,7 +14,7 @@ namespace crease::simplification {
 
 namespace {
 
-// A triangle that turns by more than this has folded over.
+// A triangle that turns by more than this has folded over; so has one without area that opens.
 constexpr double kFoldCosine = 0.2;
 
 // A triangle that turns by less than a millionth stays in its plane.
@@ -120,8 +120,7 @@ CREASE_WIDE double PatchSimplifier::fold_cost(Index a, Index b, const Vec3d& tar
     }
     const RingBlock::Moved moved = block.moved_to(target);
     const Row cosine2 = moved.agreement * moved.agreement;  // times length2
-    Lanes folds = (moved.agreement < 0) |
-                  ((block.area > 0) & (cosine2 <= kFoldCosine * kFoldCosine * moved.length2));
+    Lanes folds = (moved.agreement < 0) | (cosine2 <= kFoldCosine * kFoldCosine * moved.length2);
     if (step2 == 0) folds = Lanes{};
     const Lanes turns = block.shows & (moved.length2 > 0) &
                         (folds | ~block.right | (cosine2 < kCoplanarCosine2 * moved.length2));

@@ -101,6 +101,50 @@ TEST_CASE("witnesses go to the nearest triangle around the vertex") {
   }
 }
 
+TEST_CASE("of triangles that are as near a witness takes one that has an area") {
+  for (const bool is_first : {false, true}) {
+    Case c;
+    c.ring = {{Vec3d{100, 0, 0}, Vec3d{0, 100, 0}}, {Vec3d{100, 0, 0}, Vec3d{100, 0, 0}}};
+    if (is_first) std::swap(c.ring[0], c.ring[1]);
+    const std::uint32_t with = is_first ? 1 : 0, without = 1 - with;
+    c.witnesses.first = {kNone, kNone, kNone};
+    c.witnesses.all = {{{100, 0, 0}}};
+    c.witnesses.put(0, 2);
+    CHECK(settle(c) < 1e-3);
+    CHECK(c.witnesses.first[with] == 0);
+    c.witnesses.first = {kNone, kNone, kNone};
+    c.witnesses.put(0, without);
+    CHECK(settle(c, 50) < 1e-3);  // it does not stay there, however near
+    CHECK(c.witnesses.first[with] == 0);
+  }
+}
+
+TEST_CASE("vertices of triangles without area are no witnesses") {
+  constexpr std::int32_t kFar = 1 << 30;
+  const std::vector<Vec3i> positions = {{0, 0, 0},       {0, 0, 0},          {5, 0, 0},
+                                        {10, 0, 0},      {0, 1, 0},          {-kFar, -kFar, 0},
+                                        {kFar, kFar, 0}, {kFar, kFar - 1, 0}};
+  const auto at = [](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return Triangle{VertexId{a}, VertexId{b}, VertexId{c}};
+  };
+  Mesh mesh;
+  mesh.triangles = {at(0, 1, 3), at(0, 2, 3), at(3, 2, 4), at(5, 0, 6), at(5, 0, 7)};
+  const Witnesses witnesses = witnesses_of(mesh, positions);
+  const auto of = [&](std::uint32_t t) {
+    std::vector<std::uint32_t> own;
+    for (std::uint32_t w = witnesses.first[t]; w != kNone; w = witnesses.all[w].next) {
+      own.push_back(w);
+    }
+    std::sort(own.begin(), own.end());
+    return own;
+  };
+  CHECK(of(0).empty());
+  CHECK(of(1).empty());
+  CHECK(of(2) == std::vector<std::uint32_t>{2, 3, 4});
+  CHECK(of(3).empty());
+  CHECK(of(4) == std::vector<std::uint32_t>{0, 5, 7});  // 6 and 1 have no other
+}
+
 TEST_CASE("a triangle keeps the farthest of many witnesses, whatever their order") {
   std::mt19937 random(4);
   Case c = random_case(random, 1, 60), d = c;

@@ -106,6 +106,20 @@ TEST_CASE("a part that disappears is in the error") {
   }
 }
 
+TEST_CASE("a part without area that disappears is not in the error") {
+  Mesh mesh = hard_box(1);
+  const std::size_t box_triangles = mesh.triangle_count(), first = mesh.positions.size();
+  for (const double x : {5.0, 5.0, 9.0}) mesh.positions.push_back({x, 0, 0});
+  mesh.triangles.push_back({VertexId(first), VertexId(first + 1), VertexId(first + 2)});
+  mesh.layers[0].of_corner.insert(mesh.layers[0].of_corner.end(), 3, AttributeId{0});
+  const Grid grid = make_grid(mesh, {});
+  snap(mesh, grid);
+  const ContractionSequence sequence = *simplify(mesh, grid, {});
+  const Level level = apply_contractions(mesh, sequence, 1);
+  REQUIRE(!level.alive[box_triangles]);
+  CHECK(sequence.contractions[0].error.surface == 0);
+}
+
 TEST_CASE("work that is told to stop stops and says so") {
   Mesh mesh = smooth_sphere(40, 40);
   const Grid grid = make_grid(mesh, {});

@@ -15,6 +15,7 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <utility>
 
 using namespace crease;
 
@@ -346,6 +347,41 @@ TEST_CASE("a sliver with a wrong normal does not swell over the sheet") {
   const Reached reached = reduce(mesh, 3);
   CHECK(relative(reached.apart.distance.a_to_b.mean, reached) < 1e-4);
   CHECK(reached.apart.normal_deviation.mean < 1);
+}
+
+// Rows of boxes; at corners of each a second vertex with two triangles to corners of the same box
+// that have no area, as city models have them where a coordinate was rounded.
+TEST_CASE("a triangle without area opens nowhere") {
+  const Mesh box = hard_box(1);
+  Mesh mesh = box;
+  mesh.positions.clear();
+  mesh.triangles.clear();
+  AttributeLayer& normals = mesh.layers[0];
+  const std::vector<AttributeId> of_corner = std::exchange(normals.of_corner, {});
+  const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+    mesh.triangles.push_back({VertexId(a), VertexId(b), VertexId(c)});
+    normals.of_corner.insert(normals.of_corner.end(), 3, of_corner[0]);
+  };
+  const std::size_t corners = box.positions.size();
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t first = mesh.positions.size();
+    const Vec3d to{2.0 * (i % 8), 2.0 * (i / 8), 0};
+    for (const Vec3d& p : box.positions) mesh.positions.push_back(p + to);
+    for (const Triangle& t : box.triangles) {
+      mesh.triangles.push_back({VertexId(index_of(t[0]) + first), VertexId(index_of(t[1]) + first),
+                                VertexId(index_of(t[2]) + first)});
+    }
+    normals.of_corner.insert(normals.of_corner.end(), of_corner.begin(), of_corner.end());
+    for (std::size_t c = 0; c < corners; ++c) {
+      mesh.positions.push_back(mesh.positions[first + c]);
+      const std::size_t second = mesh.positions.size() - 1;
+      add(first + c, second, first + (c + 3) % corners);
+      add(second, first + c, first + (c + 5) % corners);
+    }
+  }
+  const Reached reached = reduce(mesh, mesh.triangle_count() - 60 * corners);
+  CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-6);
+  CHECK(relative(reached.apart.distance.b_to_a.max, reached) < 1e-6);
 }
 
 TEST_CASE("every zoo mesh goes all the way down") {
