@@ -141,7 +141,8 @@ CREASE_WIDE void PatchSimplifier::measure_witnesses(Index a, Index b, const Plac
   }
   const float error =
       std::max({errors_[a].now.surface, errors_[b].now.surface, surface_error(a, b, target)});
-  const double known = std::min(double(error), std::sqrt(placed.cost / steering_.far_area));
+  const double known =
+      std::min(double(error), std::sqrt(placed.cost / steering_.far_area) + kRounding);
   farthest_witness_ = witness_mover_.measure(witnesses, on_grid(target), static_cast<float>(known));
 }
 

@@ -5,13 +5,17 @@
 //
 //   FarArea far_area;
 //   steering.far_area = far_area.share() * triangle_area;  // of the mean triangle
+//   far = max(witness's distance - kRounding, 0);          // in grid units
 //   counts.add(steering.far_area * far * far / cost);      // of contractions near the limit
 //   far_area.learn(counts);                                // after the pass
+//
+// What rounding to the grid moves does not count: on coarse grids all that is flat is as far away.
 //
 // How large that area may be depends on the model: of a scan's cost most is its normals', of a
 // city's the distance of what is small and vanishes; with one share for both either the scan loses
 // its fingers or the city's walls stay triangles short. So each pass learns from the last one: the
-// share is such that it would have raised the cost of one contraction in twenty.
+// share is such that it would have raised the cost of one contraction in twenty. The first one,
+// which is half of the model, begins with what others mostly learn: 1 to 8.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +25,9 @@
 #include <cstdint>
 
 namespace crease::simplification {
+
+// A vertex that was rounded, and a surface through some, are off by less; grid units.
+inline constexpr double kRounding = 1;
 
 // How many ratios there are of each size, in steps of a fifth to a quarter: sums that do not depend
 // on the order in which they come.
@@ -68,7 +75,7 @@ class FarArea {
   static constexpr std::uint64_t kFew = 64, kOneIn = 20;
   // With more of it than kMost levels of scans are nearer still, but their normals are worse.
   static constexpr double kLeast = 0.25, kMost = 8;
-  double share_ = 0.5;
+  double share_ = 6;
 };
 
 }  // namespace crease::simplification
