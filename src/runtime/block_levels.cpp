@@ -82,6 +82,8 @@ class Levels {
   std::array<float, kFullLevel> limit_{};
 };
 
+constexpr float kRounding = 1.00001f;  // of lengths
+
 // Halves the block a few times: an error in one corner of it does not matter where only another one
 // is near, or in view. Inner splits, which most levels have done, are apart, since their spheres
 // are large.
@@ -112,7 +114,7 @@ class PieceMaker {
       add_piece(0, own_count_, kMostHalvings);
       facts_.first_inner = static_cast<std::uint32_t>(facts_.pieces.size());
       add_piece(own_count_, order_.size(), kMostHalvings - 1);
-      facts_.pieces[0].next = static_cast<std::uint16_t>(facts_.pieces.size());
+      close(0);
     } else if (!order_.empty()) {
       add_piece(0, order_.size(), kMostHalvings);
       facts_.first_inner = own_count_ > 0 ? static_cast<std::uint32_t>(facts_.pieces.size()) : 0;
@@ -135,7 +137,19 @@ class PieceMaker {
       add_piece(begin, middle, halvings - 1);
       add_piece(middle, end, halvings - 1);
     }
-    facts_.pieces[piece].next = static_cast<std::uint16_t>(facts_.pieces.size());
+    close(piece);
+  }
+
+  // All since are its parts. Its sphere holds theirs, so that what is wrong in one is so in it.
+  void close(std::size_t piece) {
+    LevelSphere& whole = facts_.pieces[piece];
+    whole.next = static_cast<std::uint16_t>(facts_.pieces.size());
+    float radius = whole.radius.value();
+    for (std::size_t part = piece + 1; part < whole.next; part = facts_.pieces[part].next) {
+      const LevelSphere& own = facts_.pieces[part];
+      radius = std::max(radius, length(own.center - whole.center) * kRounding + own.radius.value());
+    }
+    whole.radius = RoundedUp::from(radius);
   }
 
   // The spheres of splits hold those below.
@@ -150,7 +164,7 @@ class PieceMaker {
     float radius = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const float own = bounds_[order_[i]].radius.value();
-      radius = std::max(radius, length(place_[order_[i]] - center) * 1.00001f + own);
+      radius = std::max(radius, length(place_[order_[i]] - center) * kRounding + own);
     }
     return {center, RoundedUp::from(radius)};
   }
