@@ -11,7 +11,9 @@
 // is not punished.
 //
 // The largest distance is not that of samples, which miss a window that one triangle covers: it is
-// found by branch and bound over the triangles (measure/furthest.h), and holds for all points.
+// found by branch and bound over the triangles (measure/furthest.h), and holds for all points of
+// triangles that have an area: one that is lower than a billionth of the meshes' extent shows
+// nothing, and counts only where there is no other.
 #pragma once
 
 #include "crease/mesh.h"

@@ -143,11 +143,30 @@ bool cut_by(const Prism& prism, const Part& whole, double settled, Parts& parts)
   return true;
 }
 
+// Per triangle, whether it is any: one without area shows nothing, unless there is nothing else.
+std::vector<char> surface_of(const Surface& from, double rounding) {
+  std::vector<char> counts(from.triangle_count());
+  bool any = false;
+  for (std::size_t t = 0; t < counts.size(); ++t) {
+    const Corners corner = {from.corner(t, 0), from.corner(t, 1), from.corner(t, 2)};
+    const double twice_area = length(cross(corner[1] - corner[0], corner[2] - corner[0]));
+    counts[t] = twice_area > rounding * longest_side(corner);
+    any |= counts[t] != 0;
+  }
+  if (!any) counts.assign(counts.size(), 1);
+  return counts;
+}
+
 class Search {
  public:
   Search(const Surface& from, const Surface& to, const FurthestOptions& options,
          SharedProgress& progress)
-      : from_(from), to_(to), options_(options), progress_(progress), best_(options.at_least) {}
+      : from_(from),
+        to_(to),
+        options_(options),
+        progress_(progress),
+        counts_(surface_of(from, options.absolute)),
+        best_(options.at_least) {}
 
   Furthest run() {
     look_at_vertices();
@@ -190,8 +209,9 @@ class Search {
   void look_at_vertices() {
     const Mesh& mesh = from_.mesh();
     std::vector<bool> used(mesh.vertex_count());
-    for (const Triangle& triangle : mesh.triangles) {
-      for (VertexId v : triangle) used[index_of(v)] = true;
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      if (counts_[t] == 0) continue;
+      for (VertexId v : mesh.triangles[t]) used[index_of(v)] = true;
     }
     distance_of_vertex_.assign(mesh.vertex_count(), 0);
     for_each(mesh.vertex_count(), [&](std::size_t v, Surface::Scratch& scratch) {
@@ -209,6 +229,7 @@ class Search {
     const double enough = settled(best_);
     std::vector<Waiting> all(mesh.triangle_count());
     for_each(mesh.triangle_count(), [&](std::size_t t, Surface::Scratch&) {
+      if (counts_[t] == 0) return;
       // A point of a triangle is at most 1 / sqrt(3) of the longest side from a corner.
       constexpr double kFromACorner = 0.57735027;
       double most = 0;
@@ -327,6 +348,7 @@ class Search {
   const Surface& to_;
   const FurthestOptions& options_;
   SharedProgress& progress_;
+  std::vector<char> counts_;  // per triangle
   std::vector<double> distance_of_vertex_;
   std::vector<Waiting> waiting_;  // triangles of which nothing has been looked at, from next_ on
   std::size_t next_ = 0;

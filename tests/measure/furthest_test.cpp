@@ -27,10 +27,20 @@ struct Dense {
   double found = 0, bound = 0;
 };
 
+bool has_area(const Surface& surface, std::size_t t) {
+  const Vec3d a = surface.corner(t, 0), ab = surface.corner(t, 1) - a,
+              ac = surface.corner(t, 2) - a;
+  return length(cross(ab, ac)) > kAbsolute * std::max({length(ab), length(ac), length(ac - ab)});
+}
+
+// What has no area is no surface, unless nothing has.
 Dense furthest_of_grids(const Surface& from, const Surface& to, int n) {
   Dense dense;
   Surface::Scratch scratch;
+  bool any = false;
+  for (std::size_t t = 0; t < from.triangle_count(); ++t) any |= has_area(from, t);
   for (std::size_t t = 0; t < from.triangle_count(); ++t) {
+    if (any && !has_area(from, t)) continue;
     const Vec3d a = from.corner(t, 0), ab = from.corner(t, 1) - a, ac = from.corner(t, 2) - a;
     // Each point of the triangle is in a small one, whose corners are of the grid.
     const double spacing = std::max({length(ab), length(ac), length(ac - ab)}) / n;
@@ -139,6 +149,26 @@ TEST_CASE("a covered window is found whatever the samples are") {
     CHECK(!*meshes_within(open, whole, half * 0.999, {}));
     CHECK(!*meshes_within(whole, open, half * 0.999, {}));
   }
+}
+
+TEST_CASE("a needle without area is no surface, unless there is nothing else") {
+  const Mesh plain = turned(wall(4));
+  Mesh with_needle = plain;
+  const Vec3d top = plain.positions[0] + Vec3d{3, 4, 5};
+  with_needle.positions.push_back(plain.positions[0]);
+  with_needle.positions.push_back(top);
+  with_needle.triangles.push_back(
+      {VertexId{0}, VertexId(plain.positions.size()), VertexId(plain.positions.size() + 1)});
+  AttributeLayer& normals = *with_needle.normals();
+  normals.of_corner.insert(normals.of_corner.end(), 3, AttributeId{0});
+  const Comparison c = *compare_meshes(with_needle, plain, {.samples = 1000});
+  CHECK(c.distance.a_to_b.max < 1e-12);
+  CHECK(*meshes_within(with_needle, plain, 0, {}));
+
+  Mesh needle = with_needle;
+  needle.triangles = {with_needle.triangles.back()};
+  needle.normals()->of_corner.assign(3, AttributeId{0});
+  CHECK(compare_meshes(needle, plain, {.samples = 1000})->distance.a_to_b.max > 1);
 }
 
 TEST_CASE("walls that are cut into other triangles are one wall, and that is soon found") {
