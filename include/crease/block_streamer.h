@@ -15,8 +15,9 @@
 // until then blocks are shown whole. So are levels by block, once no block is missing.
 //
 // Memory: what BlockViewParameters::max_bytes allows of resident blocks, and beside that at most
-// StreamOptions::max_pending_bytes of payloads, of each thread the BlockFacts::decoded_bytes of
-// what it decodes, and eight decoded blocks that wait for the next update().
+// StreamOptions::max_pending_bytes of payloads, what the source keeps of those that came for
+// nothing (AsyncOptions::max_kept_bytes), of each thread the BlockFacts::decoded_bytes of what it
+// decodes, and eight decoded blocks that wait for the next update().
 //
 // Threads: one at a time calls a streamer. Its own ones decode, and touch nothing that it shows.
 #pragma once
