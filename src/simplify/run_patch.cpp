@@ -84,8 +84,8 @@ void PatchSimplifier::contract_or_hold(const Entry& entry, Index a, Index b, dou
   };
   if (!is_due()) return hold(entry, cost, placed);
   measure_witnesses(a, b, placed);
-  const double far = std::max(double(farthest_witness_) - kRounding, 0.0),
-               least = steering_.far_area * far * far;
+  const double far = std::max(double(farthest_witness_) - kRounding, 0.0);
+  const double least = steering_.far_area * far * far;
   if (placed.cost > kNearLimit * steering_.cost_limit) {
     result_.far_counts.add(least / placed.cost);
   }

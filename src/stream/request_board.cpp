@@ -205,12 +205,14 @@ bool RequestBoard::answer_at_once(Ticket ticket, const Waiting& waiting) {
     put_answer(ticket, waiting.asked_at, beyond_end(range, *size_));
     return true;
   }
-  if (range.bytes == 0 || (size_ && end_of(range) <= prefix_.size())) {
-    if (!size_) return false;
-    const auto bytes =
-        prefix_.subspan(static_cast<std::size_t>(range.bytes == 0 ? 0 : range.offset),
-                        static_cast<std::size_t>(range.bytes));
-    put_answer(ticket, waiting.asked_at, copy_of(bytes));
+  if (range.bytes == 0) {
+    if (size_) put_answer(ticket, waiting.asked_at, std::vector<std::byte>());
+    return size_.has_value();
+  }
+  if (size_ && end_of(range) <= prefix_.size()) {
+    put_answer(ticket, waiting.asked_at,
+               copy_of(prefix_.subspan(static_cast<std::size_t>(range.offset),
+                                       static_cast<std::size_t>(range.bytes))));
     return true;
   }
   std::optional<std::vector<std::byte>> kept = kept_.take(range);
@@ -219,14 +221,14 @@ bool RequestBoard::answer_at_once(Ticket ticket, const Waiting& waiting) {
 }
 
 void RequestBoard::answer_what_can_be() {
-  for (auto i = waiting_.begin(); i != waiting_.end();) {
-    const auto next = std::next(i);
-    if (answer_at_once(i->first.second, i->second)) {
-      offset_of_waiting_.erase(number(i->first.second));
-      waiting_.erase(i);
-    }
-    i = next;
-  }
+  for (auto i = waiting_.begin(); i != waiting_.end();) i = answer_if_can_be(i);
+}
+
+RequestBoard::Shelf::iterator RequestBoard::answer_if_can_be(Shelf::iterator waiting) {
+  const Ticket ticket = waiting->first.second;
+  if (!answer_at_once(ticket, waiting->second)) return std::next(waiting);
+  offset_of_waiting_.erase(number(ticket));
+  return waiting_.erase(waiting);
 }
 
 void RequestBoard::put_answer(Ticket ticket, Clock::time_point asked_at,
@@ -349,10 +351,11 @@ void RequestBoard::deliver(Batch& batch, std::span<const std::byte> bytes) {
     const std::uint64_t begin = part.range.offset - batch.span.offset,
                         end = begin + part.range.bytes;
     if (end > bytes.size()) return;
+    std::vector<std::byte> copy = copy_of(between(begin, end));
     const std::lock_guard guard(lock_);
     if (begin > batch.done) keep(batch.span.offset + batch.done, between(batch.done, begin));
     const std::uint64_t own = std::max(begin, batch.done);  // parts may overlap
-    if (!answer_now(part, copy_of(between(begin, end))) && own < end) {
+    if (!answer_now(part, std::move(copy)) && own < end) {
       keep(batch.span.offset + own, between(own, end));
     }
     batch.done = std::max(batch.done, end);
@@ -381,14 +384,7 @@ bool RequestBoard::answer_now(const BatchPart& part, Result<std::vector<std::byt
 void RequestBoard::keep(std::uint64_t offset, std::span<const std::byte> bytes) {
   kept_.keep(offset, bytes);
   auto i = waiting_.lower_bound(Key{offset, Ticket{0}});
-  while (i != waiting_.end() && i->first.first - offset < bytes.size()) {
-    const auto next = std::next(i);
-    if (answer_at_once(i->first.second, i->second)) {
-      offset_of_waiting_.erase(number(i->first.second));
-      waiting_.erase(i);
-    }
-    i = next;
-  }
+  while (i != waiting_.end() && i->first.first - offset < bytes.size()) i = answer_if_can_be(i);
 }
 
 bool RequestBoard::fail_waiting(const Failure& failure) {

@@ -139,6 +139,7 @@ class RequestBoard {
   bool carry_out_orders();
   bool answer_at_once(Ticket ticket, const Waiting& waiting);
   void answer_what_can_be();
+  Shelf::iterator answer_if_can_be(Shelf::iterator waiting);  // the next one
   bool answer_now(const BatchPart& part, Result<std::vector<std::byte>> bytes);
   void keep(std::uint64_t offset, std::span<const std::byte> bytes);
   void put_answer(Ticket ticket, Clock::time_point asked_at, Result<std::vector<std::byte>> bytes);
