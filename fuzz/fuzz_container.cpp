@@ -1,5 +1,5 @@
-// Any bytes are a Failure or a file that is written again to the byte. They go through the door as
-// they are, and once more with right checksums, or nothing would come past them.
+// Any bytes are a Failure or a file that says the same when it is written again. They go through
+// the door as they are, and once more with right checksums, or nothing would come past them.
 #include "codec/container_files.h"
 #include "codec/repair_checksums.h"
 
@@ -26,7 +26,7 @@ void open_and_read(const std::vector<std::byte>& bytes) {
     if (wrong.front().empty()) std::abort();
     return;
   }
-  if (*complete != file->block_count() || bytes_of(read_whole(*file)) != bytes) std::abort();
+  if (*complete != file->block_count() || !is_written_again(*file)) std::abort();
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// model.crease, versions 2 and 3: blocks from coarse to fine and a directory of them
+// model.crease, versions 6 and 7: blocks from coarse to fine and a directory of them
 // (docs/format.md).
 //
 //   Result<ByteSourcePtr> source = open_file_source("city.crease");
@@ -69,8 +69,9 @@ struct ModelFacts {
 struct BlockFacts {
   std::uint16_t band = 0;  // ModelFacts::bands.size(): the base
   std::uint32_t patch = 0;
-  Vec3i center;              // of a sphere around all vertices of both ends, grid units
-  std::uint32_t radius = 0;  // grid units
+  // Of a sphere around all vertices of both ends, grid units; a file rounds it up by less than 2 %.
+  Vec3i center;
+  std::uint32_t radius = 0;
   std::uint32_t splits = 0;
   std::uint32_t vertices = 0;  // at the fine end, border included
   std::uint32_t triangles_coarse = 0, triangles_fine = 0;
@@ -83,7 +84,7 @@ struct BlockEntry {
   BlockFacts facts;
   std::uint64_t offset = 0;  // of the payload in the file
   std::uint32_t bytes = 0;
-  std::uint64_t checksum = 0;
+  std::uint32_t checksum = 0;
 };
 
 constexpr std::uint32_t page_of(BlockId block) {
@@ -135,15 +136,16 @@ struct BlockFileHead {
 };
 
 // Memory that one call may take. No call takes more than the bytes that there are can back: opening
-// less than 1 MiB, a page less than 3 times its bytes, names at most 12 times theirs, an image its
-// own.
+// less than 1 MiB, a page its bytes, 160 a block and 16 for each dependency that it announces,
+// names of parts 64 each, 1 MiB and the letters that they announce, other names at most 12 times
+// their bytes, an image its own.
 struct BlockFileLimits {
   std::uint64_t max_bytes = std::uint64_t(1) << 30;
 };
 
 class BlockFile {
  public:
-  // Versions 4 and 5, which has images; version 1, from before the first release, fails with
+  // Versions 6 and 7, which has images; those before, from before the first release, fail with
   // NotSupported.
   static Result<BlockFile> open(ByteSourcePtr source, const BlockFileLimits& limits = {});
 

@@ -89,6 +89,16 @@ class ByteReader {
     offset_ += length;
     return s;
   }
+  // The next `count` bytes as they are; none, and truncated(), where there are not as many.
+  std::span<const std::byte> take(std::size_t count) {
+    if (count > remaining()) {
+      truncated_ = true;
+      offset_ = bytes_.size();
+      return {};
+    }
+    offset_ += count;
+    return bytes_.subspan(offset_ - count, count);
+  }
   // Everything that remains. What does not fill a whole value sets truncated().
   std::vector<std::uint32_t> rest_u32s() {
     std::vector<std::uint32_t> values(remaining() / 4);

@@ -15,7 +15,7 @@ namespace crease {
 namespace {
 
 // Of memory taken to bytes read, at most (see BlockFileLimits).
-constexpr std::uint64_t kBytesFactor = 1, kPageFactor = 3, kNamesFactor = 12;
+constexpr std::uint64_t kBytesFactor = 1, kNamesFactor = 12;
 
 Failure with_name(const ByteSource& source, const Failure& failure) {
   const std::string name = source.name();
@@ -66,15 +66,16 @@ Result<std::vector<std::byte>> BlockFile::read_range(const FileRange& range,
 
 Result<DirectoryPage> BlockFile::read_page(std::uint32_t page) const {
   CREASE_ASSERT(page < page_count());
-  const auto bytes = read_range(head_.pages[page], page_name(head_, page), kPageFactor);
+  const auto bytes = read_range(head_.pages[page], page_name(head_, page), kBytesFactor);
   if (!bytes.ok()) return bytes.failure();
-  Result<DirectoryPage> decoded = decode_page(*bytes, head_, page, Checksums::Verify);
+  Result<DirectoryPage> decoded =
+      decode_page(*bytes, head_, page, Checksums::Verify, limits_.max_bytes);
   if (!decoded.ok()) return named(decoded.failure());
   return decoded;
 }
 
 Status check_payload(const BlockEntry& entry, std::span<const std::byte> payload) {
-  if (payload.size() == entry.bytes && checksum(payload) == entry.checksum) return Done{};
+  if (payload.size() == entry.bytes && payload_checksum(payload) == entry.checksum) return Done{};
   return fail(Error::BadChecksum, block_name(entry) + ": checksum differs" + kBuildAgain);
 }
 
@@ -104,9 +105,9 @@ Result<std::vector<Material>> BlockFile::read_materials() const {
 }
 
 Result<std::vector<std::string>> BlockFile::read_parts() const {
-  const auto bytes = read_section(head_.parts, "part names", kNamesFactor);
+  const auto bytes = read_section(head_.parts, "part names", kBytesFactor);
   if (!bytes.ok()) return bytes.failure();
-  auto parts = decode_parts(*bytes, head_.part_count);
+  auto parts = decode_parts(*bytes, head_.part_count, limits_.max_bytes);
   if (!parts.ok()) return named(parts.failure());
   return parts;
 }

@@ -14,4 +14,9 @@ enum class Checksums {
 // XXH3-64 with seed 0, of `first` followed by `second`.
 std::uint64_t checksum(std::span<const std::byte> first, std::span<const std::byte> second = {});
 
+// Its lower half, which a page has of each block.
+inline std::uint32_t payload_checksum(std::span<const std::byte> payload) {
+  return static_cast<std::uint32_t>(checksum(payload));
+}
+
 }  // namespace crease

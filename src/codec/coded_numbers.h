@@ -118,4 +118,12 @@ std::int32_t code_signed(Coder& coder, SignedModel& model, std::int32_t value) {
                      value);
 }
 
+// A number near the one that is expected, of all of 32 bits: their difference goes around.
+template <class Coder>
+std::uint32_t code_after(Coder& coder, SignedModel& model, std::uint32_t value,
+                         std::uint32_t expected) {
+  const auto difference = static_cast<std::int32_t>(value - expected);
+  return expected + static_cast<std::uint32_t>(code_signed(coder, model, difference));
+}
+
 }  // namespace crease::codec

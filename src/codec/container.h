@@ -11,8 +11,8 @@
 namespace crease::format {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'C', 'R', 'E', 'A', 'S', 'E', '\n'};
-// Version 5 is version 4 with images; a file without any is version 4.
-inline constexpr std::uint16_t kContainerVersion = 4, kVersionWithImages = 5;
+// Version 7 is version 6 with images; a file without any is version 6.
+inline constexpr std::uint16_t kContainerVersion = 6, kVersionWithImages = 7;
 // Of AttributeCoding::Lattice. Values of the code that the enumeration has are coded as no program
 // reads any more.
 inline constexpr std::uint8_t kLatticeCode = 4;
@@ -24,20 +24,19 @@ inline constexpr std::uint32_t kHeadChecksumOffset = 24;
 inline constexpr std::uint32_t kFixedHeadBytes = 144;
 inline constexpr std::uint32_t kImageHeadBytes = 24;  // behind those, with images
 inline constexpr std::uint32_t kLayerBytes = 12;      // beside the name's bytes
-inline constexpr std::uint32_t kBandBytes = 36;
 inline constexpr std::uint32_t kPageReferenceBytes = 12;
 inline constexpr std::uint8_t kMaxGridBits = 31;
 inline constexpr double kMostStepsToOrigin = 1125899906842624;  // 2^50
 
 // Names.
 inline constexpr std::uint32_t kMinMaterialBytes = 24;
-inline constexpr std::uint32_t kMinPartBytes = 4;
 inline constexpr std::uint32_t kImageEntryBytes = 20;  // beside the name's bytes
 
 // A page of the directory.
 inline constexpr std::uint32_t kMaxPageBytes = 4u << 20;
 inline constexpr std::uint32_t kPageHeadBytes = 16;
-inline constexpr std::uint32_t kBlockEntryBytes = 76;
+inline constexpr std::uint32_t kPayloadChecksumBytes = 4;
+inline constexpr std::uint32_t kMaxPageDependencies = 1u << 20;
 
 constexpr std::uint32_t page_count(std::uint32_t blocks) {
   return blocks / kBlocksPerPage + (blocks % kBlocksPerPage == 0 ? 0 : 1);
@@ -46,8 +45,9 @@ constexpr std::uint32_t blocks_of_page(std::uint32_t blocks, std::uint32_t page)
   const std::uint32_t before = page * kBlocksPerPage;
   return blocks - before < kBlocksPerPage ? blocks - before : kBlocksPerPage;
 }
-constexpr std::uint64_t page_bytes(std::uint32_t blocks, std::uint64_t dependencies) {
-  return kPageHeadBytes + std::uint64_t(kBlockEntryBytes) * blocks + 4 * dependencies;
+// Of the page, before its entries.
+constexpr std::uint32_t fixed_page_bytes(std::uint32_t blocks) {
+  return kPageHeadBytes + kPayloadChecksumBytes * blocks;
 }
 
 // Errors of blocks: the upper half of an f32 without its sign.
@@ -60,6 +60,27 @@ constexpr float error_of_code(std::uint16_t code) {
 constexpr std::uint16_t code_of_error(float error) {
   const float positive = error + 0.0f;  // -0 is no less than 0, but its bits are
   return static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(positive) + 0x7fffu) >> 15);
+}
+
+// Spheres of blocks: a radius of at most eight digits and zeros behind them, as many as each
+// coordinate of the centre has at least.
+inline constexpr std::uint32_t kRadiusSteps = 128;  // of those with eight digits, up to twice it
+inline constexpr int kMaxSphereShift = 24;
+inline constexpr std::uint32_t kMaxRadiusCode =
+    kMaxSphereShift * kRadiusSteps + 2 * kRadiusSteps - 1;
+
+constexpr int sphere_shift(std::uint32_t radius) {
+  const int digits = std::bit_width(radius);
+  return digits > 8 ? digits - 8 : 0;
+}
+// Of a rounded one. Codes ascend with their radii, and none is left out.
+constexpr std::uint32_t code_of_radius(std::uint32_t radius) {
+  const int shift = sphere_shift(radius);
+  return static_cast<std::uint32_t>(shift) * kRadiusSteps + (radius >> shift);
+}
+constexpr std::uint32_t radius_of_code(std::uint32_t code) {
+  const std::uint32_t shift = code < 2 * kRadiusSteps ? 0 : code / kRadiusSteps - 1;
+  return (code - shift * kRadiusSteps) << shift;
 }
 
 }  // namespace crease::format

@@ -17,15 +17,17 @@ namespace crease {
 Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_t size,
                                   Checksums checksums);
 
-// `bytes`: all of head.pages[page].
+// `bytes`: all of head.pages[page]. `max_bytes`: of memory, as BlockFileLimits counts it.
 Result<DirectoryPage> decode_page(std::span<const std::byte> bytes, const BlockFileHead& head,
-                                  std::uint32_t page, Checksums checksums);
+                                  std::uint32_t page, Checksums checksums,
+                                  std::uint64_t max_bytes = BlockFileLimits{}.max_bytes);
 
 // `bytes`: all of the section, whose checksum is right; none: there are no names. `count`: as the
-// head says.
+// head says. `max_bytes`: of memory, the section's included.
 Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes);
-Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes,
-                                              std::uint32_t count);
+Result<std::vector<std::string>> decode_parts(
+    std::span<const std::byte> bytes, std::uint32_t count,
+    std::uint64_t max_bytes = BlockFileLimits{}.max_bytes);
 
 // `bytes`: all of head.image_list, whose checksum is right; none: there are no images.
 Result<std::vector<ImageEntry>> decode_image_list(std::span<const std::byte> bytes,

@@ -1,9 +1,12 @@
 #include "codec/decode_container.h"
 
 #include "base/bytes.h"
+#include "codec/band_coder.h"
 #include "codec/container.h"
 #include "codec/container_rules.h"
 #include "codec/file_version.h"
+#include "codec/range_decoder.h"
+#include "codec/text_coder.h"
 
 #include <algorithm>
 #include <utility>
@@ -12,14 +15,11 @@ namespace crease {
 
 namespace {
 
+// Of memory, that names of parts take: to decode them, and each beside its letters.
+constexpr std::uint64_t kCoderBytes = 1u << 20, kNameBytes = 64;
+
 Failure bad_head(const std::string& what) {
   return fail(Error::BadFormat, "head: " + what);
-}
-
-LevelError decode_errors(ByteReader& in) {
-  LevelError e;
-  for (float* f : {&e.surface, &e.line, &e.degrees, &e.texture}) *f = in.f32();
-  return e;
 }
 
 std::uint8_t decode_reserved(ByteReader& in, int count) {
@@ -46,6 +46,17 @@ LayerSchema decode_layer(ByteReader& in, std::uint8_t& reserved) {
   layer.bits = in.u8();
   reserved |= decode_reserved(in, 3);
   return layer;
+}
+
+// False: they are none.
+bool decode_bands(ByteReader& in, std::uint16_t count, ModelFacts& facts) {
+  const std::uint32_t bytes = in.u32();
+  if (bytes > in.remaining()) return false;
+  codec::RangeDecoder decoder(in.take(bytes));
+  codec::BandCoder<codec::RangeDecoder> coder(decoder, facts.triangle_count);
+  for (std::uint16_t b = 0; b < count && !coder.failed(); ++b)
+    facts.bands.push_back(coder.code({}));
+  return !coder.failed() && decoder.bytes_left() == 0;
 }
 
 // From the file's end: images, their list, names of parts. False: they are longer than the file.
@@ -91,43 +102,37 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head, boo
   if (has_images) {
     head.images.bytes = in.u64();
     if (head.image_list.range.bytes == 0 || head.images.bytes == 0) {
-      return bad_head("version 5 without images");
+      return bad_head("version 7 without images");
     }
   }
   if (!place_last_sections(head)) return bad_head("images that end after the file");
   const std::uint64_t blocks_end = head.parts.range.offset;
-  if (head.part_count == 0 ? head.parts.range.bytes != 0
-                           : head.part_count > head.parts.range.bytes / format::kMinPartBytes) {
+  if ((head.part_count == 0) != (head.parts.range.bytes == 0)) {
     return bad_head("there are not as many names as parts");
   }
   const std::uint32_t pages = format::page_count(head.block_count);
   if (std::uint64_t(layer_count) * format::kLayerBytes +
-          std::uint64_t(band_count) * format::kBandBytes +
           std::uint64_t(pages) * format::kPageReferenceBytes >
       in.remaining()) {
-    return bad_head("too short for its layers, bands and pages");
+    return bad_head("too short for its layers and pages");
   }
   for (std::uint16_t l = 0; l < layer_count; ++l) {
     facts.layers.push_back(decode_layer(in, reserved));
   }
-  for (std::uint16_t b = 0; b < band_count; ++b) {
-    BandFacts band;
-    band.patches = in.u32();
-    band.contractions = in.u64();
-    band.triangles_after = in.u64();
-    band.error = decode_errors(in);
-    facts.bands.push_back(band);
+  if (band_count > 0 && !decode_bands(in, band_count, facts)) {
+    return bad_head("its bands do not end with their bytes");
   }
   for (std::uint32_t p = 0; p < pages; ++p) {
     FileRange page;
     page.offset = in.u64();
     page.bytes = in.u32();
-    const std::uint64_t least = format::page_bytes(format::blocks_of_page(head.block_count, p), 0);
+    const std::uint32_t least =
+        format::fixed_page_bytes(format::blocks_of_page(head.block_count, p));
     const std::string name = "page " + std::to_string(p);
     if (p == 0 ? page.offset != end : page.offset < end) {
       return bad_head(name + " is not behind what comes before it");
     }
-    if (page.bytes < least || (page.bytes - least) % 4 != 0 || page.bytes > format::kMaxPageBytes) {
+    if (page.bytes < least || page.bytes > format::kMaxPageBytes) {
       return bad_head(name + " has a size that no such page has");
     }
     if (page.offset > blocks_end || page.bytes > blocks_end - page.offset) {
@@ -209,19 +214,30 @@ Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes)
   return materials;
 }
 
-Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes,
-                                              std::uint32_t count) {
+Result<std::vector<std::string>> decode_parts(std::span<const std::byte> bytes, std::uint32_t count,
+                                              std::uint64_t max_bytes) {
   std::vector<std::string> parts;
   if (bytes.empty()) return parts;
+  const auto bad = [](const std::string& what) {
+    return fail(Error::BadFormat, "part names: " + what);
+  };
   ByteReader in(bytes);
-  if (in.u32() != count || count > in.remaining() / format::kMinPartBytes) {
-    return fail(Error::BadFormat, "part names: their number is not as many as there are");
+  const std::uint64_t letters = in.u64();
+  if (in.truncated()) return bad("they end too early");
+  const std::uint64_t taken = bytes.size() + kCoderBytes + kNameBytes * std::uint64_t(count);
+  if (taken > max_bytes || letters > max_bytes - taken) {
+    return fail(Error::OverLimit, "part names: they take more than the limit of " +
+                                      std::to_string(max_bytes) + " bytes");
   }
-  parts.reserve(count);
-  for (std::uint32_t i = 0; i < count; ++i) parts.push_back(in.text());
-  if (in.truncated() || in.remaining() != 0) {
-    return fail(Error::BadFormat, "part names: they do not end with their bytes");
+  codec::RangeDecoder decoder(in.take(in.remaining()));
+  codec::TextCoder<codec::RangeDecoder> coder(decoder);
+  std::uint64_t left = letters;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    parts.push_back(coder.code({}, static_cast<std::size_t>(left)));
+    if (coder.failed()) return bad("name " + std::to_string(i) + " is not one");
+    left -= parts.back().size();
   }
+  if (left != 0 || decoder.bytes_left() > 0) return bad("they do not end with their bytes");
   return parts;
 }
 

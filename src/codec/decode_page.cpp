@@ -4,7 +4,10 @@
 #include "codec/container_rules.h"
 #include "codec/decode_container.h"
 #include "codec/file_version.h"
+#include "codec/page_coder.h"
+#include "codec/range_decoder.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -12,59 +15,29 @@ namespace crease {
 
 namespace {
 
-LevelError decode_error_codes(ByteReader& in) {
-  LevelError e;
-  for (float* f : {&e.surface, &e.line, &e.degrees, &e.texture}) {
-    *f = format::error_of_code(in.u16());
-  }
-  return e;
-}
-
-// An entry as it stands in the page, its offset and its number left to the caller.
-struct DecodedEntry {
-  BlockEntry entry;
-  std::uint16_t reserved = 0;
-  std::uint32_t dependency_end = 0;
-};
-
-DecodedEntry decode_entry(ByteReader& in) {
-  DecodedEntry result;
-  BlockFacts& facts = result.entry.facts;
-  result.entry.checksum = in.u64();
-  result.entry.bytes = in.u32();
-  facts.decoded_bytes = in.u32();
-  facts.band = in.u16();
-  result.reserved = in.u16();
-  facts.patch = in.u32();
-  for (int axis = 0; axis < 3; ++axis) facts.center[axis] = static_cast<std::int32_t>(in.u32());
-  facts.radius = in.u32();
-  for (std::uint32_t* n :
-       {&facts.splits, &facts.vertices, &facts.triangles_coarse, &facts.triangles_fine}) {
-    *n = in.u32();
-  }
-  facts.coarse = decode_error_codes(in);
-  facts.fine = decode_error_codes(in);
-  result.dependency_end = in.u32();
-  return result;
-}
-
 class PageDecoder {
  public:
+  // `bytes` from the page's number on.
   PageDecoder(std::span<const std::byte> bytes, const BlockFileHead& head, std::uint32_t page)
-      : in_(bytes), head_(head), page_(page) {
-    in_.u64();  // the checksum
-  }
+      : in_(bytes), head_(head), page_(page) {}
 
-  Result<DirectoryPage> run() {
-    const std::uint32_t number = in_.u32();
-    dependency_count_ = in_.u32();
+  Result<DirectoryPage> run(std::uint64_t max_bytes) {
+    const std::uint32_t number = in_.u32(), dependency_count = in_.u32();
     const std::uint32_t count = format::blocks_of_page(head_.block_count, page_);
     if (number != page_) return bad("it is page " + std::to_string(number));
-    if (head_.pages[page_].bytes != format::page_bytes(count, dependency_count_)) {
-      return bad("its size is not that of its entries");
+    if (dependency_count > format::kMaxPageDependencies) return bad("too many dependencies");
+    const std::uint64_t page_bytes = head_.pages[page_].bytes;
+    if (page_bytes + 160 * std::uint64_t(count) + 16 * std::uint64_t(dependency_count) >
+        max_bytes) {
+      return fail(Error::OverLimit, page_name(head_, page_) + ": it takes more than the limit of " +
+                                        std::to_string(max_bytes) + " bytes");
     }
-    if (auto failure = decode_entries(count)) return *failure;
-    if (auto failure = decode_dependencies()) return *failure;
+    result_.first = BlockId{page_ * kBlocksPerPage};
+    result_.blocks.reserve(count);
+    result_.dependency_ends.reserve(count);
+    // What is announced costs no memory before it is there.
+    result_.dependencies.reserve(std::min<std::uint64_t>(dependency_count, 4 * page_bytes));
+    if (auto failure = decode_entries(count, dependency_count)) return *failure;
     return std::move(result_);
   }
 
@@ -76,53 +49,53 @@ class PageDecoder {
     return bad("block " + std::to_string(index_of(id)) + ": " + what);
   }
 
-  std::optional<Failure> decode_entries(std::uint32_t count) {
+  std::optional<Failure> decode_entries(std::uint32_t count, std::uint32_t dependency_count) {
+    std::vector<std::uint32_t> checksums(count);
+    for (std::uint32_t& checksum : checksums) checksum = in_.u32();
+    codec::RangeDecoder decoder(in_.take(in_.remaining()));
+    codec::PageCoder<codec::RangeDecoder> coder(decoder, head_.facts);
     const FileRange& range = head_.pages[page_];
-    result_.first = BlockId{page_ * kBlocksPerPage};
-    result_.blocks.reserve(count);
-    result_.dependency_ends.reserve(count);
     std::uint64_t offset = range.offset + range.bytes;
     const std::uint64_t end =
         page_ + 1 < head_.pages.size() ? head_.pages[page_ + 1].offset : head_.parts.range.offset;
-    std::uint32_t dependency_end = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      DecodedEntry decoded = decode_entry(in_);
-      BlockEntry& entry = decoded.entry;
-      entry.id = BlockId{page_ * kBlocksPerPage + i};
-      entry.offset = offset;
-      if (decoded.reserved != 0) return bad(entry.id, "a reserved byte is not 0");
-      std::string wrong = broken_rule(entry.facts, head_.facts.bands.size());
-      if (!wrong.empty()) return bad(entry.id, wrong);
-      if (entry.bytes > end - offset) return bad(entry.id, "it ends where another page is");
-      if (decoded.dependency_end < dependency_end || decoded.dependency_end > dependency_count_) {
-        return bad(entry.id, "its dependencies are out of range");
-      }
-      offset += entry.bytes;
-      dependency_end = decoded.dependency_end;
-      result_.blocks.push_back(entry);
-      result_.dependency_ends.push_back(dependency_end);
+      const BlockId id{page_ * kBlocksPerPage + i};
+      const codec::PageEntry coded = coder.code({});
+      if (coder.failed()) return bad(id, "what no writer writes");
+      std::string wrong = broken_rule(coded.facts, head_.facts.bands.size());
+      if (!wrong.empty()) return bad(id, wrong);
+      if (coded.bytes > end - offset) return bad(id, "it ends where another page is");
+      result_.blocks.push_back({id, coded.facts, offset, coded.bytes, checksums[i]});
+      offset += coded.bytes;
+      if (auto failure = decode_dependencies(id, dependency_count, coder)) return failure;
     }
+    if (coder.failed() || decoder.bytes_left() > 0) return bad("its entries do not end with it");
     if (offset != end) return bad("its blocks do not end where the next page begins");
-    if (dependency_end != dependency_count_) return bad("dependencies of no block");
+    if (result_.dependencies.size() != dependency_count) {
+      return bad("it has not as many dependencies as it says");
+    }
     return std::nullopt;
   }
 
-  std::optional<Failure> decode_dependencies() {
-    result_.dependencies.reserve(dependency_count_);
-    for (std::uint32_t i = 0; i < dependency_count_; ++i) {
-      result_.dependencies.push_back(BlockId{in_.u32()});
+  std::optional<Failure> decode_dependencies(BlockId id, std::uint32_t most,
+                                             codec::PageCoder<codec::RangeDecoder>& coder) {
+    const std::uint32_t count = coder.code_dependency_count(0);
+    if (count > most - result_.dependencies.size()) {
+      return bad(id, "its dependencies are out of range");
     }
-    for (const BlockEntry& entry : result_.blocks) {
-      std::string wrong = broken_rule(entry.id, result_.dependencies_of(entry.id));
-      if (!wrong.empty()) return bad(entry.id, wrong);
+    for (std::uint32_t d = 0; d < count && !coder.failed(); ++d) {
+      result_.dependencies.push_back(BlockId{coder.code_dependency(0)});
     }
+    result_.dependency_ends.push_back(static_cast<std::uint32_t>(result_.dependencies.size()));
+    if (coder.failed()) return bad(id, "what no writer writes");
+    std::string wrong = broken_rule(id, result_.dependencies_of(id));
+    if (!wrong.empty()) return bad(id, wrong);
     return std::nullopt;
   }
 
   ByteReader in_;
   const BlockFileHead& head_;
   std::uint32_t page_;
-  std::uint32_t dependency_count_ = 0;
   DirectoryPage result_;
 };
 
@@ -137,14 +110,15 @@ std::string block_name(const BlockEntry& entry) {
 }
 
 Result<DirectoryPage> decode_page(std::span<const std::byte> bytes, const BlockFileHead& head,
-                                  std::uint32_t page, Checksums checksums) {
-  // What decode_head() has seen to: no page is smaller than its entries.
+                                  std::uint32_t page, Checksums checksums,
+                                  std::uint64_t max_bytes) {
+  // What decode_head() has seen to: no page is smaller than its fixed part.
   CREASE_ASSERT(page < head.pages.size() && bytes.size() == head.pages[page].bytes &&
                 bytes.size() >= format::kPageHeadBytes);
   if (checksums == Checksums::Verify && checksum(bytes.subspan(8)) != ByteReader(bytes).u64()) {
     return fail(Error::BadChecksum, page_name(head, page) + ": checksum differs" + kBuildAgain);
   }
-  return PageDecoder(bytes, head, page).run();
+  return PageDecoder(bytes.subspan(8), head, page).run(max_bytes);
 }
 
 }  // namespace crease

@@ -1,10 +1,15 @@
 #include "codec/encode_container.h"
 
+#include "codec/band_coder.h"
 #include "codec/checksum.h"
 #include "codec/container.h"
 #include "codec/container_rules.h"
+#include "codec/encode_page.h"
+#include "codec/range_encoder.h"
+#include "codec/text_coder.h"
 
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace crease {
@@ -15,14 +20,6 @@ constexpr std::size_t kMaxCount16 = std::numeric_limits<std::uint16_t>::max();
 
 void encode_reserved(ByteWriter& out, int count) {
   for (int i = 0; i < count; ++i) out.u8(0);
-}
-
-void encode_errors(ByteWriter& out, const LevelError& e) {
-  for (float f : {e.surface, e.line, e.degrees, e.texture}) out.f32(f);
-}
-
-void encode_error_codes(ByteWriter& out, const LevelError& e) {
-  for (float f : {e.surface, e.line, e.degrees, e.texture}) out.u16(format::code_of_error(f));
 }
 
 std::vector<std::byte> encode_materials(const std::vector<Material>& materials) {
@@ -37,9 +34,17 @@ std::vector<std::byte> encode_materials(const std::vector<Material>& materials) 
 }
 
 std::vector<std::byte> encode_parts(const std::vector<std::string>& parts) {
+  if (parts.empty()) return {};
+  std::uint64_t letters = 0;
+  codec::RangeEncoder encoder;
+  codec::TextCoder<codec::RangeEncoder> coder(encoder);
+  for (const std::string& part : parts) {
+    coder.code(part, part.size());
+    letters += part.size();
+  }
   ByteWriter out;
-  if (!parts.empty()) out.u32(static_cast<std::uint32_t>(parts.size()));
-  for (const std::string& part : parts) out.text(part);
+  out.u64(letters);
+  out.append(encoder.finish());
   return out.take();
 }
 
@@ -74,12 +79,13 @@ void encode_layers_and_bands(ByteWriter& out, const ModelFacts& facts) {
     out.u8(layer.bits);
     encode_reserved(out, 3);
   }
-  for (const BandFacts& band : facts.bands) {
-    out.u32(band.patches);
-    out.u64(band.contractions);
-    out.u64(band.triangles_after);
-    encode_errors(out, band.error);
-  }
+  codec::RangeEncoder encoder;
+  codec::BandCoder<codec::RangeEncoder> coder(encoder, facts.triangle_count);
+  for (const BandFacts& band : facts.bands) coder.code(band);
+  if (facts.bands.empty()) return;
+  const std::vector<std::byte> bands = encoder.finish();
+  out.u32(static_cast<std::uint32_t>(bands.size()));
+  out.append(bands);
 }
 
 std::string broken_rule_of_content(const ContainerContent& content, std::size_t block_count) {
@@ -98,15 +104,14 @@ std::string broken_rule_of_content(const ContainerContent& content, std::size_t 
 }  // namespace
 
 Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerContent& content,
-                                               std::span<const std::uint32_t> dependency_counts) {
+                                               std::size_t block_count) {
   const ModelFacts& facts = content.facts;
-  if (std::string wrong = broken_rule_of_content(content, dependency_counts.size());
-      !wrong.empty()) {
+  if (std::string wrong = broken_rule_of_content(content, block_count); !wrong.empty()) {
     return fail(Error::Invalid, wrong);
   }
   ContainerWriter writer(sink);
-  writer.block_count_ = static_cast<std::uint32_t>(dependency_counts.size());
-  writer.band_count_ = static_cast<std::uint16_t>(facts.bands.size());
+  writer.facts_ = facts;
+  writer.block_count_ = static_cast<std::uint32_t>(block_count);
   ByteWriter lists;
   encode_layers_and_bands(lists, facts);
   const std::uint32_t page_count = format::page_count(writer.block_count_);
@@ -121,21 +126,9 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   writer.head_bytes_ = static_cast<std::uint32_t>(head_bytes);
   writer.position_ = head_bytes;
 
-  for (std::uint32_t p = 0; p < page_count; ++p) {
-    const std::uint32_t count = format::blocks_of_page(writer.block_count_, p);
-    std::uint64_t dependencies = 0;
-    for (std::uint32_t n : dependency_counts.subspan(p * kBlocksPerPage, count)) dependencies += n;
-    const std::uint64_t bytes = format::page_bytes(count, dependencies);
-    if (bytes > format::kMaxPageBytes) {
-      return fail(Error::OverLimit, "page " + std::to_string(p) + ": " +
-                                        std::to_string(dependencies) + " dependencies");
-    }
-    writer.pages_.push_back({0, static_cast<std::uint32_t>(bytes)});
-  }
-
   ByteWriter& head = writer.head_;
   head.u32(writer.block_count_);
-  head.u16(writer.band_count_);
+  head.u16(static_cast<std::uint16_t>(facts.bands.size()));
   head.u16(static_cast<std::uint16_t>(facts.layers.size()));
   head.u64(facts.vertex_count);
   head.u64(facts.triangle_count);
@@ -165,7 +158,6 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
     if (Status status = writer.write_section(*section); !status.ok()) return status.failure();
   }
   head.append(lists.bytes());
-  if (page_count > 0) writer.begin_page();
   return writer;
 }
 
@@ -175,71 +167,48 @@ Status ContainerWriter::write_section(std::span<const std::byte> bytes) {
   return bytes.empty() ? Status(Done{}) : sink_->write(offset, bytes);
 }
 
-void ContainerWriter::begin_page() {
-  const std::uint32_t page = page_of(BlockId{next_});
-  pages_[page].offset = position_;
-  position_ += pages_[page].bytes;
-  const std::uint64_t without = format::page_bytes(format::blocks_of_page(block_count_, page), 0);
-  dependency_limit_ = static_cast<std::uint32_t>((pages_[page].bytes - without) / 4);
-  dependency_count_ = 0;
-  entries_ = {};
-  dependencies_ = {};
-}
-
 Status ContainerWriter::add(const BlockFacts& block, std::span<const BlockId> dependencies,
                             std::span<const std::byte> payload) {
   const auto refused = [this](const std::string& why) {
     return fail(Error::Invalid, "block " + std::to_string(next_) + ": " + why);
   };
   if (next_ == block_count_) return refused("more blocks than announced");
-  if (std::string wrong = broken_rule(block, band_count_); !wrong.empty()) return refused(wrong);
-  if (std::string wrong = broken_rule(BlockId{next_}, dependencies); !wrong.empty()) {
+  const BlockId id{next_};
+  if (std::string wrong = broken_rule(block, facts_.bands.size()); !wrong.empty()) {
     return refused(wrong);
   }
+  if (std::string wrong = broken_rule(id, dependencies); !wrong.empty()) return refused(wrong);
+  const std::optional<BlockFacts> facts = rounded_up(block);
+  if (!facts) return refused("its sphere is too large");
   if (payload.size() > std::numeric_limits<std::uint32_t>::max()) return refused("4 GiB or more");
-  const bool last_of_page = next_ + 1 == block_count_ || (next_ + 1) % kBlocksPerPage == 0;
-  const std::size_t left = dependency_limit_ - dependency_count_;
-  if (dependencies.size() > left || (last_of_page && dependencies.size() != left)) {
-    return refused("its page has not as many dependencies as announced");
+  if (dependencies.size() > format::kMaxPageDependencies - page_.dependencies.size()) {
+    return refused("too many dependencies for its page");
   }
-  if (Status status = sink_->write(position_, payload); !status.ok()) return status;
-  position_ += payload.size();
-
-  dependency_count_ += static_cast<std::uint32_t>(dependencies.size());
-  for (BlockId id : dependencies) dependencies_.u32(static_cast<std::uint32_t>(id));
-  entries_.u64(checksum(payload));
-  entries_.u32(static_cast<std::uint32_t>(payload.size()));
-  entries_.u32(block.decoded_bytes);
-  entries_.u16(block.band);
-  entries_.u16(0);  // reserved
-  entries_.u32(block.patch);
-  for (int i = 0; i < 3; ++i) entries_.u32(static_cast<std::uint32_t>(block.center[i]));
-  for (std::uint32_t n :
-       {block.radius, block.splits, block.vertices, block.triangles_coarse, block.triangles_fine}) {
-    entries_.u32(n);
-  }
-  encode_error_codes(entries_, block.coarse);
-  encode_error_codes(entries_, block.fine);
-  entries_.u32(dependency_count_);
-
-  if (last_of_page) {
-    if (Status status = finish_page(); !status.ok()) return status;
-  }
+  if (page_.blocks.empty()) page_.first = id;
+  page_.blocks.push_back(
+      {id, *facts, 0, static_cast<std::uint32_t>(payload.size()), payload_checksum(payload)});
+  page_.dependencies.insert(page_.dependencies.end(), dependencies.begin(), dependencies.end());
+  page_.dependency_ends.push_back(static_cast<std::uint32_t>(page_.dependencies.size()));
+  payloads_.insert(payloads_.end(), payload.begin(), payload.end());
   ++next_;
-  if (last_of_page && next_ < block_count_) begin_page();
-  return Done{};
+  const bool is_last_of_page = next_ == block_count_ || next_ % kBlocksPerPage == 0;
+  return is_last_of_page ? write_page() : Done{};
 }
 
-Status ContainerWriter::finish_page() {
-  const std::uint32_t page = page_of(BlockId{next_});
-  ByteWriter body, out;
-  body.u32(page);
-  body.u32(dependency_count_);
-  body.append(entries_.bytes());
-  body.append(dependencies_.bytes());
-  out.u64(checksum(body.bytes()));
-  out.append(body.bytes());
-  return sink_->write(pages_[page].offset, out.bytes());
+// And the blocks behind it.
+Status ContainerWriter::write_page() {
+  const std::vector<std::byte> bytes = encode_page(page_, page_of(page_.first), facts_);
+  if (bytes.size() > format::kMaxPageBytes) {
+    return fail(Error::OverLimit, "page " + std::to_string(pages_.size()) + ": too large");
+  }
+  pages_.push_back({position_, static_cast<std::uint32_t>(bytes.size())});
+  for (const std::span<const std::byte> part :
+       {std::span(bytes), std::span(std::as_const(payloads_))}) {
+    if (Status status = write_section(part); !status.ok()) return status;
+  }
+  page_ = {};
+  payloads_.clear();
+  return Done{};
 }
 
 Status ContainerWriter::finish() {

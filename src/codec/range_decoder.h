@@ -65,6 +65,9 @@ class RangeDecoder {
   // Bits that all until now has taken.
   double bits_taken() const { return 8.0 * double(at_) - std::log2(double(range_)); }
 
+  // That nothing until now depends on. An encoder leaves none behind what it was given.
+  std::size_t bytes_left() const { return at_ < bytes_.size() ? bytes_.size() - at_ : 0; }
+
   // The bytes ended so long ago that no encoder made them, or hold what none writes.
   bool failed() const { return corrupt_ || at_ > bytes_.size() + kSlack; }
 

@@ -73,11 +73,7 @@ Result<EncodedModel> encode_model(const Mesh& snapped, const ContractionSequence
   if (!content.facts.bands.empty()) {
     content.facts.bands.back().triangles_after = blocks.front().facts.triangles_fine;
   }
-  std::vector<std::uint32_t> dependency_counts;
-  for (const CodedBlock& block : blocks) {
-    dependency_counts.push_back(static_cast<std::uint32_t>(block.dependencies.size()));
-  }
-  Result<ContainerWriter> writer = ContainerWriter::begin(sink, content, dependency_counts);
+  Result<ContainerWriter> writer = ContainerWriter::begin(sink, content, blocks.size());
   if (!writer.ok()) return writer.failure();
   for (CodedBlock& block : blocks) {
     if (Status status = writer->add(block.facts, block.dependencies, block.bytes); !status.ok()) {

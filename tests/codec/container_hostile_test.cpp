@@ -1,10 +1,12 @@
 #include "codec/container.h"
 #include "codec/container_files.h"
+#include "codec/encode_page.h"
 #include "codec/repair_checksums.h"
 #include "support/sanitized.h"
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <new>
 #include <random>
@@ -208,6 +210,9 @@ TEST_CASE("a harmed block or section is named with its byte") {
   }
 }
 
+// The largest piece of what decoding any names of parts takes.
+constexpr std::size_t kNamesTable = 1u << 18;
+
 // Of a file that says `value` at `at` behind valid checksums; it must be refused without taking the
 // memory that it asks for.
 Failure failure_of_lie(const Bytes& whole, std::uint64_t at, std::uint32_t value) {
@@ -216,7 +221,7 @@ Failure failure_of_lie(const Bytes& whole, std::uint64_t at, std::uint32_t value
   repair_checksums(harmed);
   largest_allocation = 0;
   Failure failure = failure_of(harmed);
-  CHECK(largest_allocation <= 20 * whole.size());
+  CHECK(largest_allocation <= std::max<std::size_t>(20 * whole.size(), kNamesTable));
   CHECK(!failure.message.empty());
   return failure;
 }
@@ -253,8 +258,8 @@ TEST_CASE("hostile counts are refused without the memory that they ask for") {
       {"part names", head.parts.range.offset, 0xffffffff},
       {"page", page + 8, 1},
       {"dependencies", page + 12, 0xffffffff},
-      {"bytes of a block", page + 16 + 8, 0xffffffff},
-      {"end of dependencies", page + 16 + 72, 0xffffffff},
+      {"dependencies", page + 12, format::kMaxPageDependencies},
+      {"dependencies", page + 12, 0},
   };
   for (const Lie& lie : lies) {
     CAPTURE(lie.what);
@@ -275,11 +280,11 @@ TEST_CASE("what a file says of its images is looked at behind the checksums") {
     const char* message;
   };
   const Lie lies[] = {
-      {8, 4, "head"},  // then its layers begin elsewhere
+      {8, 6, "head"},  // then its layers begin elsewhere
       {144, 0xffffffff, "head: names or tables that end after the file"},
       {144, 0, "head"},
       {160, 0xffffffff, "head: images that end after the file"},
-      {160, 0, "head: version 5 without images"},
+      {160, 0, "head: version 7 without images"},
       {160, 40, "behind"},
       {list, 0xffffffff, "list of images: their number is not as many as there are"},
       {list, 0, "list of images: their number is not as many as there are"},
@@ -323,32 +328,25 @@ TEST_CASE("what the container promises is looked at behind the checksums") {
   const Bytes whole = small_file();
   const BlockFileHead head = head_of(whole);
   const std::uint64_t page = head.pages[0].offset;
-  const std::uint64_t dependencies = page + 16 + 4 * 76;
-  REQUIRE(entries_of(whole).size() == 4);
-  REQUIRE(dependencies < page + head.pages[0].bytes);  // so block 1, 2 or 3 needs another one
   struct Lie {
     std::uint64_t at;
     std::uint32_t value;
     const char* message;
   };
   const Lie lies[] = {
-      {8, 0x00010004, "version or flags at byte 8"},
-      {8, 5, "head"},         // whose layers begin later
+      {8, 0x00010006, "version or flags at byte 8"},
+      {8, 7, "head"},         // whose layers begin later
       {80, 0, "head: grid"},  // the step's lower half; its upper one follows
       {88, 32, "head: grid: more than 31 bits"},
       {89, 0x03000003, "head: unknown axis for up"},  // and three parts
       {89, 0x03000100, "head: a reserved byte is not 0"},
-      {92, 0x7fffffff, "head: there are not as many names as parts"},
+      {92, 0x7fffffff, "part names: they take more than the limit"},
       {92, 0, "head: there are not as many names as parts"},
-      {92, 2, "part names: their number is not as many as there are"},
+      {92, 2, "part names: they do not end with their bytes"},
       {144 + 4 + 6, 4, "head: layer 0: unknown role"},
       {144 + 4 + 6, 0x01030000, "head: layer 0: unknown coding"},
-      {page + 16 + 16, 3, "block 0: there is no such band"},
-      {page + 16 + 18, 1, "block 0: a reserved byte is not 0"},
-      {page + 16 + 56, 0x0000ff00, "block 0: an error is no finite number from 0 on"},
-      {page + 16 + 64, 0xfefffeff, "block 0: its fine end has the greater error"},
-      {page + 16 + 72, 1, "block 0: it needs a block that is not before it"},
-      {dependencies, 4, "it needs a block that is not before it"},
+      {page + 8, 1, "page 0 at byte"},
+      {page + 12, 0, "its dependencies are out of range"},
   };
   for (const Lie& lie : lies) {
     CAPTURE(lie.message);
@@ -362,7 +360,65 @@ TEST_CASE("what the container promises is looked at behind the checksums") {
   }
 }
 
-TEST_CASE("random words under right checksums give a failure or a file that is written again") {
+// The file, which has one page, with what `change` makes of that.
+template <class Change>
+Bytes with_page(const Bytes& whole, const Change& change) {
+  const BlockFileHead head = head_of(whole);
+  const FileRange range = head.pages[0];
+  DirectoryPage page = *decode_page(repair::part(whole, range), head, 0, Checksums::Ignore);
+  change(page);
+  const Bytes written = encode_page(page, 0, head.facts);
+  const auto at = whole.begin() + static_cast<std::ptrdiff_t>(range.offset);
+  Bytes changed(whole.begin(), at);
+  changed.insert(changed.end(), written.begin(), written.end());
+  changed.insert(changed.end(), at + static_cast<std::ptrdiff_t>(range.bytes), whole.end());
+  put_u32(changed, head.head_bytes - 4, static_cast<std::uint32_t>(written.size()));
+  put_u32(changed, 16, static_cast<std::uint32_t>(changed.size()));
+  repair_checksums(changed);
+  return changed;
+}
+
+TEST_CASE("what a page says of its blocks is looked at behind the checksums") {
+  const Bytes whole = small_file();
+  const auto failure_with = [&whole](auto change) {
+    return failure_of(with_page(whole, change)).message;
+  };
+  const auto says = [&failure_with](auto change, const char* message) {
+    const std::string got = failure_with(change);
+    CAPTURE(got);
+    CHECK(got.find(message) != std::string::npos);
+  };
+  CHECK(failure_with([](DirectoryPage&) {}).empty());
+  CHECK(with_page(whole, [](DirectoryPage&) {}) == whole);
+  says([](DirectoryPage& p) { p.blocks[0].facts.band = 3; }, "block 0: there is no such band");
+  says([](DirectoryPage& p) { p.blocks[1].facts.coarse.line = HUGE_VALF; },
+       "block 1: what no writer writes");
+  says([](DirectoryPage& p) { p.blocks[0].facts.fine.line = 1e30f; },
+       "block 0: its fine end has the greater error");
+  says([](DirectoryPage& p) { p.blocks[3].bytes = 0xffffffff; },
+       "block 3: it ends where another page is");
+  says([](DirectoryPage& p) { ++p.blocks[3].bytes; }, "block 3: it ends where another page is");
+  says([](DirectoryPage& p) { p.blocks[2].bytes = 0; },
+       "its blocks do not end where the next page begins");
+  says([](DirectoryPage& p) { p.blocks.pop_back(); }, "page 0");
+  says(
+      [](DirectoryPage& p) {
+        p.dependencies = {BlockId{0}, BlockId{3}};
+        p.dependency_ends = {0, 1, 1, 2};
+      },
+      "block 3: it needs a block that is not before it");
+  // Bytes behind what it says: so many that they are not the zeros which an encoder leaves out.
+  Bytes longer = whole;
+  const BlockFileHead head = head_of(whole);
+  const auto end = static_cast<std::ptrdiff_t>(head.pages[0].offset + head.pages[0].bytes);
+  longer.insert(longer.begin() + end, 5, std::byte{1});
+  put_u32(longer, head.head_bytes - 4, static_cast<std::uint32_t>(head.pages[0].bytes + 5));
+  put_u32(longer, 16, static_cast<std::uint32_t>(longer.size()));
+  repair_checksums(longer);
+  CHECK(failure_of(longer).message.ends_with("its entries do not end with it"));
+}
+
+TEST_CASE("random words under right checksums give a failure or a file that is said again") {
   std::mt19937_64 random(1);
   const Bytes whole = small_file();
   std::size_t accepted = 0;
@@ -376,14 +432,21 @@ TEST_CASE("random words under right checksums give a failure or a file that is w
     const Result<BlockFile> file = BlockFile::open(memory_source(harmed));
     if (!file.ok() || !file->validate().empty()) continue;
     ++accepted;
-    REQUIRE((bytes_of(read_whole(*file)) == harmed));
+    REQUIRE(is_written_again(*file));
   }
   CHECK(accepted > 100);
 }
 
 TEST_CASE("a limit of memory is kept") {
-  const Bytes whole = bytes_of(random_file(3, 400, 24));
-  CHECK(failure_of(whole, {.max_bytes = 3 * head_of(whole).pages[0].bytes}).message.empty());
+  WrittenFile written = random_file(3, 400, 24);
+  written.content.parts.clear();  // which take a MiB
+  const Bytes whole = bytes_of(written);
+  const FileRange page = head_of(whole).pages[0];
+  const std::size_t dependencies =
+      BlockFile::open(memory_source(whole))->read_page(0)->dependencies.size();
+  const std::uint64_t needed = page.bytes + 160 * 400 + 16 * dependencies;
+  CHECK(failure_of(whole, {.max_bytes = needed}).message.empty());
+  CHECK(failure_of(whole, {.max_bytes = needed - 1}).error == Error::Invalid);
   const Result<BlockFile> file = BlockFile::open(memory_source(whole), {.max_bytes = 10});
   REQUIRE(file.ok());
   CHECK(file->read_page(0).failure().error == Error::OverLimit);
@@ -405,11 +468,12 @@ TEST_CASE("opening and reading pages and names takes no more memory than is stat
   CHECK(largest_allocation <= 65'536);
   largest_allocation = 0;
   REQUIRE(read->read_page(0).ok());
-  CHECK(largest_allocation <= 2 * read->head().pages[0].bytes);
+  CHECK(largest_allocation <= 160 * kBlocksPerPage);
   largest_allocation = 0;
   REQUIRE(read->read_parts().ok());
-  CHECK(largest_allocation <= 11 * read->head().parts.range.bytes);
-  CHECK(largest_allocation >= read->head().parts.range.bytes);  // the watch itself works
+  const std::size_t names = 2 * 5000 * sizeof(std::string);
+  CHECK(largest_allocation <= std::max(names, kNamesTable));
+  CHECK(largest_allocation >= 5000 * sizeof(std::string));  // the watch itself works
 }
 
 }  // namespace

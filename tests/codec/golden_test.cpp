@@ -15,7 +15,7 @@ namespace {
 
 TEST_CASE("the golden model is read, and written to the byte") {
   const std::filesystem::path path =
-      std::filesystem::path(__FILE__).parent_path() / "golden" / "model_4.crease";
+      std::filesystem::path(__FILE__).parent_path() / "golden" / "model_6.crease";
   const EncodedCase c = small_case(5);
   if (std::getenv("CREASE_WRITE_GOLDEN") != nullptr) REQUIRE(write_crease(path, c.bytes).ok());
   const Result<BlockFile> file = open_crease(path);

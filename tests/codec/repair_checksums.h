@@ -14,11 +14,19 @@ namespace crease {
 
 namespace repair {
 
+inline void put(std::vector<std::byte>& bytes, std::uint64_t at, const ByteWriter& value) {
+  std::copy(value.bytes().begin(), value.bytes().end(),
+            bytes.begin() + static_cast<std::ptrdiff_t>(at));
+}
 inline void put(std::vector<std::byte>& bytes, std::uint64_t at, std::uint64_t value) {
   ByteWriter out;
   out.u64(value);
-  std::copy(out.bytes().begin(), out.bytes().end(),
-            bytes.begin() + static_cast<std::ptrdiff_t>(at));
+  put(bytes, at, out);
+}
+inline void put(std::vector<std::byte>& bytes, std::uint64_t at, std::uint32_t value) {
+  ByteWriter out;
+  out.u32(value);
+  put(bytes, at, out);
 }
 
 inline std::span<const std::byte> part(const std::vector<std::byte>& bytes,
@@ -38,8 +46,8 @@ inline void page_and_blocks(std::vector<std::byte>& bytes, const BlockFileHead& 
       const FileRange payload{entry.offset, entry.bytes};
       if (entry.bytes > 0 && part(bytes, payload).empty()) continue;
       const std::uint64_t i = index_of(entry.id) % kBlocksPerPage;
-      put(bytes, range.offset + format::kPageHeadBytes + i * format::kBlockEntryBytes,
-          checksum(part(bytes, payload)));
+      put(bytes, range.offset + format::kPageHeadBytes + i * format::kPayloadChecksumBytes,
+          payload_checksum(part(bytes, payload)));
     }
   }
   put(bytes, range.offset, checksum(part(bytes, range).subspan(8)));

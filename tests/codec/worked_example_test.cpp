@@ -1,4 +1,4 @@
-// The example of docs/format.md, byte by byte, and the golden files of versions 4 and 5.
+// The example of docs/format.md, byte by byte, and the golden files of versions 6 and 7.
 #include "codec/atomic_file.h"
 #include "codec/container_files.h"
 
@@ -114,7 +114,7 @@ TEST_CASE("the golden files are read, and written to the byte") {
   WrittenFile without = random_file(1, 6, 24), with = without;
   with.content.images = some_images();
   for (const auto& [name, written] :
-       {std::pair("version_4.crease", &without), std::pair("version_5.crease", &with)}) {
+       {std::pair("version_6.crease", &without), std::pair("version_7.crease", &with)}) {
     CAPTURE(name);
     const WrittenFile file = golden_file(name, *written);
     CHECK(file.blocks.size() == 6);

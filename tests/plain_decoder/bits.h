@@ -21,6 +21,7 @@ class RangeDecoder {
   bool known(float part, float whole);
   // "One of" as many as there are sums, from `before` on, out of 8 or 16.
   std::size_t one_of(const std::vector<float>& sums, float before, std::size_t most);
+  bool is_at_end() const { return at_ == bytes_.size(); }
 
  private:
   std::uint32_t next();

@@ -1,7 +1,10 @@
 #include "plain_decoder/container.h"
 
 #include "plain_decoder/checksum.h"
+#include "plain_decoder/entries.h"
+#include "plain_decoder/names.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -42,6 +45,12 @@ class Reader {
   void reserved(std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; ++i) demand(u8() == 0, "a reserved byte that is not 0");
   }
+  Bytes bytes(std::size_t count) {
+    demand(count <= left(), "it ends too early");
+    const auto begin = bytes_.begin() + static_cast<std::ptrdiff_t>(at_);
+    at_ += count;
+    return {begin, begin + static_cast<std::ptrdiff_t>(count)};
+  }
   std::size_t left() const { return bytes_.size() - at_; }
   void end() const { demand(left() == 0, "bytes behind the end"); }
 
@@ -58,11 +67,6 @@ Bytes part_of(const Bytes& file, std::uint64_t offset, std::uint64_t bytes) {
 
 std::uint32_t blocks_of_page(const Head& head, std::size_t page) {
   return std::min(kBlocksOfPage, head.blocks - kBlocksOfPage * static_cast<std::uint32_t>(page));
-}
-
-bool are_errors(const Errors& errors) {
-  return std::all_of(errors.begin(), errors.end(),
-                     [](float e) { return std::isfinite(e) && e >= 0; });
 }
 
 // "Attribute layer".
@@ -93,17 +97,6 @@ Layer read_layer(Reader& in) {
   return layer;
 }
 
-// "Band".
-Band read_band(Reader& in) {
-  Band band;
-  band.patches = in.u32();
-  band.contractions = in.u64();
-  band.triangles_after = in.u64();
-  for (float& e : band.errors) e = in.f32();
-  demand(are_errors(band.errors), "an error that is none");
-  return band;
-}
-
 Part read_part(Reader& in) {
   const std::uint64_t bytes = in.u64(), checksum = in.u64();
   demand(bytes > 0 || checksum == 0, "the checksum of what is absent");
@@ -116,13 +109,13 @@ Head read_head(const Bytes& file) {
   Reader start(file);
   for (const std::uint8_t byte : kMagic) demand(start.u8() == byte, "not a file of this kind");
   const std::uint16_t version = start.u16();
-  demand(version == 4 || version == 5, "neither version 4 nor 5");
+  demand(version == 6 || version == 7, "neither version 6 nor 7");
   start.u16();  // flags; below
   Head head;
   head.bytes = start.u32();
   head.file_bytes = start.u64();
   const std::uint64_t told = start.u64();
-  demand(head.bytes >= (version == 5 ? 168 : 144) && head.bytes <= kMaxHead,
+  demand(head.bytes >= (version == 7 ? 168 : 144) && head.bytes <= kMaxHead,
          "the size of the head");
   const Bytes whole = part_of(file, 0, head.bytes);
   Bytes covered = whole;
@@ -150,13 +143,13 @@ Head read_head(const Bytes& file) {
   head.materials = read_part(in);
   head.part_names = read_part(in);
   head.tables = read_part(in);
-  if (version == 5) {
+  if (version == 7) {
     head.image_list = read_part(in);
     head.image_bytes = in.u64();
-    demand(head.image_list.bytes > 0 && head.image_bytes > 0, "version 5 without images");
+    demand(head.image_list.bytes > 0 && head.image_bytes > 0, "version 7 without images");
   }
   for (int l = 0; l < layers; ++l) head.layers.push_back(read_layer(in));
-  for (int b = 0; b < bands; ++b) head.bands.push_back(read_band(in));
+  if (bands > 0) head.bands = read_bands(in.bytes(in.u32()), bands, head.triangles);
   const std::uint64_t pages = (std::uint64_t(head.blocks) + kBlocksOfPage - 1) / kBlocksOfPage;
   for (std::uint64_t p = 0; p < pages; ++p) {
     const std::uint64_t offset = in.u64();
@@ -205,16 +198,13 @@ std::vector<Material> read_materials(const Bytes& bytes) {
   return materials;
 }
 
+// "Names".
 std::vector<std::string> read_part_names(const Bytes& bytes, std::uint32_t parts) {
-  std::vector<std::string> names;
   demand(bytes.empty() == (parts == 0), "parts without names");
-  if (bytes.empty()) return names;
-  Reader in(bytes);
-  const std::uint32_t count = in.u32();
-  demand(count == parts, "the number of parts");
-  for (std::uint32_t i = 0; i < count; ++i) names.push_back(in.text());
-  in.end();
-  return names;
+  if (bytes.empty()) return {};
+  Reader in({bytes.begin(), bytes.begin() + std::min<std::ptrdiff_t>(std::ssize(bytes), 8)});
+  const std::uint64_t letters = in.u64();
+  return read_names(std::span(bytes).subspan(8), parts, letters);
 }
 
 Lattice read_lattice(Reader& in) {
@@ -245,36 +235,6 @@ Lattice read_lattice(Reader& in) {
     }
   }
   return lattice;
-}
-
-// "Directory page". An error's code is the upper half of an f32 without its sign.
-Errors read_error_codes(Reader& in) {
-  Errors errors{};
-  for (float& e : errors) e = std::bit_cast<float>(std::uint32_t(in.u16()) << 15);
-  demand(are_errors(errors), "an error that is none");
-  return errors;
-}
-
-Entry read_entry(Reader& in) {
-  Entry entry;
-  entry.checksum = in.u64();
-  entry.bytes = in.u32();
-  entry.memory = in.u32();
-  entry.band = in.u16();
-  in.reserved(2);
-  entry.patch = in.u32();
-  for (std::size_t k = 0; k < 3; ++k) entry.centre.along(k) = in.i32();
-  entry.radius = in.u32();
-  entry.splits = in.u32();
-  entry.vertices = in.u32();
-  entry.coarse_triangles = in.u32();
-  entry.fine_triangles = in.u32();
-  entry.coarse = read_error_codes(in);
-  entry.fine = read_error_codes(in);
-  for (std::size_t k = 0; k < 4; ++k) {
-    demand(entry.fine[k] <= entry.coarse[k], "a fine end that has the greater error");
-  }
-  return entry;
 }
 
 // Where the blocks end: part names, the list of images and the images are behind them.
@@ -320,34 +280,26 @@ void read_page(const Bytes& file, const Head& head, std::size_t p, std::vector<E
   demand(checksum({bytes.begin() + 8, bytes.end()}) == told, "the checksum of a page");
   demand(in.u32() == p, "another page");
   const std::uint32_t dependencies = in.u32(), count = blocks_of_page(head, p);
-  demand(reference.bytes == 16 + 76 * std::uint64_t(count) + 4 * std::uint64_t(dependencies),
-         "the size of a page");
-  std::uint64_t offset = reference.offset + reference.bytes;
-  std::vector<std::uint32_t> ends{0};
-  const std::size_t first = entries.size();
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Entry entry = read_entry(in);
+  demand(dependencies <= 1u << 20, "the number of dependencies");
+  std::vector<std::uint32_t> checksums;
+  for (std::uint32_t i = 0; i < count; ++i) checksums.push_back(in.u32());
+  EntryReader reader{std::span(bytes).subspan(16 + 4 * std::size_t(count)), head};
+  std::uint64_t offset = reference.offset + reference.bytes, needed = 0;
+  for (const std::uint32_t checksum : checksums) {
+    Entry entry = reader.entry();
     demand(entry.band <= head.bands.size(), "a band that there is none of");
+    entry.checksum = checksum;
     entry.offset = offset;
     offset += entry.bytes;
-    ends.push_back(in.u32());
-    demand(ends[i] <= ends[i + 1] && ends[i + 1] <= dependencies, "the end of dependencies");
+    entry.needs = reader.dependencies(static_cast<std::uint32_t>(entries.size()));
+    needed += entry.needs.size();
     entries.push_back(entry);
   }
-  demand(ends.back() == dependencies, "dependencies of no block");
+  demand(reader.is_at_end(), "bytes behind the entries");
+  demand(needed == dependencies, "dependencies of no block");
   const bool is_last = p + 1 == head.pages.size();
   demand(offset == (is_last ? end_of_blocks(head) : head.pages[p + 1].offset),
          "blocks that do not end where the next page begins");
-  for (std::uint32_t i = 0; i < count; ++i) {
-    std::vector<std::uint32_t>& needs = entries[first + i].needs;
-    while (ends[i] + needs.size() < ends[i + 1]) {
-      const std::uint32_t needed = in.u32();
-      demand(needed < first + i, "a block that needs one that is not before it");
-      demand(needs.empty() || needs.back() < needed, "needed blocks that do not ascend");
-      needs.push_back(needed);
-    }
-  }
-  in.end();
 }
 
 }  // namespace
@@ -384,7 +336,8 @@ std::vector<std::vector<Lattice>> read_lattices(const std::vector<Layer>& layers
 
 Bytes read_payload(const Bytes& file, const Entry& entry) {
   Bytes payload = part_of(file, entry.offset, entry.bytes);
-  demand(checksum(payload) == entry.checksum, "the checksum of a block");
+  demand(static_cast<std::uint32_t>(checksum(payload)) == entry.checksum,
+         "the checksum of a block");
   return payload;
 }
 

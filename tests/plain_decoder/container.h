@@ -65,8 +65,8 @@ struct Lattice {
 };
 
 struct Entry {
-  std::uint64_t offset = 0, checksum = 0;
-  std::uint32_t bytes = 0, memory = 0;
+  std::uint64_t offset = 0;
+  std::uint32_t checksum = 0, bytes = 0, memory = 0;
   std::uint16_t band = 0;
   std::uint32_t patch = 0;
   Point centre;

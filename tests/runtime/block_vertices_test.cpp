@@ -385,7 +385,7 @@ TEST_CASE("by vertex, blocks that lie are shown or refused") {
     for (BlockEntry& entry : page->blocks) {
       payloads.push_back(*file.read_block(entry));
       if (random() % 2) payloads.back()[random() % payloads.back().size()] ^= std::byte{32};
-      entry.checksum = checksum(payloads.back());
+      entry.checksum = payload_checksum(payloads.back());
     }
     REQUIRE(mesh->add_page(*page).ok());
     for (std::size_t b = 0; b < payloads.size(); ++b) {
