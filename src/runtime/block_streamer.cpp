@@ -15,6 +15,7 @@ StreamReport BlockStreamer::Impl::update(const BlockViewParameters& parameters, 
   take_answers();
   take_decoded(report);
   take_hierarchies();
+  take_names();
   take_from_others(view, report);
   BlockMesh& mesh = meshes[view];
   report.cut = mesh.update(parameters);
@@ -38,7 +39,7 @@ void BlockStreamer::Impl::take_answers() {
   if (answers.empty()) return;
   for (AsyncAnswer& answer : answers) {
     if (names_ticket == answer.ticket) {
-      take_names(answer.bytes);
+      take_names_section(std::move(answer.bytes));
       continue;
     }
     if (page_ticket == answer.ticket) {
@@ -79,16 +80,21 @@ void BlockStreamer::Impl::take_page(Result<std::vector<std::byte>> bytes) {
 }
 
 // Nothing that is shown waits for them, so that it is no trouble if they fail.
-void BlockStreamer::Impl::take_names(const Result<std::vector<std::byte>>& bytes) {
+void BlockStreamer::Impl::take_names_section(Result<std::vector<std::byte>> bytes) {
   names_ticket.reset();
   if (bytes.ok() && checksum(*bytes) == head.parts.checksum) {
-    Result<std::vector<std::string>> names = decode_parts(*bytes, head.part_count);
     lacks_names = false;
-    if (!names.ok()) return;
-    for (BlockMesh& mesh : meshes) mesh.set_part_names(*names);
+    workers.add({*std::move(bytes), head.part_count});
     return;
   }
   lengthen(names_pause);
+}
+
+void BlockStreamer::Impl::take_names() {
+  for (std::vector<std::string>& names : workers.take_names()) {
+    for (std::size_t v = meshes.size(); v-- > 1;) meshes[v].set_part_names(names);
+    meshes.front().set_part_names(std::move(names));
+  }
 }
 
 void BlockStreamer::Impl::take_payload(BlockId id, Result<std::vector<std::byte>> bytes) {

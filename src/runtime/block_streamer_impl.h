@@ -47,7 +47,8 @@ struct BlockStreamer::Impl {
   StreamReport update(const BlockViewParameters& parameters, std::size_t view);
   void take_answers();
   void take_page(Result<std::vector<std::byte>> bytes);
-  void take_names(const Result<std::vector<std::byte>>& bytes);
+  void take_names_section(Result<std::vector<std::byte>> bytes);
+  void take_names();
   void take_payload(BlockId id, Result<std::vector<std::byte>> bytes);
   void take_decoded(StreamReport& report);
   void take_from_others(std::size_t view, StreamReport& report);

@@ -1,5 +1,7 @@
 #include "runtime/decode_workers.h"
 
+#include "codec/decode_container.h"
+
 #include <cstdint>
 #include <iterator>
 #include <optional>
@@ -51,6 +53,11 @@ Job DecodeWorkers::Kind<Job, Made>::next() {
   return job;
 }
 
+std::vector<std::string> PartNamesJob::run() const {
+  Result<std::vector<std::string>> names = decode_parts(bytes, count);
+  return names.ok() ? *std::move(names) : std::vector<std::string>();
+}
+
 DecodeWorkers::DecodeWorkers(int threads) {
   for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
 }
@@ -73,6 +80,9 @@ void DecodeWorkers::add(BlockHierarchyJob job) {
 void DecodeWorkers::add(BlockLevelsJob job) {
   levels_.add(std::move(job));
 }
+void DecodeWorkers::add(PartNamesJob job) {
+  names_.add(std::move(job));
+}
 
 void DecodeWorkers::free(UnusedPtr unused) {
   if (!threads_.empty()) unused_.push_back(std::move(unused));
@@ -86,6 +96,7 @@ void DecodeWorkers::meet() {
   decoding_.meet();
   hierarchies_.meet();
   levels_.meet();
+  names_.meet();
   hand(unused_, given_unused_);
 }
 
@@ -115,6 +126,9 @@ std::span<BlockHierarchyPtr> DecodeWorkers::take_hierarchies() {
 std::span<BlockLevelsPtr> DecodeWorkers::take_levels() {
   return levels_.take();
 }
+std::span<std::vector<std::string>> DecodeWorkers::take_names() {
+  return names_.take();
+}
 
 bool DecodeWorkers::wait(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
@@ -122,7 +136,8 @@ bool DecodeWorkers::wait(std::chrono::milliseconds timeout) {
   has_work_.ring();
   const auto has_results = [this] {
     meet();
-    return !decoding_.arrived.empty() || !hierarchies_.arrived.empty() || !levels_.arrived.empty();
+    return !decoding_.arrived.empty() || !hierarchies_.arrived.empty() ||
+           !levels_.arrived.empty() || !names_.arrived.empty();
   };
   return has_results_.wait_for(lock, timeout, has_results);
 }
@@ -152,6 +167,7 @@ void DecodeWorkers::free_given(std::unique_lock<std::mutex>& lock) {
 
 void DecodeWorkers::do_next(std::unique_lock<std::mutex>& lock) {
   if (decoding_.has_waiting()) return decode_next(lock);
+  if (names_.has_waiting()) return make_next(lock, names_);
   if (hierarchies_.has_waiting()) return make_next(lock, hierarchies_);
   make_next(lock, levels_);
 }

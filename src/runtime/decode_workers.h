@@ -1,5 +1,6 @@
-// Threads that decode blocks, one after the other, in the order in which they were given, and while
-// there is nothing to decode make vertex hierarchies, or levels, of those that are there.
+// Threads that decode blocks, one after the other, in the order in which they were given, then the
+// names of parts, and while there is nothing to decode make vertex hierarchies, or levels, of those
+// that are there.
 //
 //   workers.add(job, payload);
 //   ... each frame:
@@ -22,10 +23,18 @@
 #include <deque>
 #include <mutex>
 #include <span>
+#include <string>
 #include <thread>
 #include <vector>
 
 namespace crease {
+
+// The section of a file, whose checksum is right.
+struct PartNamesJob {
+  std::vector<std::byte> bytes;
+  std::uint32_t count = 0;
+  std::vector<std::string> run() const;  // empty where they are none
+};
 
 class DecodeWorkers {
  public:
@@ -43,6 +52,7 @@ class DecodeWorkers {
   void add(BlockDecodeJob job, std::vector<std::byte> payload);
   void add(BlockHierarchyJob job);
   void add(BlockLevelsJob job);
+  void add(PartNamesJob job);
   // On one of the threads, before anything else. Without threads at once.
   void free(std::vector<UnusedPtr> unused);
   void free(UnusedPtr unused);
@@ -50,8 +60,9 @@ class DecodeWorkers {
 
   // Those that are done since the last call; until the next one.
   std::span<Decoded> take();
-  std::span<BlockHierarchyPtr> take_hierarchies();  // after take()
-  std::span<BlockLevelsPtr> take_levels();          // likewise
+  std::span<BlockHierarchyPtr> take_hierarchies();   // after take()
+  std::span<BlockLevelsPtr> take_levels();           // likewise
+  std::span<std::vector<std::string>> take_names();  // likewise
 
   std::size_t outstanding() const { return decoding_.outstanding; }  // blocks added and not taken
   std::size_t outstanding_making() const {  // hierarchies and levels, likewise
@@ -87,7 +98,8 @@ class DecodeWorkers {
   void work();
   void meet();
   bool has_waiting() const {
-    return decoding_.has_waiting() || hierarchies_.has_waiting() || levels_.has_waiting();
+    return decoding_.has_waiting() || hierarchies_.has_waiting() || levels_.has_waiting() ||
+           names_.has_waiting();
   }
   // The lock is held before and after, not while they work. Something must be waiting.
   void free_given(std::unique_lock<std::mutex>& lock);
@@ -102,6 +114,7 @@ class DecodeWorkers {
   Kind<Payload, Decoded> decoding_;
   Kind<BlockHierarchyJob, BlockHierarchyPtr> hierarchies_;
   Kind<BlockLevelsJob, BlockLevelsPtr> levels_;
+  Kind<PartNamesJob, std::vector<std::string>> names_;
   std::vector<UnusedPtr> unused_;        // the caller's side
   std::vector<UnusedPtr> given_unused_;  // under the lock
   std::atomic<double> seconds_ = 0;      // changed under the lock
