@@ -95,6 +95,7 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
       vertex_of_corner_[4 * t + c] = local;
       ++vertices_[local].corners.count;
     }
+    vertex_of_corner_[4 * t + 3] = vertex_of_corner_[4 * t];
   }
   for (int i = 0; i < 3; ++i) {
     center_grid_[i] = static_cast<std::int32_t>((std::int64_t(low[i]) + high[i]) / 2);

@@ -65,11 +65,15 @@ inline void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedg
   sum.c += layer_scale(layer) * wedge.area * away2;
 }
 
-// Whether a triangle has both.
-bool PatchSimplifier::meet(Index a, Index b) const {
-  bool meets = false;  // at the end as good as at once: nobody could foretell when
-  for (Index corner : corners_of(a)) meets |= has_corner_at(triangle_of(corner), b);
-  return meets;
+inline void PatchSimplifier::find_common(Index a, Index b) {
+  const std::span<const Index> around = corners_of(a);
+  Index* common = common_.start(around.size() + 1);
+  for (Index corner : around) {  // two of many: no branch could foretell which
+    const Index* others = others_of(corner);
+    *common = corner;
+    common += (others[0] == b) | (others[1] == b);
+  }
+  common_.finish(common);
 }
 
 // Calls unite(i, j) for wedges at two vertices with the same attribute, numbered as one list; none
@@ -113,7 +117,7 @@ CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index 
     const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
     members[0] = wa.first;
     members[1] = wb.first;
-    if (x.id == y.id || (!(x.pinned && y.pinned) && meet(a, b))) {
+    if (x.id == y.id || (!(x.pinned && y.pinned) && !common_.empty())) {
       *joined++ = {0, 2, x.pinned ? wa.first : y.pinned ? wb.first : kNone};
     } else {
       *joined++ = {0, 1, x.pinned ? wa.first : kNone};
@@ -124,15 +128,7 @@ CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index 
   }
 
   const Index* wedge_of_corner = wedge_of_corner_[layer].data();
-  const std::span<const Index> around = corners_of(a);
-  Index* common = common_.start(around.size() + 1);
-  for (Index corner : around) {  // two of many: no branch could foretell which
-    *common = corner;
-    common += has_corner_at(triangle_of(corner), b);
-  }
-  common_.finish(common);
-  const auto unite_all = [&](auto unite) __attribute__((always_inline)) {
-    unite_equal(layer, wa, wb, unite);
+  const auto unite_common = [&](auto unite) __attribute__((always_inline)) {
     for (Index corner : common_) {
       const Index after = corner_after(corner), before = corner_before(corner);
       const Index at_a = wedge_of_corner[corner];
@@ -147,24 +143,29 @@ CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index 
   // Set by set, in the order of their first members.
   if (n <= SmallSets::kMost) {
     SmallSets sets;
-    unite_all([&](Index i, Index j) { sets.unite(i, j); });
-    Index wedge[SmallSets::kMost];
+    const Wedge *of_a = wedges + wa.first, *of_b = wedges + wb.first;
     std::uint32_t pinned = 0;
-    for (Index i = 0; i < n; ++i) {
-      wedge[i] = wedge_at(i);
-      pinned |= std::uint32_t(wedges[wedge[i]].pinned) << i;
+    for (Index j = 0; j < wb.count; ++j) pinned |= std::uint32_t(of_b[j].pinned) << j;
+    pinned <<= wa.count;
+    for (Index i = 0; i < wa.count; ++i) {
+      pinned |= std::uint32_t(of_a[i].pinned) << i;
+      for (Index j = 0; j < wb.count; ++j) {
+        if (of_a[i].id == of_b[j].id) sets.unite(i, wa.count + j);
+      }
     }
+    unite_common([&](Index i, Index j) { sets.unite(i, j); });
     Index first = 0;
     for (std::uint32_t rest = (1u << n) - 1; rest != 0;) {
       const std::uint32_t set = sets.of(static_cast<std::uint32_t>(std::countr_zero(rest)));
       rest &= ~set;
       Index end = first;
       for (std::uint32_t left = set; left != 0; left &= left - 1) {
-        members[end++] = wedge[std::countr_zero(left)];
+        members[end++] = wedge_at(static_cast<Index>(std::countr_zero(left)));
       }
       const std::uint32_t fixed = pinned & set;
       if ((fixed & (fixed - 1)) == 0) {
-        *joined++ = {first, end - first, fixed != 0 ? wedge[std::countr_zero(fixed)] : kNone};
+        *joined++ = {first, end - first,
+                     fixed != 0 ? wedge_at(static_cast<Index>(std::countr_zero(fixed))) : kNone};
       } else {
         joined = join_pinned(layer, first, end, joined);
       }
@@ -181,11 +182,13 @@ CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index 
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  unite_all([&](Index i, Index j) {
+  const auto unite = [&](Index i, Index j) {
     i = root(i);
     j = root(j);
     parent[std::max(i, j)] = std::min(i, j);
-  });
+  };
+  unite_equal(layer, wa, wb, unite);
+  unite_common(unite);
   Index* place =
       place_of_set_.start(n);  // of a root: how many it has, then where the next one goes
   std::fill_n(place, n, 0u);
@@ -237,7 +240,9 @@ PatchSimplifier::Joined* PatchSimplifier::join_pinned(std::size_t layer, Index f
   return joined;
 }
 
-CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
+[[gnu::always_inline]] inline void PatchSimplifier::add_attribute_costs(Index a, Index b,
+                                                                        Quadric& sum) {
+  bool knows_common = false;
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     if (!layer.steers) continue;
@@ -261,6 +266,8 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
         continue;
       }
     }
+    if (!knows_common) find_common(a, b);
+    knows_common = true;
     join_wedges(l, a, b);
     for (const Joined& joined : joined_) {
       const Index* members = &members_[joined.first_member];
@@ -284,6 +291,7 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
 
 // With Placement::Endpoint the attributes are inherited from the end that stays, where it has one.
 void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum) {
+  find_common(kept, removed);
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     if (!layer.steers) continue;
@@ -389,13 +397,6 @@ CREASE_WIDE void PatchSimplifier::find_costs_of_others(Candidate& pair) {
   }
   pair.cost_of_other[0] = sum.at(pa);
   pair.cost_of_other[2] = sum.at(rounded((pa + pb) * 0.5));
-}
-
-void PatchSimplifier::keep_placed(const Placed& placed, Candidate& pair) {
-  pair.position = whole(placed.position);
-  pair.cost = placed.cost;
-  pair.free_cost = placed.free_cost;
-  pair.cost_of_other[0] = Candidate::kUnknown;
 }
 
 }  // namespace crease::simplification

@@ -160,9 +160,14 @@ class PatchSimplifier {
   Placed place(Index a, Index b, double bound);
   Quadric sum_of(Index a, Index b) const;
   void find_costs_of_others(Candidate& pair);
-  static void keep_placed(const Placed& placed, Candidate& pair);
-  bool meet(Index a, Index b) const;
-  // Into joined_.
+  static void keep_placed(const Placed& placed, Candidate& pair) {
+    pair.position = whole(placed.position);
+    pair.cost = placed.cost;
+    pair.free_cost = placed.free_cost;
+    pair.cost_of_other[0] = Candidate::kUnknown;
+  }
+  void find_common(Index a, Index b);  // into common_
+  // Into joined_; common_ must be known.
   void join_wedges(std::size_t layer, Index a, Index b);
   Joined* join_pinned(std::size_t layer, Index first, Index end, Joined* joined);
   template <typename Unite>
@@ -220,6 +225,7 @@ class PatchSimplifier {
   // contract.cpp
   void contract(Index a, Index b, const Vec3d& target, double cost);
   void find_ring(Index kept, Index removed);
+  void turn_ring(Index kept);
   void contract_layer(std::size_t layer, Index kept, Index removed, const Vec3d& target,
                       LevelError& error);
   void combine_quadrics(std::size_t layer, std::span<const Index> members, Wedge& result);
@@ -262,9 +268,11 @@ class PatchSimplifier {
     const Index* corners = &vertex_of_corner_[4 * t];
     return (corners[0] == v) | (corners[1] == v) | (corners[2] == v);
   }
+  // The vertices of the corner after and the one before.
+  const Index* others_of(Index corner) const { return &vertex_of_corner_[corner_after(corner)]; }
   RingTriangle ring_triangle(Index corner) const {
-    return {triangle_of(corner), corner, vertex_of_corner_[corner_after(corner)],
-            vertex_of_corner_[corner_before(corner)]};
+    const Index* others = others_of(corner);
+    return {triangle_of(corner), corner, others[0], others[1]};
   }
   // One of each of its triangles.
   std::span<const Index> corners_of(Index v) const {
@@ -294,7 +302,8 @@ class PatchSimplifier {
   std::vector<Index> corner_pool_;
 
   std::vector<Index> global_triangle_;
-  std::vector<Index> vertex_of_corner_;  // 4 a triangle, of which the last is none
+  std::vector<Index> vertex_of_corner_;  // 4 a triangle, of which the last is the first again: any
+                                         // corner's others lie together
   std::vector<char> triangle_alive_;
   std::vector<Facing> facing_;
   std::vector<char> flat_;  // stored normal the same at all three corners, and not derived
@@ -359,7 +368,8 @@ class PatchSimplifier {
   std::size_t ring_kept_ = 0;       // so many are kept's
   std::vector<RingBlock> blocks_;   // of ring_, as far as fold_cost() has looked at it
   std::uint32_t ring_count_ = 0;    // of those that make_legal() has looked at
-  ScratchList<Index> touching_, common_;
+  ScratchList<Index> touching_;
+  ScratchList<Index> common_;  // the first end's corners in the triangles that have both
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
   WitnessMover witness_mover_;
