@@ -53,12 +53,12 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   }
 
   // Wedges are joined while the vanishing triangles still stand.
-  Index* common = common_.start(vanishing_.size());
+  Index* common = joins_.common.start(vanishing_.size());
   for (const Vanishing& vanishing : vanishing_) {
     const Index* v = &vertex_of_corner_[4 * vanishing.triangle];
     *common++ = 4 * vanishing.triangle + (v[1] == kept) + 2 * (v[2] == kept);
   }
-  common_.finish(common);
+  joins_.common.finish(common);
   for (std::size_t l = 0; l < layer_count(); ++l) contract_layer(l, kept, removed, target, error);
   errors.now = larger(larger(errors.now, errors_[removed].now), error);
 
@@ -273,7 +273,7 @@ inline PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
 CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index removed,
                                                  const Vec3d& target, LevelError& error) {
   const WorkLayer& work = work_->layers[layer];
-  join_wedges(layer, kept, removed);
+  join_wedges(layer, kept, removed, joins_);
   std::vector<Wedge>& wedges = wedges_[layer];
   std::vector<Index>& wedge_of_corner = wedge_of_corner_[layer];
   const Slice of_kept = wedges_of(layer, kept), of_removed = wedges_of(layer, removed);
@@ -291,11 +291,11 @@ CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, 
     used_[slot_of(wedge_of_corner[ring.corner])] |= shown ? kUsed | kShown : kUsed;
   }
 
-  Index* result_of_slot = parent_.start(used_.size());  // join_wedges is done with it
+  Index* result_of_slot = joins_.parent.start(used_.size());  // join_wedges is done with it
   results_.clear();
   double square_error = -1;
-  for (const Joined& joined : joined_) {
-    const std::span<const Index> members(&members_[joined.first_member], joined.member_count);
+  for (const Joined& joined : joins_.joined) {
+    const std::span<const Index> members(&joins_.members[joined.first_member], joined.member_count);
     bool any_used = false;
     for (Index w : members) any_used = any_used || used_[slot_of(w)];
     if (!any_used) continue;

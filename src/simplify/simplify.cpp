@@ -213,6 +213,7 @@ class Simplifier {
       steering.joins_below = last || parts_join ? kNone : kCard;
       steering.turn_distance = 4 * step;
       steering.far_area = far_area_.share() * triangle_area;
+      steering.is_alone = options_.threads != 1 && patches_.count() == 1;
       if (!run_pass(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");
       }
@@ -251,11 +252,13 @@ class Simplifier {
     std::mutex append;
     std::vector<std::size_t> chosen;
     for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
+    Steering of_sample = steering;
+    of_sample.is_alone = options_.threads != 1 && chosen.size() == 1;
     std::ranges::reverse(chosen);  // the last one started, the first that is run: it stays loaded
     parallel_for(chosen.size(), [&](std::size_t i) {
       const std::size_t p = chosen[i];
       PatchSimplifier& patch = patch_simplifiers_->local();
-      patch.start(work_, patches_.of(p), static_cast<std::uint32_t>(p), steering);
+      patch.start(work_, patches_.of(p), static_cast<std::uint32_t>(p), of_sample);
       const std::vector<double> own = patch.initial_costs();
       const std::lock_guard<std::mutex> lock(append);
       costs.insert(costs.end(), own.begin(), own.end());
