@@ -115,8 +115,7 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
 // Of their contraction, of which find_ring() knows the triangles, without what witnesses tell.
 CREASE_WIDE float PatchSimplifier::surface_error(Index a, Index b, const Vec3d& target) const {
   float error = std::max(errors_[a].base.surface, errors_[b].base.surface);
-  Quadric surface = surface_[a];
-  surface.add(surface_[b]);
+  const Quadric surface = surface_[a] + surface_[b];
   if (surface.weight > 0) error = raised(error, std::sqrt(surface.at(target) / surface.weight));
   if (!ring_.empty()) return error;
   // A part disappears: its planes fit what is left of it, but what it stood for is gone.

@@ -286,8 +286,12 @@ PatchSimplifier::Joined* PatchSimplifier::join_pinned(std::size_t layer, Index f
           quadrics[wedge.quadric].add_reduced(sum, layer.dimension, scale);
         }
       } else {
-        AttributeQuadric all;
-        for (Index k = 0; k < joined.member_count; ++k) add_quadric(l, wedges[members[k]], all);
+        const Index first = wedges[members[0]].quadric, second = wedges[members[1]].quadric;
+        const bool both = first != kNone && second != kNone;
+        AttributeQuadric all = both ? quadrics[first] + quadrics[second] : AttributeQuadric{};
+        for (Index k = both ? 2 : 0; k < joined.member_count; ++k) {
+          add_quadric(l, wedges[members[k]], all);
+        }
         all.add_reduced(sum, layer.dimension, scale);
       }
     }
@@ -314,8 +318,7 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
 
 // Of the surfaces and lines at both.
 inline Quadric PatchSimplifier::sum_of(Index a, Index b) const {
-  Quadric sum = surface_[a];
-  sum.add(surface_[b]);
+  Quadric sum = surface_[a] + surface_[b];
   for (Index v : {a, b}) {
     if (line_of_vertex_[v] != kNone) {
       sum.add_scaled(line_[line_of_vertex_[v]], steering_.line_weight);
