@@ -229,7 +229,7 @@ class PatchSimplifier {
   Index survivor(Index v);
   bool claim(Index pair, Index a, Index b);
   bool is_next(const Entry& entry, double cost) const;
-  void contract_or_hold(const Entry& entry, Index a, Index b, double cost, Placed placed);
+  void contract_or_hold(const Entry& entry, Index a, Index b, double cost, Placed& placed);
   void hold(const Entry& entry, double cost, const Placed& placed);
   void release(Index triangle);
 

@@ -104,7 +104,7 @@ bool PatchSimplifier::is_next(const Entry& entry, double cost) const {
 
 // What make_legal() found, if it is next also when the witness that is farthest away has its say.
 void PatchSimplifier::contract_or_hold(const Entry& entry, Index a, Index b, double cost,
-                                       Placed placed) {
+                                       Placed& placed) {
   const auto is_due = [&] {
     return placed.cost <= steering_.cost_limit && is_next(entry, placed.cost);
   };
@@ -227,7 +227,8 @@ PatchResult PatchSimplifier::run() {
       find_ring(a, b);
       blamed_ = kNone;
       const double known = waited->cost_with_ring;
-      contract_or_hold(entry, a, b, known, {known, known, to_double(waited->position), true});
+      Placed placed{known, known, to_double(waited->position), true};
+      contract_or_hold(entry, a, b, known, placed);
       continue;
     }
 
@@ -242,7 +243,8 @@ PatchResult PatchSimplifier::run() {
       continue;
     }
     const double dear = kDear * double(std::max(next_cost(), static_cast<float>(cost)));
-    contract_or_hold(entry, a, b, cost, make_legal(pair, std::min(steering_.cost_limit, dear)));
+    Placed placed = make_legal(pair, std::min(steering_.cost_limit, dear));
+    contract_or_hold(entry, a, b, cost, placed);
   }
   write_back();
   result_.triangles_left = live_triangles_;
