@@ -55,6 +55,20 @@ struct Quadric {
     weight += o.weight;
   }
 
+  // Not a copy to which the other is added: it would be written in halves of rows, and a row cannot
+  // be loaded again until both have reached the cache. Nor an empty one: clearing it takes as long
+  // as all of the rest.
+  friend Quadric operator+(const Quadric& x, const Quadric& y) {
+    return {{x.row[0] + y.row[0], x.row[1] + y.row[1], x.row[2] + y.row[2]},
+            x.c + y.c,
+            x.weight + y.weight};
+  }
+  // add_plane() to none.
+  static Quadric of_plane(const Vec3d& n, double d, double w, double weight) {
+    const Row f{n.x, n.y, n.z, d}, wf = f * w;
+    return {{wf[0] * f, wf[1] * f, wf[2] * f}, wf[3] * f[3], weight};
+  }
+
   // All but the weight.
   void add_scaled(const Quadric& o, double scale) {
     for (int i = 0; i < 3; ++i) row[i] += scale * o.row[i];
@@ -104,6 +118,12 @@ struct AttributeQuadric {
   void add(const AttributeQuadric& o, int dimension) {
     own.add(o.own);
     for (int j = 0; j < dimension; ++j) linear[j] += o.linear[j];
+  }
+
+  friend AttributeQuadric operator+(const AttributeQuadric& x, const AttributeQuadric& y) {
+    return {x.own + y.own,
+            {x.linear[0] + y.linear[0], x.linear[1] + y.linear[1], x.linear[2] + y.linear[2],
+             x.linear[3] + y.linear[3]}};
   }
 
   // Triangles on which the attribute is `value` everywhere.
@@ -160,8 +180,16 @@ struct AttributeQuadric {
 
   // The error at x with the value `value`.
   double at(const Vec3d& x, int dimension, const float* value) const {
-    Quadric sum;
-    add_fixed(sum, dimension, value, 1);
+    const Row* q = own.row;
+    double b[] = {q[0][3], q[1][3], q[2][3]}, c = own.c;  // as add_fixed()
+    for (int j = 0; j < dimension; ++j) {
+      const double v = double(value[j]);
+      for (int i = 0; i < 3; ++i) b[i] -= v * linear[j][i];
+      c += v * (own.weight * v - 2 * linear[j][3]);
+    }
+    const Quadric sum{{Row{q[0][0], q[0][1], q[0][2], b[0]}, Row{q[1][0], q[1][1], q[1][2], b[1]},
+                       Row{q[2][0], q[2][1], q[2][2], b[2]}},
+                      c};
     return sum.at(x);
   }
 };

@@ -36,7 +36,7 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   contraction.first_change = static_cast<Index>(result_.changes.size());
   contraction.first_derived = static_cast<Index>(result_.derived.size());
 
-  if (kept != a) find_ring(kept, removed);  // else make_legal() has
+  if (kept != a) turn_ring(kept);  // else make_legal() has found it
 
   // Errors: the bands before, and this band's quadrics on top.
   Errors& errors = errors_[kept];
@@ -53,12 +53,22 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
   }
 
   // Wedges are joined while the vanishing triangles still stand.
+  Index* common = joins_.common.start(vanishing_.size());
+  for (const Vanishing& vanishing : vanishing_) {
+    const Index* v = &vertex_of_corner_[4 * vanishing.triangle];
+    *common++ = 4 * vanishing.triangle + (v[1] == kept) + 2 * (v[2] == kept);
+  }
+  joins_.common.finish(common);
   for (std::size_t l = 0; l < layer_count(); ++l) contract_layer(l, kept, removed, target, error);
   errors.now = larger(larger(errors.now, errors_[removed].now), error);
 
   // Triangles: vanish, or change hands.
   if (!shading_.empty()) hand_over_represented();
-  for (std::size_t i = ring_kept_; i < ring_.size(); ++i) vertex_of_corner_[ring_[i].corner] = kept;
+  for (std::size_t i = ring_kept_; i < ring_.size(); ++i) {
+    Index* corners = &vertex_of_corner_[4 * ring_[i].triangle];
+    corners[ring_[i].corner % 4] = kept;
+    corners[3] = corners[0];
+  }
   const Index first = static_cast<Index>(corner_pool_.size());
   for (const RingTriangle& ring : ring_) corner_pool_.push_back(ring.corner);
   q.corners = {first, static_cast<Index>(corner_pool_.size()) - first};
@@ -97,14 +107,15 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
     changed_around_[ring.next] = changed_around_[ring.previous] = now;
   }
   for (const Vanishing& vanishing : vanishing_) changed_around_[vanishing.third] = now;
-  for (const RingTriangle& ring : ring_) release(ring.triangle);
+  for (const RingTriangle& ring : ring_) {
+    if (held_of_triangle_[ring.triangle] != kNone) release(ring.triangle);
+  }
 }
 
 // Of their contraction, of which find_ring() knows the triangles, without what witnesses tell.
 CREASE_WIDE float PatchSimplifier::surface_error(Index a, Index b, const Vec3d& target) const {
   float error = std::max(errors_[a].base.surface, errors_[b].base.surface);
-  Quadric surface = surface_[a];
-  surface.add(surface_[b]);
+  const Quadric surface = surface_[a] + surface_[b];
   if (surface.weight > 0) error = raised(error, std::sqrt(surface.at(target) / surface.weight));
   if (!ring_.empty()) return error;
   // A part disappears: its planes fit what is left of it, but what it stood for is gone.
@@ -154,11 +165,11 @@ CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {
   Vanishing* vanishing = vanishing_.start(around_kept.size());
   for (Index corner : around_kept) {
     const RingTriangle own = ring_triangle(corner);
-    const bool before = own.previous == removed, after = own.next == removed;
+    const bool vanishes = (own.next == removed) | (own.previous == removed);
     *ring = own;
-    *vanishing = {own.triangle, after ? own.previous : own.next};
-    vanishing += before | after;
-    ring += !(before | after);
+    *vanishing = {own.triangle, own.next ^ own.previous ^ removed};  // the one that is not
+    vanishing += vanishes;
+    ring += !vanishes;
   }
   vanishing_.finish(vanishing);
   ring_kept_ = static_cast<std::size_t>(ring - ring_.begin());
@@ -168,6 +179,21 @@ CREASE_WIDE void PatchSimplifier::find_ring(Index kept, Index removed) {
     ring += (own.previous != kept) & (own.next != kept);
   }
   ring_.finish(ring);
+}
+
+// As find_ring() finds it with `kept` first, which has been second.
+void PatchSimplifier::turn_ring(Index kept) {
+  const std::size_t ring_kept = ring_.size() - ring_kept_;
+  std::rotate(ring_.begin(), ring_.begin() + ring_kept_, ring_.begin() + ring_.size());
+  ring_kept_ = ring_kept;
+  Vanishing* next = vanishing_.begin();
+  Vanishing* const end = next + vanishing_.size();
+  for (Index corner : corners_of(kept)) {
+    if (end - next < 2) break;
+    Vanishing* here = next;
+    while (here != end && here->triangle != triangle_of(corner)) ++here;
+    if (here != end) std::swap(*here, *next++);
+  }
 }
 
 // One quadric out of the members', in the place of one of them; none if all show one attribute that
@@ -246,7 +272,7 @@ inline PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
 CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, Index removed,
                                                  const Vec3d& target, LevelError& error) {
   const WorkLayer& work = work_->layers[layer];
-  join_wedges(layer, kept, removed);
+  join_wedges(layer, kept, removed, joins_);
   std::vector<Wedge>& wedges = wedges_[layer];
   std::vector<Index>& wedge_of_corner = wedge_of_corner_[layer];
   const Slice of_kept = wedges_of(layer, kept), of_removed = wedges_of(layer, removed);
@@ -264,11 +290,11 @@ CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, 
     used_[slot_of(wedge_of_corner[ring.corner])] |= shown ? kUsed | kShown : kUsed;
   }
 
-  Index* result_of_slot = parent_.start(used_.size());  // join_wedges is done with it
+  Index* result_of_slot = joins_.parent.start(used_.size());  // join_wedges is done with it
   results_.clear();
   double square_error = -1;
-  for (const Joined& joined : joined_) {
-    const std::span<const Index> members(&members_[joined.first_member], joined.member_count);
+  for (const Joined& joined : joins_.joined) {
+    const std::span<const Index> members(&joins_.members[joined.first_member], joined.member_count);
     bool any_used = false;
     for (Index w : members) any_used = any_used || used_[slot_of(w)];
     if (!any_used) continue;

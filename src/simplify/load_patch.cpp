@@ -95,6 +95,7 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
       vertex_of_corner_[4 * t + c] = local;
       ++vertices_[local].corners.count;
     }
+    vertex_of_corner_[4 * t + 3] = vertex_of_corner_[4 * t];
   }
   for (int i = 0; i < 3; ++i) {
     center_grid_[i] = static_cast<std::int32_t>((std::int64_t(low[i]) + high[i]) / 2);
@@ -231,9 +232,7 @@ CREASE_WIDE void PatchSimplifier::load_quadrics() {
     const Vec3d n = twice * (1 / twice_area);
     facing_[t] = {n, area};
 
-    Quadric plane;
-    plane.add_plane(n, -dot(n, p0), area);
-    plane.weight = area;
+    const Quadric plane = Quadric::of_plane(n, -dot(n, p0), area, area);
     for (int c = 0; c < 3; ++c) surface_[v[c]].add(plane);
 
     // The second and the third corner's barycentric coordinates, as linear functions.
@@ -329,15 +328,14 @@ inline void PatchSimplifier::add_line(Index a, Index b, Index triangle, double s
   const Vec3d across = cross(edge, facing_[triangle].normal);  // as long as the edge: its weight
   const double weight = share * dot(across, across);
   if (weight == 0) return;
-  Quadric plane;
-  plane.add_plane(across, -dot(across, positions_[a]), share);
-  plane.weight = weight;
+  const Quadric plane = Quadric::of_plane(across, -dot(across, positions_[a]), share, weight);
   for (Index v : {a, b}) {
     if (line_of_vertex_[v] == kNone) {
       line_of_vertex_[v] = static_cast<Index>(line_.size());
-      line_.emplace_back();
+      line_.push_back(plane);
+    } else {
+      line_[line_of_vertex_[v]].add(plane);
     }
-    line_[line_of_vertex_[v]].add(plane);
   }
 }
 

@@ -65,18 +65,23 @@ inline void PatchSimplifier::add_fixed_cost(std::size_t layer, const Wedge& wedg
   sum.c += layer_scale(layer) * wedge.area * away2;
 }
 
-// Whether a triangle has both.
-bool PatchSimplifier::meet(Index a, Index b) const {
-  bool meets = false;  // at the end as good as at once: nobody could foretell when
-  for (Index corner : corners_of(a)) meets |= has_corner_at(triangle_of(corner), b);
-  return meets;
+inline void PatchSimplifier::find_common(Index a, Index b, Joins& joins) const {
+  const std::span<const Index> around = corners_of(a);
+  Index* common = joins.common.start(around.size() + 1);
+  for (Index corner : around) {  // two of many: no branch could foretell which
+    const Index* others = others_of(corner);
+    *common = corner;
+    common += (others[0] == b) | (others[1] == b);
+  }
+  joins.common.finish(common);
 }
 
 // Calls unite(i, j) for wedges at two vertices with the same attribute, numbered as one list; none
 // has an attribute twice.
 template <typename Unite>
 [[gnu::always_inline]] inline void PatchSimplifier::unite_equal(std::size_t layer, Slice wa,
-                                                                Slice wb, Unite unite) {
+                                                                Slice wb, Joins& joins,
+                                                                Unite unite) const {
   constexpr std::size_t kFew = 400;  // comparisons
   const Wedge* wedges = wedges_[layer].data();
   const auto id_of = [&](Index i) {
@@ -91,49 +96,44 @@ template <typename Unite>
     }
     return;
   }
-  by_id_.resize(wa.count + wb.count);
-  std::iota(by_id_.begin(), by_id_.end(), 0u);
-  std::sort(by_id_.begin(), by_id_.end(), [&](Index i, Index j) { return id_of(i) < id_of(j); });
-  for (std::size_t k = 1; k < by_id_.size(); ++k) {
-    if (id_of(by_id_[k - 1]) == id_of(by_id_[k])) unite(by_id_[k - 1], by_id_[k]);
+  joins.by_id.resize(wa.count + wb.count);
+  std::iota(joins.by_id.begin(), joins.by_id.end(), 0u);
+  std::sort(joins.by_id.begin(), joins.by_id.end(),
+            [&](Index i, Index j) { return id_of(i) < id_of(j); });
+  for (std::size_t k = 1; k < joins.by_id.size(); ++k) {
+    if (id_of(joins.by_id[k - 1]) == id_of(joins.by_id[k]))
+      unite(joins.by_id[k - 1], joins.by_id[k]);
   }
 }
 
 // Which wedges at a and b become one: those that a vanishing triangle has at its two corners, and
 // those that are the same attribute (DESIGN 6.3; equal index, same attribute). Members are indices
 // into wedges_[layer].
-CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b) {
+CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
+                                              Joins& joins) const {
   const Slice wa = wedges_of(layer, a), wb = wedges_of(layer, b);
   const Wedge* wedges = wedges_[layer].data();
   const Index n = wa.count + wb.count;
-  Index* members = members_.start(n);
-  Joined* joined = joined_.start(n);
-  members_.finish(members + n);
+  Index* members = joins.members.start(n);
+  Joined* joined = joins.joined.start(n);
+  joins.members.finish(members + n);
   if (wa.count == 1 && wb.count == 1) {
     const Wedge &x = wedges[wa.first], &y = wedges[wb.first];
     members[0] = wa.first;
     members[1] = wb.first;
-    if (x.id == y.id || (!(x.pinned && y.pinned) && meet(a, b))) {
+    if (x.id == y.id || (!(x.pinned && y.pinned) && !joins.common.empty())) {
       *joined++ = {0, 2, x.pinned ? wa.first : y.pinned ? wb.first : kNone};
     } else {
       *joined++ = {0, 1, x.pinned ? wa.first : kNone};
       *joined++ = {1, 1, y.pinned ? wb.first : kNone};
     }
-    joined_.finish(joined);
+    joins.joined.finish(joined);
     return;
   }
 
   const Index* wedge_of_corner = wedge_of_corner_[layer].data();
-  const std::span<const Index> around = corners_of(a);
-  Index* common = common_.start(around.size() + 1);
-  for (Index corner : around) {  // two of many: no branch could foretell which
-    *common = corner;
-    common += has_corner_at(triangle_of(corner), b);
-  }
-  common_.finish(common);
-  const auto unite_all = [&](auto unite) __attribute__((always_inline)) {
-    unite_equal(layer, wa, wb, unite);
-    for (Index corner : common_) {
+  const auto unite_common = [&](auto unite) __attribute__((always_inline)) {
+    for (Index corner : joins.common) {
       const Index after = corner_after(corner), before = corner_before(corner);
       const Index at_a = wedge_of_corner[corner];
       const Index at_b = wedge_of_corner[vertex_of_corner_[after] == b ? after : before];
@@ -147,47 +147,54 @@ CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index 
   // Set by set, in the order of their first members.
   if (n <= SmallSets::kMost) {
     SmallSets sets;
-    unite_all([&](Index i, Index j) { sets.unite(i, j); });
-    Index wedge[SmallSets::kMost];
+    const Wedge *of_a = wedges + wa.first, *of_b = wedges + wb.first;
     std::uint32_t pinned = 0;
-    for (Index i = 0; i < n; ++i) {
-      wedge[i] = wedge_at(i);
-      pinned |= std::uint32_t(wedges[wedge[i]].pinned) << i;
+    for (Index j = 0; j < wb.count; ++j) pinned |= std::uint32_t(of_b[j].pinned) << j;
+    pinned <<= wa.count;
+    for (Index i = 0; i < wa.count; ++i) {
+      pinned |= std::uint32_t(of_a[i].pinned) << i;
+      for (Index j = 0; j < wb.count; ++j) {
+        if (of_a[i].id == of_b[j].id) sets.unite(i, wa.count + j);
+      }
     }
+    unite_common([&](Index i, Index j) { sets.unite(i, j); });
     Index first = 0;
     for (std::uint32_t rest = (1u << n) - 1; rest != 0;) {
       const std::uint32_t set = sets.of(static_cast<std::uint32_t>(std::countr_zero(rest)));
       rest &= ~set;
       Index end = first;
       for (std::uint32_t left = set; left != 0; left &= left - 1) {
-        members[end++] = wedge[std::countr_zero(left)];
+        members[end++] = wedge_at(static_cast<Index>(std::countr_zero(left)));
       }
       const std::uint32_t fixed = pinned & set;
       if ((fixed & (fixed - 1)) == 0) {
-        *joined++ = {first, end - first, fixed != 0 ? wedge[std::countr_zero(fixed)] : kNone};
+        *joined++ = {first, end - first,
+                     fixed != 0 ? wedge_at(static_cast<Index>(std::countr_zero(fixed))) : kNone};
       } else {
-        joined = join_pinned(layer, first, end, joined);
+        joined = join_pinned(layer, first, end, joined, joins);
       }
       first = end;
     }
-    joined_.finish(joined);
+    joins.joined.finish(joined);
     return;
   }
 
   // Union-find, where every set's root is the first of it.
-  Index* parent = parent_.start(n);
+  Index* parent = joins.parent.start(n);
   std::iota(parent, parent + n, 0u);
   const auto root = [&](Index i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  unite_all([&](Index i, Index j) {
+  const auto unite = [&](Index i, Index j) {
     i = root(i);
     j = root(j);
     parent[std::max(i, j)] = std::min(i, j);
-  });
+  };
+  unite_equal(layer, wa, wb, joins, unite);
+  unite_common(unite);
   Index* place =
-      place_of_set_.start(n);  // of a root: how many it has, then where the next one goes
+      joins.place_of_set.start(n);  // of a root: how many it has, then where the next one goes
   std::fill_n(place, n, 0u);
   for (Index i = 0; i < n; ++i) {
     parent[i] = parent[parent[i]];
@@ -200,17 +207,17 @@ CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index 
   for (Index i = 0; i < n; ++i) members[place[parent[i]]++] = wedge_at(i);
   for (Index first = 0, i = 0; first < n; ++i) {
     if (parent[i] != i) continue;
-    joined = join_pinned(layer, first, place[i], joined);
+    joined = join_pinned(layer, first, place[i], joined, joins);
     first = place[i];
   }
-  joined_.finish(joined);
+  joins.joined.finish(joined);
 }
 
-// Writes what becomes of a set of members_, of which any number are pinned; returns the end.
+// Writes what becomes of a set of joins.members, of which any number are pinned; returns the end.
 PatchSimplifier::Joined* PatchSimplifier::join_pinned(std::size_t layer, Index first, Index end,
-                                                      Joined* joined) {
+                                                      Joined* joined, Joins& joins) const {
   const Wedge* wedges = wedges_[layer].data();
-  Index* members = members_.begin();
+  Index* members = joins.members.begin();
   Index fixed = kNone;
   bool several_fixed = false;
   for (Index k = first; k < end; ++k) {
@@ -237,7 +244,10 @@ PatchSimplifier::Joined* PatchSimplifier::join_pinned(std::size_t layer, Index f
   return joined;
 }
 
-CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric& sum) {
+[[gnu::always_inline]] inline void PatchSimplifier::add_attribute_costs(Index a, Index b,
+                                                                        Quadric& sum,
+                                                                        Joins& joins) const {
+  bool knows_common = false;
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     if (!layer.steers) continue;
@@ -261,9 +271,11 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
         continue;
       }
     }
-    join_wedges(l, a, b);
-    for (const Joined& joined : joined_) {
-      const Index* members = &members_[joined.first_member];
+    if (!knows_common) find_common(a, b, joins);
+    knows_common = true;
+    join_wedges(l, a, b, joins);
+    for (const Joined& joined : joins.joined) {
+      const Index* members = &joins.members[joined.first_member];
       if (joined.fixed != kNone) {
         for (Index k = 0; k < joined.member_count; ++k) {
           add_fixed_cost(l, wedges[members[k]], wedges[joined.fixed].value, sum);
@@ -274,8 +286,12 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
           quadrics[wedge.quadric].add_reduced(sum, layer.dimension, scale);
         }
       } else {
-        AttributeQuadric all;
-        for (Index k = 0; k < joined.member_count; ++k) add_quadric(l, wedges[members[k]], all);
+        const Index first = wedges[members[0]].quadric, second = wedges[members[1]].quadric;
+        const bool both = first != kNone && second != kNone;
+        AttributeQuadric all = both ? quadrics[first] + quadrics[second] : AttributeQuadric{};
+        for (Index k = both ? 2 : 0; k < joined.member_count; ++k) {
+          add_quadric(l, wedges[members[k]], all);
+        }
         all.add_reduced(sum, layer.dimension, scale);
       }
     }
@@ -283,13 +299,15 @@ CREASE_WIDE void PatchSimplifier::add_attribute_costs(Index a, Index b, Quadric&
 }
 
 // With Placement::Endpoint the attributes are inherited from the end that stays, where it has one.
-void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum) {
+void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum,
+                                                   Joins& joins) const {
+  find_common(kept, removed, joins);
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     if (!layer.steers) continue;
-    join_wedges(l, kept, removed);
-    for (const Joined& joined : joined_) {
-      const Index* members = &members_[joined.first_member];
+    join_wedges(l, kept, removed, joins);
+    for (const Joined& joined : joins.joined) {
+      const Index* members = &joins.members[joined.first_member];
       const Index inherited = joined.fixed != kNone ? joined.fixed : members[0];
       for (Index k = 0; k < joined.member_count; ++k) {
         add_fixed_cost(l, wedges_[l][members[k]], wedges_[l][inherited].value, sum);
@@ -300,8 +318,7 @@ void PatchSimplifier::add_endpoint_attribute_costs(Index kept, Index removed, Qu
 
 // Of the surfaces and lines at both.
 inline Quadric PatchSimplifier::sum_of(Index a, Index b) const {
-  Quadric sum = surface_[a];
-  sum.add(surface_[b]);
+  Quadric sum = surface_[a] + surface_[b];
   for (Index v : {a, b}) {
     if (line_of_vertex_[v] != kNone) {
       sum.add_scaled(line_[line_of_vertex_[v]], steering_.line_weight);
@@ -310,7 +327,8 @@ inline Quadric PatchSimplifier::sum_of(Index a, Index b) const {
   return sum;
 }
 
-CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, double bound) {
+CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, double bound,
+                                                           Joins& joins) const {
   const Vec3d &pa = positions_[a], &pb = positions_[b];
   const Vec3d along = pb - pa;
   const double length2 = dot(along, along);
@@ -332,8 +350,8 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
 
   if (steering_.placement == Placement::Endpoint) {
     Quadric if_a = sum, if_b = sum;
-    add_endpoint_attribute_costs(a, b, if_a);
-    add_endpoint_attribute_costs(b, a, if_b);
+    add_endpoint_attribute_costs(a, b, if_a, joins);
+    add_endpoint_attribute_costs(b, a, if_b, joins);
     const Quadric free_a = if_a, free_b = if_b;
     add_turns(if_a);
     add_turns(if_b);
@@ -342,7 +360,7 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
                            : placed_at(pb, cost_b, free_b);
   }
 
-  add_attribute_costs(a, b, sum);
+  add_attribute_costs(a, b, sum, joins);
   const Quadric free = sum;
   add_turns(sum);
   const double cost_a = sum.at(pa), cost_b = sum.at(pb);
@@ -380,22 +398,15 @@ CREASE_WIDE void PatchSimplifier::find_costs_of_others(Candidate& pair) {
   Quadric sum = sum_of(a, b);
   if (steering_.placement == Placement::Endpoint) {
     Quadric if_b = sum;
-    add_endpoint_attribute_costs(a, b, sum);
-    add_endpoint_attribute_costs(b, a, if_b);
+    add_endpoint_attribute_costs(a, b, sum, joins_);
+    add_endpoint_attribute_costs(b, a, if_b, joins_);
     pair.cost_of_other[1] = if_b.at(pb);
   } else {
-    add_attribute_costs(a, b, sum);
+    add_attribute_costs(a, b, sum, joins_);
     pair.cost_of_other[1] = sum.at(pb);
   }
   pair.cost_of_other[0] = sum.at(pa);
   pair.cost_of_other[2] = sum.at(rounded((pa + pb) * 0.5));
-}
-
-void PatchSimplifier::keep_placed(const Placed& placed, Candidate& pair) {
-  pair.position = whole(placed.position);
-  pair.cost = placed.cost;
-  pair.free_cost = placed.free_cost;
-  pair.cost_of_other[0] = Candidate::kUnknown;
 }
 
 }  // namespace crease::simplification

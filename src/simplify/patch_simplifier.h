@@ -37,6 +37,7 @@ struct Steering {
   double leaves_ends = 0.6, leaves_pair = 0.3;
   double normal_scale = 0;  // what a normal off by one radian is worth, grid units
   double far_area = 0;      // see far_area.h
+  bool is_alone = false;    // there are threads without a patch of their own
   bool keep_one_triangle = true;
 };
 
@@ -119,8 +120,15 @@ class PatchSimplifier {
   };
   // One result wedge of a contraction: which wedges of a layer become one.
   struct Joined {
-    Index first_member = 0, member_count = 0;  // in members_
+    Index first_member = 0, member_count = 0;  // in Joins::members
     Index fixed = kNone;                       // the member whose value is kept, or kNone: solve
+  };
+  // Of a pair, with the scratch that finds it.
+  struct Joins {
+    ScratchList<Joined> joined;
+    ScratchList<Index> common;  // the first end's corners in the triangles that have both
+    ScratchList<Index> members, parent, place_of_set;
+    std::vector<Index> by_id;
   };
 
   // Around a pair: a triangle that survives, and one that has both ends.
@@ -157,18 +165,24 @@ class PatchSimplifier {
 
   // pair_cost.cpp
   // `bound`: a cost above it need not be exact.
-  Placed place(Index a, Index b, double bound);
+  Placed place(Index a, Index b, double bound, Joins& joins) const;
   Quadric sum_of(Index a, Index b) const;
   void find_costs_of_others(Candidate& pair);
-  static void keep_placed(const Placed& placed, Candidate& pair);
-  bool meet(Index a, Index b) const;
-  // Into joined_.
-  void join_wedges(std::size_t layer, Index a, Index b);
-  Joined* join_pinned(std::size_t layer, Index first, Index end, Joined* joined);
+  static void keep_placed(const Placed& placed, Candidate& pair) {
+    pair.position = whole(placed.position);
+    pair.cost = placed.cost;
+    pair.free_cost = placed.free_cost;
+    pair.cost_of_other[0] = Candidate::kUnknown;
+  }
+  void find_common(Index a, Index b, Joins& joins) const;
+  // `joins.common` must be known.
+  void join_wedges(std::size_t layer, Index a, Index b, Joins& joins) const;
+  Joined* join_pinned(std::size_t layer, Index first, Index end, Joined* joined,
+                      Joins& joins) const;
   template <typename Unite>
-  void unite_equal(std::size_t layer, Slice wa, Slice wb, Unite unite);
-  void add_attribute_costs(Index a, Index b, Quadric& sum);
-  void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum);
+  void unite_equal(std::size_t layer, Slice wa, Slice wb, Joins& joins, Unite unite) const;
+  void add_attribute_costs(Index a, Index b, Quadric& sum, Joins& joins) const;
+  void add_endpoint_attribute_costs(Index kept, Index removed, Quadric& sum, Joins& joins) const;
   double layer_scale(std::size_t layer) const;
   void add_quadric(std::size_t layer, const Wedge& wedge, AttributeQuadric& all) const {
     const int dimension = work_->layers[layer].dimension;
@@ -204,6 +218,8 @@ class PatchSimplifier {
 
   // run_patch.cpp
   void order_pairs();
+  template <typename Take>
+  void place_all(double bound, Take take);
   bool pop(Entry& entry);
   float next_cost() const;
   void fetch_ahead() const;
@@ -213,13 +229,14 @@ class PatchSimplifier {
   Index survivor(Index v);
   bool claim(Index pair, Index a, Index b);
   bool is_next(const Entry& entry, double cost) const;
-  void contract_or_hold(const Entry& entry, Index a, Index b, double cost, Placed placed);
+  void contract_or_hold(const Entry& entry, Index a, Index b, double cost, Placed& placed);
   void hold(const Entry& entry, double cost, const Placed& placed);
   void release(Index triangle);
 
   // contract.cpp
   void contract(Index a, Index b, const Vec3d& target, double cost);
   void find_ring(Index kept, Index removed);
+  void turn_ring(Index kept);
   void contract_layer(std::size_t layer, Index kept, Index removed, const Vec3d& target,
                       LevelError& error);
   void combine_quadrics(std::size_t layer, std::span<const Index> members, Wedge& result);
@@ -262,15 +279,18 @@ class PatchSimplifier {
     const Index* corners = &vertex_of_corner_[4 * t];
     return (corners[0] == v) | (corners[1] == v) | (corners[2] == v);
   }
+  // The vertices of the corner after and the one before.
+  const Index* others_of(Index corner) const { return &vertex_of_corner_[corner_after(corner)]; }
   RingTriangle ring_triangle(Index corner) const {
-    return {triangle_of(corner), corner, vertex_of_corner_[corner_after(corner)],
-            vertex_of_corner_[corner_before(corner)]};
+    const Index* others = others_of(corner);
+    return {triangle_of(corner), corner, others[0], others[1]};
   }
   // One of each of its triangles.
   std::span<const Index> corners_of(Index v) const {
     return std::span(corner_pool_).subspan(vertices_[v].corners.first, vertices_[v].corners.count);
   }
   Slice& wedges_of(std::size_t layer, Index v) { return wedge_slices_[layer][v]; }
+  Slice wedges_of(std::size_t layer, Index v) const { return wedge_slices_[layer][v]; }
   Index category_of(Index t) const { return work_->category_of_triangle[global_triangle_[t]]; }
   std::size_t layer_count() const { return work_->layers.size(); }
 
@@ -294,7 +314,8 @@ class PatchSimplifier {
   std::vector<Index> corner_pool_;
 
   std::vector<Index> global_triangle_;
-  std::vector<Index> vertex_of_corner_;  // 4 a triangle, of which the last is none
+  std::vector<Index> vertex_of_corner_;  // 4 a triangle, of which the last is the first again: any
+                                         // corner's others lie together
   std::vector<char> triangle_alive_;
   std::vector<Facing> facing_;
   std::vector<char> flat_;  // stored normal the same at all three corners, and not derived
@@ -351,15 +372,13 @@ class PatchSimplifier {
   std::vector<Index> edge_at_;  // the last that a vertex was met at
 
   // Scratch of one contraction.
-  ScratchList<Joined> joined_;
-  ScratchList<Index> members_, parent_, place_of_set_;
-  std::vector<Index> by_id_;
+  Joins joins_;
   ScratchList<Vanishing> vanishing_;
   ScratchList<RingTriangle> ring_;  // kept's, then removed's
   std::size_t ring_kept_ = 0;       // so many are kept's
   std::vector<RingBlock> blocks_;   // of ring_, as far as fold_cost() has looked at it
   std::uint32_t ring_count_ = 0;    // of those that make_legal() has looked at
-  ScratchList<Index> touching_, common_;
+  ScratchList<Index> touching_;
   std::vector<char> used_;
   std::vector<Wedge> results_;  // of one layer
   WitnessMover witness_mover_;

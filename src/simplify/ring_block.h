@@ -12,6 +12,10 @@
 #include <cstdint>
 #include <cstring>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 namespace crease::simplification {
 
 using Lanes = decltype(Row{} < Row{});  // of each triangle: all bits, or none
@@ -138,8 +142,15 @@ inline void take_floats(const float* p0, const float* p1, const float* p2, const
 
 // The lanes as bits, the first triangle's the lowest.
 inline unsigned bits_of(const Lanes& lanes) {
+#if defined(__SSE2__)
+  const auto low = __builtin_shufflevector(lanes, lanes, 0, 1);
+  const auto high = __builtin_shufflevector(lanes, lanes, 2, 3);
+  return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<__m128d>(low)) |
+                               _mm_movemask_pd(reinterpret_cast<__m128d>(high)) << 2);
+#else
   const Lanes bits = lanes & Lanes{1, 2, 4, 8};
   return static_cast<unsigned>((bits[0] | bits[2]) | (bits[1] | bits[3]));
+#endif
 }
 
 }  // namespace crease::simplification

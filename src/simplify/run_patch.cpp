@@ -1,4 +1,5 @@
 // The greedy loop of one patch: which pair is contracted next, and what is left in the end.
+#include "parallel/parallel.h"
 #include "simplify/patch_simplifier.h"
 #include "simplify/sort_by_cost.h"
 
@@ -23,10 +24,35 @@ constexpr double kNearLimit = 0.25;
 
 }  // namespace
 
+// Calls take(a, b, placed) for all pairs, in their order. Where no other patch keeps the other
+// threads busy they place as well.
+template <typename Take>
+void PatchSimplifier::place_all(double bound, Take take) {
+  if (!steering_.is_alone) {
+    for (const auto& [a, b] : pairs_) take(a, b, place(a, b, bound, joins_));
+    return;
+  }
+  constexpr std::size_t kAtOnce = 16384, kTask = 512;
+  PerThread<Joins> joins;
+  std::vector<Placed> placed(std::min(kAtOnce, pairs_.size()));
+  for (std::size_t first = 0; first < pairs_.size(); first += kAtOnce) {
+    const auto pairs = std::span(pairs_).subspan(first, std::min(kAtOnce, pairs_.size() - first));
+    parallel_ranges(pairs.size(), kTask, [&](std::size_t begin, std::size_t end) {
+      Joins& own = joins.local();
+      for (std::size_t i = begin; i != end; ++i) {
+        placed[i] = place(pairs[i].first, pairs[i].second, bound, own);
+      }
+    });
+    for (std::size_t i = 0; i != pairs.size(); ++i) {
+      take(pairs[i].first, pairs[i].second, placed[i]);
+    }
+  }
+}
+
 std::vector<double> PatchSimplifier::initial_costs() {
   std::vector<double> costs;
   costs.reserve(pairs_.size());
-  for (const auto& [a, b] : pairs_) costs.push_back(place(a, b, HUGE_VAL).cost);
+  place_all(HUGE_VAL, [&](Index, Index, const Placed& placed) { costs.push_back(placed.cost); });
   return costs;
 }
 
@@ -78,7 +104,7 @@ bool PatchSimplifier::is_next(const Entry& entry, double cost) const {
 
 // What make_legal() found, if it is next also when the witness that is farthest away has its say.
 void PatchSimplifier::contract_or_hold(const Entry& entry, Index a, Index b, double cost,
-                                       Placed placed) {
+                                       Placed& placed) {
   const auto is_due = [&] {
     return placed.cost <= steering_.cost_limit && is_next(entry, placed.cost);
   };
@@ -134,16 +160,15 @@ void PatchSimplifier::order_pairs() {
   clear_for(order_, pairs_.size() / 2);
   next_in_order_ = 0;
   clear_for(candidates_, pairs_.size() / 2);
-  for (const auto& [a, b] : pairs_) {
-    const Placed placed = place(a, b, steering_.cost_limit);
-    if (!(placed.cost <= steering_.cost_limit)) continue;
+  place_all(steering_.cost_limit, [&](Index a, Index b, const Placed& placed) {
+    if (!(placed.cost <= steering_.cost_limit)) return;
     order_.push_back({static_cast<float>(placed.cost), static_cast<Index>(candidates_.size())});
     Candidate& pair = candidates_.emplace_back();
     pair.a = a;
     pair.b = b;
     pair.known_at = 0;
     keep_placed(placed, pair);
-  }
+  });
   sort_by_cost(order_, order_scratch_);
 }
 
@@ -202,12 +227,13 @@ PatchResult PatchSimplifier::run() {
       find_ring(a, b);
       blamed_ = kNone;
       const double known = waited->cost_with_ring;
-      contract_or_hold(entry, a, b, known, {known, known, to_double(waited->position), true});
+      Placed placed{known, known, to_double(waited->position), true};
+      contract_or_hold(entry, a, b, known, placed);
       continue;
     }
 
     if (std::max(vertices_[a].changed_at, vertices_[b].changed_at) >= std::max(pair.known_at, 1u)) {
-      keep_placed(place(a, b, steering_.cost_limit), pair);
+      keep_placed(place(a, b, steering_.cost_limit, joins_), pair);
     }
     pair.known_at = static_cast<Index>(result_.contractions.size()) + 1;
     const double cost = pair.cost;
@@ -217,7 +243,8 @@ PatchResult PatchSimplifier::run() {
       continue;
     }
     const double dear = kDear * double(std::max(next_cost(), static_cast<float>(cost)));
-    contract_or_hold(entry, a, b, cost, make_legal(pair, std::min(steering_.cost_limit, dear)));
+    Placed placed = make_legal(pair, std::min(steering_.cost_limit, dear));
+    contract_or_hold(entry, a, b, cost, placed);
   }
   write_back();
   result_.triangles_left = live_triangles_;

@@ -78,15 +78,24 @@ void find_parts(WorkMesh& work) {
   }
 }
 
-// The live triangles of each part, and how many parts have any. `part_of_vertex` leads to them at
-// once.
+// The live triangles of each part, and how many parts have any. From then on `part_of_vertex` leads
+// to the parts of live vertices at once.
 std::size_t count_part_triangles(WorkMesh& work) {
+  std::vector<std::uint32_t>& part = work.part_of_vertex;
+  if (3 * work.live.size() < work.positions.size()) {
+    for (std::uint32_t t : work.live) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t v = work.vertex_of_corner[3 * t + c];
+        part[v] = part_of(part, v);
+      }
+    }
+  } else {
+    for (std::uint32_t v = 0; v < work.positions.size(); ++v) part[v] = part_of(part, v);
+  }
   std::vector<std::uint32_t>& count = work.triangles_of_part;
   count.assign(work.positions.size(), 0);
   std::size_t live_parts = 0;
-  for (std::uint32_t t : work.live) {
-    live_parts += count[work.part_of_vertex[work.vertex_of_corner[3 * t]]]++ == 0;
-  }
+  for (std::uint32_t t : work.live) live_parts += count[part[work.vertex_of_corner[3 * t]]]++ == 0;
   return live_parts;
 }
 
@@ -156,8 +165,11 @@ class Simplifier {
  public:
   Simplifier(const Mesh& mesh, const Grid& grid, const SimplifyOptions& options)
       : options_(options), work_(make_work(mesh, grid)) {
-    if (options.measures_errors) work_.witnesses = witnesses_of(mesh, work_.positions);
-    find_parts(work_);
+    parallel_both(
+        [&] {
+          if (options.measures_errors) work_.witnesses = witnesses_of(mesh, work_.positions);
+        },
+        [&] { find_parts(work_); });
     sequence_.grid = grid;
     sequence_.placement = options.placement;
   }
@@ -171,19 +183,21 @@ class Simplifier {
       if (options_.progress && !options_.progress("simplify", done)) {
         return fail(Error::Interrupted, "simplify: interrupted");
       }
-      const Extent extent = measure_extent(work_);
+      Extent extent;
+      bool parts_join = false;
+      parallel_both(
+          [&] {
+            extent = measure_extent(work_);
+            if (work_.part_count > 1)
+              parts_join = before < kFewTriangles * count_part_triangles(work_);
+          },
+          [&] {
+            if (!limits || limits->begins_band()) start_band(band);
+          });
       const double triangle_area = std::max(extent.area / double(before), 1e-9);
       const double edge = std::sqrt(triangle_area * 2.3);  // of an equilateral triangle
       set_scales(work_, extent, options_.normal_weight, edge);
 
-      if (!limits || limits->begins_band()) start_band(band);
-      bool parts_join = false;
-      if (work_.part_count > 1) {
-        for (std::uint32_t v = 0; v < work_.positions.size(); ++v) {
-          work_.part_of_vertex[v] = part_of(work_.part_of_vertex, v);
-        }
-        parts_join = before < kFewTriangles * count_part_triangles(work_);
-      }
       Steering steering;
       steering.placement = options_.placement;
       steering.normal_scale = options_.normal_weight * edge;
@@ -199,6 +213,7 @@ class Simplifier {
       steering.joins_below = last || parts_join ? kNone : kCard;
       steering.turn_distance = 4 * step;
       steering.far_area = far_area_.share() * triangle_area;
+      steering.is_alone = options_.threads != 1 && patches_.count() == 1;
       if (!run_pass(steering, input_triangles)) {
         return fail(Error::Interrupted, "simplify: interrupted");
       }
@@ -237,11 +252,13 @@ class Simplifier {
     std::mutex append;
     std::vector<std::size_t> chosen;
     for (std::size_t p = 0; p < patches_.count(); p += stride) chosen.push_back(p);
+    Steering of_sample = steering;
+    of_sample.is_alone = options_.threads != 1 && chosen.size() == 1;
     std::ranges::reverse(chosen);  // the last one started, the first that is run: it stays loaded
     parallel_for(chosen.size(), [&](std::size_t i) {
       const std::size_t p = chosen[i];
       PatchSimplifier& patch = patch_simplifiers_->local();
-      patch.start(work_, patches_.of(p), static_cast<std::uint32_t>(p), steering);
+      patch.start(work_, patches_.of(p), static_cast<std::uint32_t>(p), of_sample);
       const std::vector<double> own = patch.initial_costs();
       const std::lock_guard<std::mutex> lock(append);
       costs.insert(costs.end(), own.begin(), own.end());
@@ -297,9 +314,14 @@ class Simplifier {
     for (const PatchResult& result : results_) far_counts.add(result.far_counts);
     far_area_.learn(far_counts);
     number_new_values();
-    append_contractions();
-    std::erase_if(work_.live,
-                  [&](std::uint32_t t) { return work_.vertex_of_corner[3 * t] == kNone; });
+    parallel_both([&] { append_contractions(); },
+                  [&] {
+                    join_contracted_parts();
+                    std::erase_if(work_.live, [&](std::uint32_t t) {
+                      return work_.vertex_of_corner[3 * t] == kNone;
+                    });
+                  });
+    results_.clear();
     return true;
   }
 
@@ -358,12 +380,13 @@ class Simplifier {
 
   // One order for the pass: by cost, which never falls inside a patch, then by patch.
   void append_contractions() {
-    std::size_t contraction_count = 0, change_count = sequence_.changes.size();
+    std::size_t contraction_count = 0, change_count = 0;
     for (const PatchResult& result : results_) {
       contraction_count += result.contractions.size();
       change_count += result.changes.size();
     }
-    sequence_.changes.reserve(change_count);
+    std::vector<AttributeChange>& all_changes = changes_of_pass_.emplace_back();
+    all_changes.reserve(change_count);
     std::vector<At> order;
     order.reserve(contraction_count);
     std::vector<std::size_t> begin_of_patch = {0};
@@ -388,18 +411,25 @@ class Simplifier {
           std::span(from.changes).subspan(contraction.first_change, contraction.change_count);
       const auto derived =
           std::span(from.derived).subspan(contraction.first_derived, contraction.derived_count);
-      contraction.first_change = static_cast<std::uint32_t>(sequence_.changes.size());
+      contraction.first_change = static_cast<std::uint32_t>(change_count_ + all_changes.size());
       contraction.first_derived = static_cast<std::uint32_t>(sequence_.derived.size());
-      for (const AttributeChange& change : changes) sequence_.changes.push_back(change);
+      for (const AttributeChange& change : changes) all_changes.push_back(change);
       for (TriangleId triangle : derived) sequence_.derived.push_back(triangle);
       worst_surface_ = std::max(worst_surface_, contraction.error.surface);
       contractions.push_back(contraction);
-      if (work_.part_count > 1) {
-        join_parts(work_, static_cast<std::uint32_t>(contraction.removed),
-                   static_cast<std::uint32_t>(contraction.kept));
+    }
+    change_count_ += change_count;
+  }
+
+  // In any order: the parts are the same.
+  void join_contracted_parts() {
+    for (const PatchResult& result : results_) {
+      if (work_.part_count < 2) return;
+      for (const PatchContraction& own : result.contractions) {
+        join_parts(work_, static_cast<std::uint32_t>(own.contraction.removed),
+                   static_cast<std::uint32_t>(own.contraction.kept));
       }
     }
-    results_.clear();
   }
 
   BandStatistics band_statistics() const {
@@ -422,6 +452,11 @@ class Simplifier {
       }
       of_pass = {};
     }
+    sequence_.changes.reserve(change_count_);
+    for (auto& of_pass : changes_of_pass_) {
+      sequence_.changes.insert(sequence_.changes.end(), of_pass.begin(), of_pass.end());
+      of_pass = {};
+    }
   }
 
   const SimplifyOptions& options_;
@@ -435,7 +470,9 @@ class Simplifier {
   std::uint32_t contractions_in_band_ = 0;
   float worst_surface_ = 0;
   std::vector<std::vector<Contraction>> contractions_of_pass_;  // errors in grid units
-  ContractionSequence sequence_;  // contractions and new values at the end
+  std::vector<std::vector<AttributeChange>> changes_of_pass_;
+  std::size_t change_count_ = 0;
+  ContractionSequence sequence_;  // contractions, changes and new values at the end
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "simplify/work_mesh.h"
 
+#include "parallel/parallel.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -71,7 +73,7 @@ void find_represented(const Mesh& mesh, WorkMesh& work) {
   }
   if (!any_flat) return;
   work.represented.resize(mesh.triangle_count());
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+  const auto find_of = [&](std::size_t t) {
     const std::uint32_t* v = &work.vertex_of_corner[3 * t];
     const auto at = [&](int c) {
       const Vec3i& p = work.positions[v[c]];
@@ -83,25 +85,35 @@ void find_represented(const Mesh& mesh, WorkMesh& work) {
     work.represented[t] = {
         {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)},
         static_cast<float>(area)};
-  }
+  };
+  parallel_ranges(mesh.triangle_count(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t != end; ++t) find_of(t);
+  });
 }
 
 }  // namespace
 
 WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
   WorkMesh work;
-  work.positions.reserve(mesh.vertex_count());
-  for (const Vec3d& p : mesh.positions) work.positions.push_back(grid.nearest(p));
-  work.error_of_vertex.resize(mesh.vertex_count());
-  work.vertex_of_corner.reserve(3 * mesh.triangle_count());
-  for (const Triangle& triangle : mesh.triangles) {
-    for (VertexId v : triangle) work.vertex_of_corner.push_back(static_cast<std::uint32_t>(v));
-  }
-  work.live.resize(mesh.triangle_count());
-  std::iota(work.live.begin(), work.live.end(), 0u);
-  work.derived.assign(mesh.triangle_count(), 0);
-  add_layers(mesh, work);
-  find_categories(mesh, work);
+  parallel_both(
+      [&] {
+        work.positions.reserve(mesh.vertex_count());
+        for (const Vec3d& p : mesh.positions) work.positions.push_back(grid.nearest(p));
+        work.error_of_vertex.resize(mesh.vertex_count());
+        work.vertex_of_corner.reserve(3 * mesh.triangle_count());
+        for (const Triangle& triangle : mesh.triangles) {
+          for (VertexId v : triangle) {
+            work.vertex_of_corner.push_back(static_cast<std::uint32_t>(v));
+          }
+        }
+      },
+      [&] {
+        work.live.resize(mesh.triangle_count());
+        std::iota(work.live.begin(), work.live.end(), 0u);
+        work.derived.assign(mesh.triangle_count(), 0);
+        add_layers(mesh, work);
+        find_categories(mesh, work);
+      });
   find_represented(mesh, work);
   return work;
 }
