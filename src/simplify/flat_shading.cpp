@@ -43,6 +43,9 @@ void PatchSimplifier::load_shading() {
     if (flat_[t] || derived_[t]) {
       const Wedge& wedge = wedges_[normal_layer][wedge_of_corner_[normal_layer][4 * t]];
       shading.stored = {wedge.value[0], wedge.value[1], wedge.value[2]};
+      const bool inside_out =
+          !work_->inside_out.empty() && work_->inside_out[global_triangle_[t]] != 0;
+      shading.faced = inside_out ? shading.stored * -1.0f : shading.stored;
       shading.know_stored_error();
       shading.counts = shading.counts_with(facing_[t].normal, facing_[t].area);
     } else {

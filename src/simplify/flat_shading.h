@@ -41,6 +41,7 @@ inline bool is_better_derived(const Represented& input, double derived, double s
 struct FlatShading {
   Represented input;
   Vec3f stored;              // the stored normal, which it shows unless it is derived
+  Vec3f faced;               // where it faces while it is right: its opposite, if it is inside out
   bool derived = false;      // shows its geometric normal
   double stored_error = 0;   // of showing the stored normal
   double stored_counts = 0;  // what that counts
@@ -61,7 +62,7 @@ struct FlatShading {
     if (derived || is_better_derived(input, geometric_error, stored_error)) {
       return weighed_error_of(input, geometric_error);
     }
-    const Vec3d turn = normal - to_double(stored);
+    const Vec3d turn = normal - to_double(faced);
     const double turn2 = dot(turn, turn);
     const double turned = turn2 > 2 ? area : std::min(area, double(input.area));
     return stored_counts + turned * weighed(turn2);

@@ -90,7 +90,7 @@ inline void PatchSimplifier::gather_shading(std::size_t first, RingBlock& block)
   static_assert(offsetof(Represented, area) == 3 * sizeof(float));
   take_floats(&s0.input.sum.x, &s1.input.sum.x, &s2.input.sum.x, &s3.input.sum.x, to.input_sum,
               &to.input_area);
-  take_floats(&s0.stored.x, &s1.stored.x, &s2.stored.x, &s3.stored.x, to.stored);
+  take_floats(&s0.faced.x, &s1.faced.x, &s2.faced.x, &s3.faced.x, to.faced);
   static_assert(offsetof(FlatShading, counts) ==
                 offsetof(FlatShading, stored_counts) + sizeof(double));
   static_assert(offsetof(FlatShading, stored_counts) ==

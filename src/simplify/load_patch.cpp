@@ -351,6 +351,34 @@ inline void PatchSimplifier::add_lines(Index v, const Edge& edge, double share) 
   }
 }
 
+// Triangles with the same three vertices, both sides of a sheet or what somebody exported twice,
+// count as one. Of copies that which goes on from the first sheet: it runs the other way.
+PatchSimplifier::Edge PatchSimplifier::without_copies(Index v, const Edge& edge) const {
+  Edge sheets{edge.other, {}, {}, 0};
+  Index third[2] = {kNone, kNone};
+  bool runs_on[2] = {};
+  for (const Index corner : corners_of(v)) {
+    const Index begin = 4 * triangle_of(corner);
+    Index other_corner = begin;
+    while (other_corner < begin + 3 && vertex_of_corner_[other_corner] != edge.other)
+      ++other_corner;
+    if (other_corner == begin + 3) continue;
+    const Index apex = vertex_of_corner_[3 * begin + 3 - corner - other_corner];
+    const bool on = other_corner == corner + 1 || other_corner + 2 == corner;
+    Index place = 0;
+    while (place < std::min(sheets.triangle_count, 2u) && third[place] != apex) ++place;
+    const bool is_copy = place < std::min(sheets.triangle_count, 2u);
+    const bool is_better = is_copy && place == 1 && runs_on[1] == runs_on[0] && on != runs_on[0];
+    sheets.triangle_count += is_copy ? 0 : 1;
+    if (place > 1 || (is_copy && !is_better)) continue;
+    third[place] = apex;
+    runs_on[place] = on;
+    sheets.corner[place] = corner;
+    sheets.other_corner[place] = other_corner;
+  }
+  return sheets;
+}
+
 // The sides of the triangles by the end that comes first, there in the order of the triangles.
 void PatchSimplifier::gather_edge_sides() {
   const Index triangle_count = static_cast<Index>(global_triangle_.size());
@@ -406,10 +434,11 @@ CREASE_WIDE void PatchSimplifier::load_edges() {
     }
     first_edge += edge_count;
     edges_.finish(edges + edge_count);
-    for (const Edge& edge : edges_) {
+    for (Edge& edge : edges_) {
       const Index w = edge.other;
       if (vertices_[v].locked && vertices_[w].locked) continue;
       if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
+      if (edge.triangle_count > 2) edge = without_copies(v, edge);
       const double weight = line_weight(v, edge);
       if (weight > 0) add_lines(v, edge, weight);
     }

@@ -158,6 +158,7 @@ class PatchSimplifier {
   static double square_of_difference(const Wedge& a, const Wedge& b);
   double line_weight(Index v, const Edge& edge) const;
   void add_lines(Index v, const Edge& edge, double share);
+  Edge without_copies(Index v, const Edge& edge) const;
   void add_line(Index a, Index b, Index triangle, double share);
 
   // virtual_pairs.cpp

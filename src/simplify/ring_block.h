@@ -52,7 +52,7 @@ inline void take_root(const Row& square, Row& root) {
 
 // FlatShading of four triangles, where some of them need it.
 struct ShadingBlock {
-  Row input_sum[3], input_area, stored[3], stored_error, stored_counts, counts;
+  Row input_sum[3], input_area, faced[3], stored_error, stored_counts, counts;
   Lanes derived;
 
   // FlatShading::counts_with(), less what they count.
@@ -62,7 +62,7 @@ struct ShadingBlock {
                                        input_sum[2] * normal[2]));
     geometric = geometric > 0 ? geometric : none;
     const Lanes by_geometry = derived | (geometric + kDeriveMargin * input_area < stored_error);
-    const Row turn[] = {normal[0] - stored[0], normal[1] - stored[1], normal[2] - stored[2]};
+    const Row turn[] = {normal[0] - faced[0], normal[1] - faced[1], normal[2] - faced[2]};
     const Row turn2 = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
     const Row chord2 = by_geometry ? geometric / input_area : turn2;
     Row chord;

@@ -3,6 +3,7 @@
 #include "parallel/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 namespace crease::simplification {
@@ -60,6 +61,16 @@ void find_categories(const Mesh& mesh, WorkMesh& work) {
   }
 }
 
+// Along the normal that the winding tells.
+Vec3d twice_area_of(const WorkMesh& work, std::size_t t) {
+  const std::uint32_t* v = &work.vertex_of_corner[3 * t];
+  const auto at = [&](int c) {
+    const Vec3i& p = work.positions[v[c]];
+    return Vec3d{double(p.x), double(p.y), double(p.z)};
+  };
+  return cross(at(1) - at(0), at(2) - at(0));
+}
+
 // Flat triangles remember the input normals that they stand for.
 void find_represented(const Mesh& mesh, WorkMesh& work) {
   const AttributeLayer* normals = mesh.normals();
@@ -73,15 +84,13 @@ void find_represented(const Mesh& mesh, WorkMesh& work) {
   }
   if (!any_flat) return;
   work.represented.resize(mesh.triangle_count());
+  std::atomic<bool> any_against = false;
   const auto find_of = [&](std::size_t t) {
-    const std::uint32_t* v = &work.vertex_of_corner[3 * t];
-    const auto at = [&](int c) {
-      const Vec3i& p = work.positions[v[c]];
-      return Vec3d{double(p.x), double(p.y), double(p.z)};
-    };
-    const double area = 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+    const Vec3d twice = twice_area_of(work, t);
+    const double area = 0.5 * length(twice);
     const std::span<const float> n = normals->value(normals->of_corner[3 * t]);
     const Vec3d sum = Vec3d{double(n[0]), double(n[1]), double(n[2])} * area;
+    if (dot(twice, sum) < 0) any_against = true;
     work.represented[t] = {
         {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)},
         static_cast<float>(area)};
@@ -89,6 +98,7 @@ void find_represented(const Mesh& mesh, WorkMesh& work) {
   parallel_ranges(mesh.triangle_count(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t != end; ++t) find_of(t);
   });
+  if (any_against) work.inside_out.resize(mesh.triangle_count());
 }
 
 }  // namespace
@@ -116,6 +126,28 @@ WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
       });
   find_represented(mesh, work);
   return work;
+}
+
+// A normal may be wrong where it is, but those of most of a part are not.
+void find_inside_out(WorkMesh& work) {
+  if (work.inside_out.empty()) return;
+  const auto agreement = [&](std::size_t t) {  // the area, times a cosine
+    const Vec3d twice = twice_area_of(work, t);
+    const double size = length(twice);
+    return size > 0 ? dot(twice * (1 / size), to_double(work.represented[t].sum)) : 0;
+  };
+  const auto part_of = [&](std::size_t t) {
+    std::uint32_t v = work.vertex_of_corner[3 * t];
+    while (work.part_of_vertex[v] != v) v = work.part_of_vertex[v];
+    return v;
+  };
+  std::vector<double> agreement_of_part(work.positions.size(), 0);
+  for (std::size_t t = 0; t < work.inside_out.size(); ++t) {
+    agreement_of_part[part_of(t)] += agreement(t);
+  }
+  for (std::size_t t = 0; t < work.inside_out.size(); ++t) {
+    work.inside_out[t] = agreement(t) < 0 && agreement_of_part[part_of(t)] < 0;
+  }
 }
 
 }  // namespace crease::simplification

@@ -58,6 +58,8 @@ struct WorkMesh {
   std::vector<std::uint32_t> category_of_triangle;  // material and part as one; empty: all the same
   std::vector<char> derived;                        // per triangle: shows its geometric normal
   std::vector<Represented> represented;             // per triangle; empty: nothing is flat
+  std::vector<char> inside_out;                     // per triangle: wound against its normals, as
+                                                    // most of its part; empty: none is
   std::vector<std::uint32_t> part_of_vertex;        // a vertex of the part: equal for vertices that
                                                     // triangles or contractions connect
   std::size_t part_count = 0;
@@ -70,6 +72,9 @@ struct WorkMesh {
 // The input, nothing contracted; `mesh` must outlive it. Who owns a vertex and what part it is of
 // are left open.
 WorkMesh make_work(const Mesh& mesh, const Grid& grid);
+
+// Once the parts are known.
+void find_inside_out(WorkMesh& work);
 
 // What one patch did in one band, in its own numbering of new attribute values.
 struct PatchContraction {

@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -159,6 +160,59 @@ TEST_CASE("a box with half a degree of noise is a box once its normals are joine
   CHECK(reached.triangles == 12);
   CHECK(relative(reached.apart.distance.b_to_a.max, reached) < 1e-6);
   CHECK(reached.apart.normal_deviation.max < 1e-3);
+}
+
+// As exports from left-handed systems have it: the normals are right, and every triangle is wound
+// the other way.
+TEST_CASE("a model that is wound against its normals is simplified as any other") {
+  const auto turned = [](Mesh mesh) {
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+      AttributeId* corners = &mesh.layers[0].of_corner[3 * t];
+      std::swap(corners[1], corners[2]);
+    }
+    return mesh;
+  };
+  const Reached box = reduce(turned(hard_box(24)), 12);
+  CHECK(box.triangles == 12);
+  CHECK(relative(box.apart.distance.b_to_a.max, box) < 1e-6);
+  CHECK(box.apart.normal_deviation.max < 1e-3);
+  const Mesh wheel = quartered(quartered(gear(40)));
+  const Reached gear = reduce(turned(wheel), wheel.triangle_count() / 10);
+  CHECK(gear.triangles <= wheel.triangle_count() / 10);
+  CHECK(relative(gear.apart.distance.a_to_b.max, gear) < 1e-6);
+  CHECK(gear.apart.normal_deviation.max < 1e-3);
+}
+
+// Both sides of every sheet, as two-sided exports have them, or every triangle twice.
+TEST_CASE("a model that has every triangle twice is simplified as any other") {
+  for (const bool other_side : {false, true}) {
+    CAPTURE(other_side);
+    Mesh box = hard_box(16);
+    AttributeLayer& normals = box.layers[0];
+    const std::size_t triangles = box.triangle_count(), values = normals.value_count();
+    if (other_side) {
+      for (std::size_t i = 0; i < 3 * values; ++i) normals.values.push_back(-normals.values[i]);
+    }
+    const auto copied = [&](std::size_t t, std::size_t c) {
+      const std::size_t id = index_of(normals.of_corner[3 * t + c]) + (other_side ? values : 0);
+      return AttributeId{static_cast<std::uint32_t>(id)};
+    };
+    for (std::size_t t = 0; t < triangles; ++t) {
+      Triangle copy = box.triangles[t];
+      std::array<AttributeId, 3> ids{copied(t, 0), copied(t, 1), copied(t, 2)};
+      if (other_side) {
+        std::swap(copy[1], copy[2]);
+        std::swap(ids[1], ids[2]);
+      }
+      box.triangles.push_back(copy);
+      normals.of_corner.insert(normals.of_corner.end(), ids.begin(), ids.end());
+    }
+    const Reached reached = reduce(box, 24);
+    CHECK(reached.triangles == 24);
+    CHECK(relative(reached.apart.distance.a_to_b.max, reached) < 1e-6);
+    CHECK(relative(reached.apart.distance.b_to_a.max, reached) < 1e-6);
+  }
 }
 
 // Noise of normals, values and charts by triangle: what differs at every edge makes no lines there.
