@@ -9,6 +9,8 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <string>
 
 namespace crease::cli {
 
@@ -28,12 +30,41 @@ std::string row(const char* name, const Spread& spread, double diagonal) {
   return line;
 }
 
+// As --normals takes it.
+std::string words_of(const NormalPolicy& policy) {
+  switch (policy.kind) {
+    case NormalPolicy::Kind::Keep: return "keep";
+    case NormalPolicy::Kind::Flat: return "flat";
+    case NormalPolicy::Kind::Smooth: return "smooth";
+    case NormalPolicy::Kind::Crease: break;
+  }
+  char words[40];
+  std::snprintf(words, sizeof words, "crease:%g", policy.crease_angle_deg);
+  return words;
+}
+
+// B's normals are made as A's, where neither has any of its own and they would be made otherwise: a
+// level of a scan is no scan any more, and formats have rules of their own.
+Result<Mesh> load_b(const CompareArguments& options, const Common& common,
+                    const ImportReport& report_a, ImportReport& report_b) {
+  Result<Mesh> mesh = load_mesh(options.b, options.read, common, &report_b);
+  const std::optional<NormalPolicy>& made = report_a.made_normals;
+  if (!mesh.ok() || !made || !report_b.made_normals || *made == *report_b.made_normals) return mesh;
+  ReadOptions as_a = options.read;
+  as_a.normals = words_of(*made);
+  log(common, options.b.string() + ": read again with --normals " + as_a.normals + ", as " +
+                  options.a.string() + "; --normals says which");
+  return load_mesh(options.b, as_a, common, &report_b);
+}
+
 Result<Report> run_compare(const CompareArguments& options, const Common& common) {
   const Stopwatch watch;
   Mesh meshes[2];
+  ImportReport reports[2];
   const std::filesystem::path* paths[2] = {&options.a, &options.b};
   for (int i = 0; i < 2; ++i) {
-    Result<Mesh> mesh = load_mesh(*paths[i], options.read, common);
+    Result<Mesh> mesh = i == 0 ? load_mesh(options.a, options.read, common, &reports[0])
+                               : load_b(options, common, reports[0], reports[1]);
     if (!mesh.ok()) return mesh.failure();
     if (mesh->triangle_count() == 0) {
       return fail(Error::NoTriangles, paths[i]->string() + ": no triangles to compare");
@@ -53,6 +84,11 @@ Result<Report> run_compare(const CompareArguments& options, const Common& common
   Report report;
   report.json = to_json(c);
   report.json["triangles"] = {{"a", meshes[0].triangle_count()}, {"b", meshes[1].triangle_count()}};
+  // Of a .crease they are the file's.
+  const auto normals_of = [](const ImportReport& read) {
+    return read.normals.empty() ? "the file's" : read.normals;
+  };
+  report.json["normals"] = {{"a", normals_of(reports[0])}, {"b", normals_of(reports[1])}};
   report.json["seconds"] = watch.seconds();
   const double diagonal = c.diagonal > 0 ? c.diagonal : 1;
   report.text = row("A to B", c.distance.a_to_b, diagonal) + "\n" +

@@ -304,7 +304,7 @@ Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOption
 }
 
 Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& options,
-                       const Common& common) {
+                       const Common& common, ImportReport* report) {
   if (is_crease_file(path)) {
     const Result<ModelFile> file = open_model(path, options, common);
     if (!file.ok()) return file.failure();
@@ -314,6 +314,7 @@ Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& opt
   }
   Result<Imported> imported = import_and_report(path, options, common, nullptr);
   if (!imported.ok()) return imported.failure();
+  if (report != nullptr) *report = std::move(imported->report);
   return std::move(imported->mesh);
 }
 

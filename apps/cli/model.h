@@ -106,8 +106,9 @@ DecodeOptions decode_options(const Common& common);
 
 Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOptions& options,
                              const Common& common);
-// To measure and to draw: of a .crease without parts.
+// To measure and to draw: of a .crease without parts. `report`, where not null, is filled where a
+// mesh file was imported.
 Result<Mesh> load_mesh(const std::filesystem::path& path, const ReadOptions& options,
-                       const Common& common);
+                       const Common& common, ImportReport* report = nullptr);
 
 }  // namespace crease::cli

@@ -30,6 +30,7 @@ struct NormalPolicy {
   enum class Kind { Keep, Flat, Smooth, Crease };
   Kind kind = Kind::Keep;        // Keep: the file's; without any, the format's default (below)
   double crease_angle_deg = 30;  // Crease: edges sharper than this are hard
+  bool operator==(const NormalPolicy&) const = default;
 };
 // "keep", "flat", "smooth" or "crease:ANGLE".
 Result<NormalPolicy> parse_normal_policy(std::string_view text);
@@ -46,6 +47,8 @@ struct ImportOptions {
 struct ImportReport {
   std::string format;                    // "OBJ", "binary STL", ...
   std::string normals;                   // where the normals come from, in words
+  // What makes such normals of another file; none: they are the file's, or by its smoothing groups.
+  std::optional<NormalPolicy> made_normals;
   UpAxis up = UpAxis::Unknown;           // Mesh::up
   bool up_is_guessed = false;            // from the shape, as the file does not say
   std::size_t polygons = 0;              // faces with more than three corners, triangulated

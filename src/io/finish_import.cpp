@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <utility>
 
 namespace crease {
@@ -108,6 +109,7 @@ std::size_t normalize_given(AttributeLayer& normals) {
 struct NormalRule {
   SoftEdges soft;
   std::string words;
+  std::optional<NormalPolicy> policy;  // none: smoothing groups
 };
 
 // Where sharp edges are fragments, as the noise of a scan makes them, none of them is a feature.
@@ -132,11 +134,14 @@ NormalRule rule_of(const NormalPolicy& asked, const RawMesh& raw, const Mesh& me
     policy = raw.default_normals;
     if (policy.kind == NormalPolicy::Kind::Crease && is_scan(mesh, policy.crease_angle_deg)) {
       rule.soft.max_angle_deg = 180;
+      rule.policy = {.kind = NormalPolicy::Kind::Smooth};
       rule.words =
           "smooth (a scan: edges over " + in_degrees(policy.crease_angle_deg) + " are fragments)";
       return rule;
     }
   }
+  rule.policy = policy;
+  if (policy.kind == NormalPolicy::Kind::Keep) rule.policy->kind = NormalPolicy::Kind::Flat;
   switch (policy.kind) {
     case NormalPolicy::Kind::Keep:
     case NormalPolicy::Kind::Flat:
@@ -183,6 +188,7 @@ void settle_normals(Mesh& mesh, const RawMesh& raw, const ImportOptions& options
     weld_layer(normals);
   } else {
     normals = generate_normals(mesh, rule.soft);
+    report.made_normals = rule.policy;
     report.normals = rule.words + (asked_for_new ? ", as asked for" : ", as the file has none");
   }
   if (options.same_normal_deg > 0) {

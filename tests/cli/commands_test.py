@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import random
 import struct
 
 import tool
@@ -351,6 +352,26 @@ class Commands(tool.Case):
         self.has(c["normal_deviation"], "mean", "p95", "max")
         self.assertAlmostEqual(c["normal_deviation"]["max"], 0, 3)
         self.assertEqual(c["samples"], 1000)
+
+    def test_compare_makes_normals_of_both_alike(self):
+        # A scan, and a level of it that has too few triangles to look like one.
+        chance = random.Random(1)
+        def rough(name, n):
+            lines = [f"v {x / n} {y / n} {0.45 * chance.random() / n}"
+                     for y in range(n + 1) for x in range(n + 1)]
+            for y in range(n):
+                for x in range(1, n + 1):
+                    a, b = y * (n + 1) + x, (y + 1) * (n + 1) + x
+                    lines += [f"f {a} {a + 1} {b}", f"f {b} {a + 1} {b + 1}"]
+            return self.write(name, "\n".join(lines))
+        scan, level = rough("scan.obj", 40), rough("level.obj", 20)
+        normals = self.json("compare", scan, level, "--samples", 100)["normals"]
+        self.assertIn("smooth (a scan", normals["a"])
+        self.assertEqual(normals["b"], "smooth, as asked for")
+        normals = self.json("compare", level, level, "--samples", 100)["normals"]
+        self.assertIn("hard edges", normals["b"])
+        city = self.json("compare", self.city(), self.city(), "--samples", 100)["normals"]
+        self.assertEqual(city, {"a": "the file's", "b": "the file's"})
 
     def test_render(self):
         out = self.path("levels.png")
