@@ -280,13 +280,13 @@ Result<Report> run_extract(const ExtractArguments& options, const Common& common
   }
   const std::string_view glb[] = {".glb"};
   const Status writable =
-      is_chain ? check_output(options.output, glb, "chains of levels are", {&options.file, 1})
+      is_chain ? check_ending(options.output, glb, "chains of levels are")
                : check_output(options.output, kMeshEndings, "levels are", {&options.file, 1});
   if (!writable.ok()) return writable.failure();
   if (is_chain) {
     for (const std::filesystem::path& output : files_of_chain(options.output, options.chain)) {
-      const Status kept = keep_inputs(output, {&options.file, 1});
-      if (!kept.ok()) return kept.failure();
+      const Status fine = check_place(output, {&options.file, 1});
+      if (!fine.ok()) return fine.failure();
     }
   }
   const Result<ModelFile> file = open_model(options.file, options.read, common);

@@ -2,6 +2,7 @@
 
 #include "cli/console.h"
 #include "cli/fields.h"
+#include "crease/write_file.h"
 
 #include <algorithm>
 #include <system_error>
@@ -28,15 +29,31 @@ std::string ending_of(const std::filesystem::path& path) {
   return ending;
 }
 
-Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
-                    std::string_view what, std::span<const std::filesystem::path> inputs) {
+Status check_ending(const std::filesystem::path& output, std::span<const std::string_view> endings,
+                    std::string_view what) {
   const std::string ending = ending_of(output);
   const bool is_known = std::ranges::find(endings, ending) != endings.end();
-  if (!is_known && !(ending.empty() && endings.size() == 1)) {
-    return fail(Error::NotSupported,
-                output.string() + ": " + std::string(what) + " written as " + in_words(endings));
+  if (is_known || (ending.empty() && endings.size() == 1)) return Done{};
+  return fail(Error::NotSupported,
+              output.string() + ": " + std::string(what) + " written as " + in_words(endings));
+}
+
+Status check_place(const std::filesystem::path& output,
+                   std::span<const std::filesystem::path> inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code error;  // one of them is not there
+    if (std::filesystem::equivalent(output, input, error)) {
+      return fail(Error::CommandLine,
+                  output.string() + ": is an input, which is never written over");
+    }
   }
-  return keep_inputs(output, inputs);
+  return check_writable(output);
+}
+
+Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
+                    std::string_view what, std::span<const std::filesystem::path> inputs) {
+  const Status known = check_ending(output, endings, what);
+  return known.ok() ? check_place(output, inputs) : known;
 }
 
 Result<ExportReport> write_mesh(const Mesh& mesh, const std::filesystem::path& output,
@@ -46,18 +63,6 @@ Result<ExportReport> write_mesh(const Mesh& mesh, const std::filesystem::path& o
   written->left_out.insert(written->left_out.end(), lost.begin(), lost.end());
   for (const std::string& line : lines_of(*written, output)) log(common, line);
   return written;
-}
-
-Status keep_inputs(const std::filesystem::path& output,
-                   std::span<const std::filesystem::path> inputs) {
-  for (const std::filesystem::path& input : inputs) {
-    std::error_code error;  // one of them is not there
-    if (std::filesystem::equivalent(output, input, error)) {
-      return fail(Error::CommandLine,
-                  output.string() + ": is an input, which is never written over");
-    }
-  }
-  return Done{};
 }
 
 }  // namespace crease::cli

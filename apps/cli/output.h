@@ -20,13 +20,18 @@ inline constexpr std::string_view kMeshEndings[] = {".obj", ".ply", ".stl", ".gl
 // ".glb" of "X.GLB".
 std::string ending_of(const std::filesystem::path& path);
 
-// Refuses to write over an input.
-Status keep_inputs(const std::filesystem::path& output,
+// All of these refuse before any work is done.
+
+// An output whose ending is none of `endings`. Where there is one ending, a name without any, as
+// pipes have it, will do. `what` begins the message: "levels are".
+Status check_ending(const std::filesystem::path& output, std::span<const std::string_view> endings,
+                    std::string_view what);
+
+// One that is among the inputs, or where nothing can be written.
+Status check_place(const std::filesystem::path& output,
                    std::span<const std::filesystem::path> inputs);
 
-// Refuses, before any work is done, an output whose ending is none of `endings`, and one that is
-// among the inputs. Where there is one ending, a name without any, as pipes have it, will do.
-// `what` begins the message: "levels are".
+// Both.
 Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
                     std::string_view what, std::span<const std::filesystem::path> inputs);
 

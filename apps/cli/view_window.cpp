@@ -194,8 +194,10 @@ Result<ViewerOptions> viewer_options(const ViewArguments& options, const Common&
 Result<Report> run_view(const ViewArguments& options, const Common& common) {
   const Stopwatch watch;
   const std::string_view ending[] = {".png"};
-  const Status writable = check_output(options.screenshot, ending, "pictures are", {});
-  if (!writable.ok()) return writable.failure();
+  if (!options.screenshot.empty()) {
+    const Status writable = check_output(options.screenshot, ending, "pictures are", {});
+    if (!writable.ok()) return writable.failure();
+  }
   if (!options.screenshot.empty() && options.source.empty()) {
     return fail(Error::CommandLine, "--screenshot needs a FILE");
   }

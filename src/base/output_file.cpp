@@ -38,10 +38,13 @@ bool leads_elsewhere(const struct ::stat& found, const std::filesystem::path& ta
          at_target.st_ino != found.st_ino;
 }
 
-}  // namespace
+struct Place {
+  std::filesystem::path target;  // what is replaced
+  std::filesystem::path aside;   // beside it; empty: written to as it is
+};
 
-Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
-  std::filesystem::path target = follow_links(path);
+Result<Place> place_of(const std::filesystem::path& path) {
+  Place place{follow_links(path), {}};
   struct ::stat found {};
   const bool is_there = ::stat(path.c_str(), &found) == 0;
   const bool is_file = is_there && S_ISREG(found.st_mode);
@@ -49,15 +52,21 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
   if (is_there && !is_file && !S_ISFIFO(found.st_mode) && !S_ISCHR(found.st_mode)) {
     return cannot_write(path, S_ISBLK(found.st_mode) ? "it is a disk" : "it is a socket");
   }
-  const bool is_replaced = !is_there || (is_file && !leads_elsewhere(found, target));
-  std::filesystem::path aside;
-  if (is_replaced) {
-    aside = target;
-    aside += ".part-" + std::to_string(::getpid());
+  if (!is_there || (is_file && !leads_elsewhere(found, place.target))) {
+    place.aside = place.target;
+    place.aside += ".part-" + std::to_string(::getpid());
   }
-  std::FILE* file = std::fopen(is_replaced ? aside.c_str() : path.c_str(), "wb");
+  return place;
+}
+
+}  // namespace
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
+  Result<Place> place = place_of(path);
+  if (!place.ok()) return place.failure();
+  std::FILE* file = std::fopen(place->aside.empty() ? path.c_str() : place->aside.c_str(), "wb");
   if (file == nullptr) return cannot_write(path, std::strerror(errno));
-  return OutputFile(file, path, std::move(target), std::move(aside));
+  return OutputFile(file, path, std::move(place->target), std::move(place->aside));
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
@@ -104,6 +113,19 @@ Status OutputFile::commit() {
   if (aside_.empty()) return Done{};
   if (std::rename(aside_.c_str(), target_.c_str()) != 0) return failed(errno);
   aside_.clear();
+  return Done{};
+}
+
+// Whoever reads a pipe would take its being opened and closed for all there is.
+Status check_writable(const std::filesystem::path& path) {
+  const Result<Place> place = place_of(path);
+  if (!place.ok()) return place.failure();
+  if (place->aside.empty()) {
+    if (::access(path.c_str(), W_OK) != 0) return cannot_write(path, std::strerror(errno));
+    return Done{};
+  }
+  const Result<OutputFile> file = OutputFile::create(path);
+  if (!file.ok()) return file.failure();
   return Done{};
 }
 

@@ -182,6 +182,27 @@ class Failures(tool.Case):
         self.fails(4, "render", self.city(), "-o", nowhere + "x.png", "--size", "64x64")
         self.fails(4, "generate", "city", "-o", nowhere + "x.ply", "--triangles", 500)
 
+    def test_4_where_nothing_can_be_written_is_found_before_any_work(self):
+        # A source that is not there would be what stops the work.
+        absent = self.path("absent.obj")
+        before = self.files()
+        for out, reason in ((self.path("no/x"), "No such file or directory"),
+                            (absent + "/x", "No such file or directory"),
+                            (tool.__file__ + "/x", "Not a directory"),
+                            (self.path("long" * 70), "File name too long")):
+            for arguments in (["build", absent, "-o", out + ".crease"],
+                              ["extract", absent, "-o", out + ".ply"],
+                              ["extract", absent, "-o", out + ".glb", "--levels", 2, "--lod-glb"],
+                              ["render", absent, "-o", out + ".png"],
+                              ["report", absent, "-o", out + ".html"]):
+                self.assertEqual(self.fails(4, *arguments)["message"],
+                                 f"{arguments[3]}: cannot be written: {reason}")
+        for arguments in (["build", "-o", "x.crease"], ["extract", "-o", "x.ply"],
+                          ["extract", "-o", "x.glb", "--levels", 2]):
+            command, _, out, *more = arguments
+            self.fails(2, command, absent, "-o", self.path(out), *more)
+        self.assertEqual(self.files(), before)
+
     def test_4_a_full_disk_leaves_nothing_behind(self):
         # A limit on file sizes stands in for a full disk: every write past it fails.
         city = self.city()
