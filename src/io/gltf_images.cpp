@@ -2,6 +2,7 @@
 
 #include "io/images.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -54,7 +55,12 @@ std::string GltfImages::take(const Json& texture_info) {
   const auto texture = as_index(at(texture_info, "index"));
   if (!texture) return {};
   const auto image = source_of(at(at(json_, "textures"), *texture));
-  if (!image) return place_of("textures", *texture);
+  if (!image) {
+    const std::string place = place_of("textures", *texture);
+    const std::string note = "texture left out: " + source_.name + ": " + place + ": has no image";
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+    return {};
+  }
   const auto [known, is_new] = name_of_image_.try_emplace(*image);
   if (is_new) known->second = take_image(*image);
   return known->second;
@@ -71,12 +77,12 @@ std::string GltfImages::take_image(std::size_t index) {
   if (bytes.ok() && image_type(*bytes).empty()) {
     bytes = fail_at_place(Error::NotSupported, source_, place, "is neither a PNG nor a JPEG");
   }
-  if (bytes.ok()) {
-    taken_bytes_ += bytes->size();
-    images.push_back({name, std::make_shared<const std::vector<std::byte>>(*std::move(bytes))});
-  } else {
+  if (!bytes.ok()) {
     notes.push_back("texture left out: " + bytes.failure().message);
+    return {};
   }
+  taken_bytes_ += bytes->size();
+  images.push_back({name, std::make_shared<const std::vector<std::byte>>(*std::move(bytes))});
   return name;
 }
 

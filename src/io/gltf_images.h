@@ -32,7 +32,8 @@ class GltfImages {
       : source_(source), json_(json), reader_(reader) {}
 
   // The name of the image that `texture_info` refers to, or empty. One inside the file is taken the
-  // first time; others have their uri for a name. What is broken is a note.
+  // first time; others have their uri for a name. One inside that is broken is a note and has no
+  // name: there is nowhere else to look for it.
   std::string take(const Json& texture_info);
 
   std::vector<ImageFile> images;

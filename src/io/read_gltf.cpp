@@ -4,11 +4,13 @@
 #include "io/gltf_compression.h"
 #include "io/gltf_document.h"
 #include "io/gltf_images.h"
+#include "io/gltf_materials.h"
 #include "io/gltf_scene.h"
 #include "io/text.h"
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -50,34 +52,6 @@ Status check_required_extensions(const Source& source, const Json& json) {
   return Done{};
 }
 
-std::vector<Material> read_materials(const Json& json, GltfImages& images) {
-  std::vector<Material> materials;
-  const Json& entries = at(json, "materials");
-  for (std::size_t i = 0; i < size_of(entries); ++i) {
-    const Json& entry = entries[i];
-    Material material;
-    material.name = as_text(at(entry, "name"));
-    if (material.name.empty()) material.name = "material " + std::to_string(i);
-    const Json* model = &at(entry, "pbrMetallicRoughness");
-    const char* factor = "baseColorFactor";
-    const Json& older = at(at(entry, "extensions"), "KHR_materials_pbrSpecularGlossiness");
-    if (!model->is_object() && older.is_object()) {
-      model = &older;
-      factor = "diffuseFactor";
-    }
-    const Json& color = at(*model, factor);
-    for (std::size_t k = 0; k < 4; ++k) {
-      material.base_color[k] = static_cast<float>(as_number(at(color, k), 1));
-    }
-    material.base_color_texture = images.take(base_color_texture(entry));
-    if (material.base_color_texture.empty()) {  // where write_glb() puts it
-      material.base_color_texture = as_text(at(at(entry, "extras"), "base_color_texture"));
-    }
-    materials.push_back(std::move(material));
-  }
-  return materials;
-}
-
 // 3.7.2.1: primitive.mode.
 enum class Mode : std::size_t { Triangles = 4, Strip = 5, Fan = 6 };
 
@@ -116,9 +90,11 @@ class MeshBuilder {
     if (!scene.ok()) return scene.failure();
     raw_.report.notes = std::move(scene->notes);
     GltfImages images(source_, json_, reader_);
-    raw_.materials = read_materials(json_, images);
+    GltfMaterials materials = read_gltf_materials(json_, images);
+    raw_.materials = std::move(materials.materials);
     raw_.images = std::move(images.images);
-    raw_.report.notes.insert(raw_.report.notes.end(), images.notes.begin(), images.notes.end());
+    std::ranges::copy(images.notes, std::back_inserter(raw_.report.notes));
+    std::ranges::copy(materials.notes, std::back_inserter(raw_.report.notes));
     raw_.up = as_text(at(at(at(json_, "asset"), "extras"), "up")) == "z" ? UpAxis::Z : UpAxis::Y;
     raw_.default_normals = {NormalPolicy::Kind::Flat, 0};
     const bool has_parts = scene->instances.size() > 1;

@@ -143,6 +143,54 @@ TEST_CASE("glTF: base colours and texture references of materials") {
   CHECK(mesh.material_of_triangle == std::vector<MaterialId>{MaterialId{1}, MaterialId{2}});
 }
 
+TEST_CASE("glTF: what materials say beyond a base colour is told, kind by kind") {
+  const auto notes_of = [](GltfBuilder::Json materials) {
+    GltfBuilder b = one_triangle();
+    b.json["materials"] = std::move(materials);
+    b.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    b.json["images"] = {{{"uri", "leaf.png"}}};
+    b.json["samplers"] = {{{"wrapS", 33071}, {"magFilter", 9728}}};
+    return import_text(b.gltf(), "m.gltf").report.notes;
+  };
+  using Notes = std::vector<std::string>;
+  const GltfBuilder::Json plain = {{"metallicFactor", 0}};
+  const GltfBuilder::Json texture = {{"index", 0}};
+  CHECK(notes_of({{{"pbrMetallicRoughness", plain}, {"emissiveFactor", {0, 0, 0}}}}).empty());
+  CHECK(notes_of({{{"name", "metal, if nothing else is said"}}, {{"name", "too"}}}) ==
+        Notes{"2 materials lose metallic and roughness"});
+  CHECK(notes_of({{{"pbrMetallicRoughness", plain},
+                   {"alphaMode", "MASK"},
+                   {"alphaCutoff", 0.3},
+                   {"doubleSided", true},
+                   {"emissiveFactor", {1, 0.5, 0}}},
+                  {{"pbrMetallicRoughness", plain}, {"doubleSided", true}}}) ==
+        Notes{"1 materials lose emission", "2 materials lose doubleSided",
+              "1 materials lose alphaMode MASK"});
+  CHECK(notes_of({{{"pbrMetallicRoughness",
+                    {{"metallicFactor", 0}, {"metallicRoughnessTexture", texture}}},
+                   {"normalTexture", texture},
+                   {"occlusionTexture", texture}}}) ==
+        Notes{"1 materials lose metallic and roughness", "1 materials lose normalTexture",
+              "1 materials lose occlusionTexture"});
+  CHECK(notes_of({{{"pbrMetallicRoughness", {{"baseColorTexture", texture}}},
+                   {"alphaMode", "BLEND"},
+                   {"extensions", {{"KHR_materials_unlit", GltfBuilder::Json::object()}}}}}) ==
+        Notes{"1 materials lose the alpha of their textures",
+              "1 materials lose 'KHR_materials_unlit'",
+              "1 materials lose wrapS or wrapT, which become REPEAT",
+              "1 materials lose magFilter NEAREST"});
+}
+
+TEST_CASE("glTF: alpha counts where it blends") {
+  for (const auto& [mode, alpha] :
+       {std::pair("OPAQUE", 1.0f), std::pair("MASK", 1.0f), std::pair("BLEND", 0.25f)}) {
+    GltfBuilder b = one_triangle();
+    b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.25}}}}}};
+    if (std::string(mode) != "OPAQUE") b.json["materials"][0]["alphaMode"] = mode;
+    CHECK(import_text(b.gltf(), "m.gltf").mesh.materials[0].base_color[3] == alpha);
+  }
+}
+
 TEST_CASE("glTF: whole numbers that are no floats are rounded and told") {
   GltfBuilder b;
   const std::size_t positions = b.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");

@@ -58,7 +58,8 @@ GltfBuilder painted(GltfBuilder::Json images) {
       b.primitive({{"POSITION", b.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3")},
                    {"TEXCOORD_0", b.add<float>({0, 1, 1, 1, 0, 0}, "VEC2")}});
   primitive["material"] = 0;
-  b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  b.json["materials"] = {
+      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}}}}};
   b.json["textures"] = {{{"source", 0}}};
   b.json["images"] = std::move(images);
   return b;
@@ -123,11 +124,19 @@ TEST_CASE("glTF: images beside the file are found, and only there") {
 TEST_CASE("glTF: an image that is none, or not there, is a note and no failure") {
   GltfBuilder webp = painted({{{"mimeType", "image/webp"}}});
   webp.json["images"][0]["bufferView"] = add_image(webp, "RIFFxxxxWEBP");
-  CHECK(has_note(imported(webp.glb(), "m.glb"), "neither a PNG nor a JPEG"));
-
-  const Imported lost = imported(painted({{{"bufferView", 17}}}).glb(), "m.glb");
-  CHECK(has_note(lost, "images[0].bufferView: no such bufferView"));
-  CHECK(lost.mesh.materials[0].base_color_texture == "images[0]");
+  const Folder folder;
+  const auto note_of = [&](const GltfBuilder& b) {
+    const Imported in = imported(b.glb(), "m.glb", &folder.path);  // looks for others beside it
+    CHECK(in.mesh.materials[0].base_color_texture.empty());
+    REQUIRE(in.report.notes.size() == 1);
+    return in.report.notes[0];
+  };
+  CHECK(note_of(webp) == "texture left out: m.glb: images[0]: is neither a PNG nor a JPEG");
+  CHECK(note_of(painted({{{"bufferView", 17}}})) ==
+        "texture left out: m.glb: images[0].bufferView: no such bufferView");
+  GltfBuilder none = painted({});
+  none.json["textures"] = {GltfBuilder::Json::object()};
+  CHECK(note_of(none) == "texture left out: m.glb: textures[0]: has no image");
 }
 
 TEST_CASE("glTF: the coordinates that a texture goes by come first, and transformed") {
