@@ -46,6 +46,8 @@ Json to_json(const ImportReport& report) {
           {"degenerate_triangles", report.degenerate_triangles},
           {"duplicate_triangles", report.duplicate_triangles},
           {"zero_area_triangles", report.zero_area_triangles},
+          {"misoriented_edges", report.misoriented_edges},
+          {"reversed_normals", report.reversed_normals},
           {"isolated_vertices", report.isolated_vertices},
           {"welded_vertices", report.welded_vertices},
           {"zero_normals", report.zero_normals},
@@ -102,6 +104,8 @@ std::string lines_of(const ImportReport& report) {
   say(report.degenerate_triangles, "triangles with two equal corners dropped");
   say(report.duplicate_triangles, "triangles repeat another's vertices: kept");
   say(report.zero_area_triangles, "triangles without area: kept");
+  say(report.misoriented_edges, "edges join triangles of opposite orientation: kept");
+  say(report.reversed_normals, "triangles have normals that point against their winding: kept");
   say(report.isolated_vertices, "isolated vertices dropped");
   say(report.welded_vertices, "stored vertices welded to one at the same place");
   say(report.zero_normals, "unusable normals replaced by the triangle's own");

@@ -55,6 +55,8 @@ struct ImportReport {
   std::size_t degenerate_triangles = 0;  // two equal corners: dropped
   std::size_t duplicate_triangles = 0;   // kept
   std::size_t zero_area_triangles = 0;   // kept
+  std::size_t misoriented_edges = 0;     // of two triangles that both run through it one way: kept
+  std::size_t reversed_normals = 0;      // triangles whose normals are against their winding: kept
   std::size_t isolated_vertices = 0;     // dropped
   std::size_t welded_vertices = 0;       // stored vertices less distinct positions
   std::size_t zero_normals = 0;          // replaced by the geometric normal

@@ -180,6 +180,7 @@ void settle_normals(Mesh& mesh, const RawMesh& raw, const ImportOptions& options
   const NormalRule rule =
       any_given && all_given && !asked_for_new ? NormalRule{} : rule_of(options.normals, raw, mesh);
   if (any_given && !asked_for_new) {
+    report.reversed_normals = count_reversed_normals(mesh, normals);
     const std::size_t missing = complete_normals(normals, mesh, rule.soft);
     report.normals = "the file's";
     if (missing > 0) {
@@ -316,6 +317,7 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
   drop_unused_parts(mesh);
   report.duplicate_triangles = count_duplicate_triangles(mesh);
   report.zero_area_triangles = count_zero_area_triangles(mesh);
+  report.misoriented_edges = count_misoriented_edges(mesh);
 
   for (AttributeLayer& layer : mesh.layers) {
     if (layer.role == AttributeRole::Normal) continue;

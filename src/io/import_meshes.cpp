@@ -95,6 +95,7 @@ void append(ImportReport& to, const ImportReport& from, const std::string& file)
   list(to.normals, from.normals);
   to.polygons += from.polygons;
   to.degenerate_triangles += from.degenerate_triangles;
+  to.reversed_normals += from.reversed_normals;
   to.isolated_vertices += from.isolated_vertices;
   to.welded_vertices += from.welded_vertices;
   to.zero_normals += from.zero_normals;
@@ -139,9 +140,10 @@ Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
   });
   if (all.report.up_is_guessed) mesh.up = guess_up(mesh, mesh.up);
   all.report.up = mesh.up;
-  // Again over all: files may repeat each other.
+  // Again over all: files may repeat each other, and share edges.
   all.report.duplicate_triangles = count_duplicate_triangles(mesh);
   all.report.zero_area_triangles = count_zero_area_triangles(mesh);
+  all.report.misoriented_edges = count_misoriented_edges(mesh);
   if (had_parts)
     all.report.notes.push_back("each file is one part; parts inside files are not kept");
   return all;

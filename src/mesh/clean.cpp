@@ -1,5 +1,6 @@
 #include "mesh/clean.h"
 
+#include "mesh/corners_around.h"
 #include "mesh/weld.h"
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace crease {
 
@@ -101,6 +103,66 @@ std::size_t count_duplicate_triangles(const Mesh& mesh) {
     duplicates += static_cast<std::size_t>((last - first) - (std::unique(first, last) - first));
   }
   return duplicates;
+}
+
+namespace {
+
+// An edge of a triangle, seen from its lower vertex.
+struct EdgeSide {
+  VertexId higher{}, opposite{};
+  bool goes_up = false;  // the triangle runs from the lower vertex to the higher one
+};
+
+bool is_misoriented(std::span<const EdgeSide> sides) {
+  return sides.size() == 2 && sides[0].goes_up == sides[1].goes_up &&
+         sides[0].opposite != sides[1].opposite;
+}
+
+}  // namespace
+
+std::size_t count_misoriented_edges(const Mesh& mesh) {
+  const CornersAround around(mesh);
+  std::vector<EdgeSide> sides;  // of the edges that go up from one vertex
+  std::size_t count = 0;
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+    sides.clear();
+    for (std::uint32_t corner : around.of(v)) {
+      const Triangle& triangle = mesh.triangles[corner / 3];
+      const VertexId next = triangle[(corner + 1) % 3], last = triangle[(corner + 2) % 3];
+      if (next > VertexId{v}) sides.push_back({next, last, true});
+      if (last > VertexId{v}) sides.push_back({last, next, false});
+    }
+    std::ranges::sort(sides, {}, &EdgeSide::higher);
+    for (auto first = sides.begin(); first != sides.end();) {
+      const auto last = std::find_if(
+          first, sides.end(), [&](const EdgeSide& side) { return side.higher != first->higher; });
+      count += is_misoriented({first, last});
+      first = last;
+    }
+  }
+  return count;
+}
+
+std::size_t count_reversed_normals(const Mesh& mesh, const AttributeLayer& normals) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    const Vec3d p = mesh.positions[index_of(a)], q = mesh.positions[index_of(b)],
+                r = mesh.positions[index_of(c)];
+    const Vec3d outside = cross(q - p, r - p);
+    bool is_reversed = true;
+    for (std::size_t k = 0; is_reversed && k < 3; ++k) {
+      const AttributeId id = normals.of_corner[3 * t + k];
+      if (id == kNoAttribute) {
+        is_reversed = false;
+        continue;
+      }
+      const std::span<const float> n = normals.value(id);
+      is_reversed = dot(outside, Vec3d{n[0], n[1], n[2]}) < 0;
+    }
+    count += is_reversed && !has_no_area(p, q, r);
+  }
+  return count;
 }
 
 bool has_no_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {

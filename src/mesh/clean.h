@@ -30,6 +30,14 @@ void weld_layer(AttributeLayer& layer);
 // Triangles over the same three vertices as an earlier one, whichever way round.
 std::size_t count_duplicate_triangles(const Mesh& mesh);
 
+// Edges of two triangles alone, no repeats of each other, that both run through it the same way:
+// one side of the surface becomes the other there. Time O(corners), memory 12 bytes per triangle.
+std::size_t count_misoriented_edges(const Mesh& mesh);
+
+// Triangles with an area whose three corners have normals, all more than 90 degrees off the side
+// that the winding says is outside.
+std::size_t count_reversed_normals(const Mesh& mesh, const AttributeLayer& normals);
+
 // Whether the three points lie on a line, as far as their coordinates can tell: the height over the
 // longest side is below a few units in the last place of the largest coordinate.
 bool has_no_area(const Vec3d& a, const Vec3d& b, const Vec3d& c);

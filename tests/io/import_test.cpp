@@ -81,6 +81,35 @@ TEST_CASE("what is ugly is counted") {
   CHECK(in.mesh.triangle_count() == 3);
 }
 
+TEST_CASE("mixed orientation is counted, in one file and between files") {
+  const char* quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n";
+  const auto report_of = [&](const std::string& faces, NormalPolicy::Kind kind) {
+    const std::string obj = quad + faces;
+    ImportOptions options;
+    options.normals.kind = kind;
+    return import_bytes(std::as_bytes(std::span(obj)), "a.obj", options)->report;
+  };
+  const std::string mixed = "f 1//1 2//1 3//1\nf 1//1 4//1 3//1\n";
+  const ImportReport kept = report_of(mixed, NormalPolicy::Kind::Keep);
+  CHECK(kept.misoriented_edges == 1);
+  CHECK(kept.reversed_normals == 1);
+  CHECK(report_of(mixed, NormalPolicy::Kind::Flat).reversed_normals ==
+        0);  // others than the file's
+  CHECK(report_of("f 1 2 3\nf 1 3 4\n", NormalPolicy::Kind::Keep).misoriented_edges == 0);
+
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "crease_mixed_orientation_test";
+  std::filesystem::create_directories(folder);
+  const std::vector<std::filesystem::path> paths{folder / "a.obj", folder / "b.obj"};
+  std::ofstream(paths[0]) << quad << "f 1//1 2//1 3//1\n";
+  std::ofstream(paths[1]) << quad << "f 1//1 4//1 3//1\n";
+  const Result<Imported> both = import_meshes(paths, {});
+  std::filesystem::remove_all(folder);
+  REQUIRE(both.ok());
+  CHECK(both->report.misoriented_edges == 1);
+  CHECK(both->report.reversed_normals == 1);
+}
+
 TEST_CASE("what points up is what the format says, or what it looks like") {
   const auto up_of = [](const Mesh& mesh, const char* ending) {
     const std::vector<std::byte> bytes = *export_bytes(mesh, ending);

@@ -46,6 +46,32 @@ TEST_CASE("repeated triangles are counted whichever way round they are") {
   CHECK(count_duplicate_triangles(mesh) == 2);
 }
 
+TEST_CASE("edges are counted where the two sides of a surface meet") {
+  for (std::size_t turned = 0; turned < 12; ++turned) {
+    Mesh mesh = hard_box(1);
+    CHECK(count_misoriented_edges(mesh) == 0);
+    std::swap(mesh.triangles[turned][1], mesh.triangles[turned][2]);
+    CHECK(count_misoriented_edges(mesh) == 3);
+    // A repeat, which is counted as such, and with it the edges have three triangles.
+    mesh.triangles.push_back(mesh.triangles[turned]);
+    CHECK(count_misoriented_edges(mesh) == 0);
+  }
+  Mesh twice = hard_box(1);
+  twice.triangles = {twice.triangles[0], twice.triangles[0]};
+  CHECK(count_misoriented_edges(twice) == 0);
+}
+
+TEST_CASE("triangles are counted whose normals all point against their winding") {
+  Mesh mesh = hard_box(2);
+  AttributeLayer normals = *mesh.normals();
+  CHECK(count_reversed_normals(mesh, normals) == 0);
+  std::swap(mesh.triangles[5][1], mesh.triangles[5][2]);
+  std::swap(mesh.triangles[7][1], mesh.triangles[7][2]);
+  CHECK(count_reversed_normals(mesh, normals) == 2);
+  normals.of_corner[3 * 5 + 1] = kNoAttribute;
+  CHECK(count_reversed_normals(mesh, normals) == 1);
+}
+
 TEST_CASE("points on a line span no area, at any offset") {
   CHECK(has_no_area({0, 0, 0}, {1, 1, 1}, {2, 2, 2}));
   CHECK(has_no_area({0, 0, 0}, {0, 0, 0}, {2, 2, 2}));
