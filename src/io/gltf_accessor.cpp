@@ -42,7 +42,8 @@ std::size_t components_of_type(const std::string& type) {
   if (type == "VEC2") return 2;
   if (type == "VEC3") return 3;
   if (type == "VEC4") return 4;
-  return 0;  // matrices hold no vertex attribute that is read here
+  if (type == "MAT4") return 16;
+  return 0;
 }
 
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
@@ -118,7 +119,9 @@ T component(const std::byte* at, std::size_t type, bool normalized) {
 std::size_t GltfReader::components_of(const Json& accessor_index) const {
   const auto index = as_index(accessor_index);
   if (!index) return 0;
-  return components_of_type(as_text(at(at(at(document_.json, "accessors"), *index), "type")));
+  const std::size_t components =
+      components_of_type(as_text(at(at(at(document_.json, "accessors"), *index), "type")));
+  return components <= 4 ? components : 0;
 }
 
 Result<GltfReader::Layout> GltfReader::layout_of(const Json& accessor,

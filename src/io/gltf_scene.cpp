@@ -38,8 +38,7 @@ Result<Transform> local_transform(const Source& source, const Json& node,
   if (!at(node, "matrix").is_null()) {
     double m[16];
     if (!numbers("matrix", 16, m)) return bad("matrix");
-    return Transform{
-        {m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+    return transform_of(m);
   }
   double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
   if (!numbers("translation", 3, t)) return bad("translation");
@@ -120,7 +119,8 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
       scene.instances.push_back({i,
                                  {},
                                  name_of(meshes[i], "mesh " + std::to_string(i)),
-                                 weights_of(meshes[i], meshes[i])});
+                                 weights_of(meshes[i], meshes[i]),
+                                 {}});
     }
     return scene;
   }
@@ -131,6 +131,7 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
   };
   std::vector<Pending> pending;  // a stack, so that deep graphs need no deep recursion
   std::vector<bool> reached(size_of(nodes), false);
+  scene.to_world_of_node.resize(size_of(nodes));
   // Pushes node references in reverse, so that they come off in order.
   const auto push_all = [&](const auto& references, std::size_t count, const std::string& place,
                             const Transform& parent) -> Status {
@@ -164,15 +165,16 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
     Result<Transform> local = local_transform(source, node, place);
     if (!local.ok()) return local.failure();
     const Transform to_world = current.parent.after(*local);
+    scene.to_world_of_node[current.node] = to_world;
     if (!at(node, "mesh").is_null()) {
       const auto mesh = as_index(at(node, "mesh"));
       if (!mesh || *mesh >= size_of(meshes)) {
         return fail_at_place(Error::BadValue, source, place + ".mesh", "no such mesh");
       }
       const std::string otherwise = name_of(meshes[*mesh], "node " + std::to_string(current.node));
-      scene.instances.push_back(
-          {*mesh, to_world, name_of(node, otherwise), weights_of(meshes[*mesh], node)});
-      if (!at(node, "skin").is_null()) ++skinned;
+      scene.instances.push_back({*mesh, to_world, name_of(node, otherwise),
+                                 weights_of(meshes[*mesh], node), as_index(at(node, "skin"))});
+      if (scene.instances.back().skin) ++skinned;
       if (!at(at(node, "extensions"), "EXT_mesh_gpu_instancing").is_null()) ++instanced;
     }
     const Json& children = at(node, "children");
@@ -180,8 +182,9 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
     if (!pushed.ok()) return pushed.failure();
   }
   if (skinned > 0) {
-    scene.notes.push_back(std::to_string(skinned) +
-                          " skinned meshes taken as they are stored, without their joints");
+    scene.notes.push_back(
+        std::to_string(skinned) +
+        " skinned meshes taken as their first joint moves them, without the others");
   }
   if (instanced > 0) {
     scene.notes.push_back(

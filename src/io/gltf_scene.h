@@ -9,6 +9,7 @@
 #include "io/json.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,15 +32,23 @@ struct Transform {
   bool only_scales() const;
 };
 
+// Of 16 numbers by columns.
+template <typename Number>
+Transform transform_of(const Number* m) {
+  return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+}
+
 struct MeshInstance {
   std::size_t mesh = 0;
   Transform to_world;
-  std::string name;             // of the node, else of the mesh, else "node 3"
-  std::vector<double> weights;  // of morph targets: the node's, else the mesh's; none: at rest
+  std::string name;                 // of the node, else of the mesh, else "node 3"
+  std::vector<double> weights;      // of morph targets: the node's, else the mesh's; none: at rest
+  std::optional<std::size_t> skin;  // to_world is void, then (3.7.3.3)
 };
 
 struct GltfScene {
   std::vector<MeshInstance> instances;  // in the order of the graph, parents first
+  std::vector<std::optional<Transform>> to_world_of_node;  // of those in the scene
   std::vector<std::string> notes;
 };
 

@@ -103,7 +103,9 @@ class MeshBuilder {
     std::vector<std::map<Weights, std::vector<Instance>>> instances_of_mesh(size_of(meshes));
     for (const MeshInstance& instance : scene->instances) {
       const auto part = static_cast<PartId>(raw_.parts.size());
-      instances_of_mesh[instance.mesh][instance.weights].push_back({part, instance.to_world});
+      const Transform to_world =
+          instance.skin ? of_skin(*instance.skin, *scene) : instance.to_world;
+      instances_of_mesh[instance.mesh][instance.weights].push_back({part, to_world});
       if (has_parts) raw_.parts.push_back(instance.name);
     }
     for (std::size_t m = 0; m < instances_of_mesh.size(); ++m) {
@@ -134,6 +136,21 @@ class MeshBuilder {
     PartId part{};
     Transform to_world;
   };
+
+  // What moves the vertices of a skinned mesh, instead of its node: in the pose that it was bound
+  // in all joints do so alike. The first stands for them. A skin that is broken moves nothing.
+  Transform of_skin(std::size_t index, const GltfScene& scene) {
+    const Json& skin = at(at(json_, "skins"), index);
+    const auto joint = as_index(at(at(skin, "joints"), std::size_t(0)));
+    if (!joint || *joint >= scene.to_world_of_node.size()) return {};
+    const std::optional<Transform>& to_world = scene.to_world_of_node[*joint];
+    if (!to_world) return {};
+    const Json& stored = at(skin, "inverseBindMatrices");
+    if (stored.is_null()) return *to_world;
+    const auto to_joint = reader_.floats(stored, 16, 16, "inverseBindMatrices");
+    if (!to_joint.ok() || to_joint->count() == 0) return {};
+    return to_world->after(transform_of(to_joint->values.data()));
+  }
 
   // `instances` have these weights.
   Status add_primitive(const Json& primitive, const std::string& place, const Weights& weights,
