@@ -11,8 +11,16 @@ namespace crease {
 
 namespace {
 
+// Two of the numbers that follow -s or -o; those that are left out stay.
+void read_pair(Line& line, std::array<float, 2>& pair) {
+  double x = 0;
+  for (std::size_t k = 0; line.number(x); ++k) {
+    if (k < pair.size() && std::isfinite(x)) pair[k] = static_cast<float>(x);
+  }
+}
+
 // map_Kd may carry options before the name; the name is what follows them.
-std::string texture_name(Line& line) {
+std::string texture_name(Line& line, TexturePlacement& placement) {
   while (true) {
     Line probe = line;
     const std::string_view option = probe.word();
@@ -21,6 +29,10 @@ std::string texture_name(Line& line) {
                             option == "-cc" || option == "-imfchan" || option == "-type";
     if (takes_word) {
       probe.word();
+    } else if (option == "-s") {
+      read_pair(probe, placement.scale);
+    } else if (option == "-o") {
+      read_pair(probe, placement.offset);
     } else {
       for (double unused; probe.number(unused);) {
       }
@@ -36,7 +48,8 @@ float share(double x) {
 
 }  // namespace
 
-void read_mtl(std::string_view text, const std::string& folder, std::span<Material> materials) {
+void read_mtl(std::string_view text, const std::string& folder, std::span<Material> materials,
+              std::span<TexturePlacement> placement_of_material) {
   std::unordered_map<std::string_view, Material*> by_name;
   for (Material& m : materials) by_name.emplace(m.name, &m);
   Material* current = nullptr;
@@ -55,7 +68,9 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
     } else if (current && (word == "d" || word == "Tr")) {
       if (double x; line.number(x)) current->base_color[3] = share(word == "d" ? x : 1 - x);
     } else if (current && word == "map_Kd") {
-      const std::string name = texture_name(line);
+      TexturePlacement& placement =
+          placement_of_material[static_cast<std::size_t>(current - materials.data())] = {};
+      const std::string name = texture_name(line, placement);
       current->base_color_texture =
           folder.empty() || name.empty()
               ? name

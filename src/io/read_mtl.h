@@ -3,15 +3,24 @@
 
 #include "crease/mesh.h"
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace crease {
 
-// Fills in the base colour (Kd, d or Tr) and texture (map_Kd) of the materials that `text` names;
-// others stay as they are. `folder`: where the library lies, relative to the OBJ; a texture's path
-// gets it in front. Lines that make no sense are passed over: nothing depends on them.
-void read_mtl(std::string_view text, const std::string& folder, std::span<Material> materials);
+// How a texture lies on texture coordinates: at u * scale[0] + offset[0], v likewise.
+struct TexturePlacement {
+  std::array<float, 2> scale{1, 1}, offset{};  // -s and -o
+  bool operator==(const TexturePlacement&) const = default;
+};
+
+// Fills in the base colour (Kd, d or Tr) and texture (map_Kd) of the materials that `text` names,
+// and how it lies; others stay as they are. `folder`: where the library lies, relative to the OBJ;
+// a texture's path gets it in front. Lines that make no sense are passed over: nothing depends on
+// them.
+void read_mtl(std::string_view text, const std::string& folder, std::span<Material> materials,
+              std::span<TexturePlacement> placement_of_material);
 
 }  // namespace crease

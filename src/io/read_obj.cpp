@@ -332,6 +332,7 @@ class ObjReader {
     // Before the first `o` or `usemtl` there were no faces, or they were given the name "".
     if (raw_.material_of_triangle.empty()) raw_.materials.clear();
     read_libraries();
+    if (!raw_.materials.empty()) place_textures();
     sink_.report();
     std::vector<std::string>& notes = raw_.report.notes;
     if (short_faces_ > 0) {
@@ -356,6 +357,7 @@ class ObjReader {
 
   void read_libraries() {
     if (raw_.materials.empty()) return;
+    placement_of_material_.resize(raw_.materials.size());
     for (const std::string& named : libraries_) {
       if (!source_.folder || read_library(named)) continue;
       // Not one name with blanks in it, then: several without, if any of these is there.
@@ -384,8 +386,27 @@ class ObjReader {
     std::ifstream file(*source_.folder / relative, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     if (text.empty()) return false;
-    read_mtl(text, relative.parent_path().generic_string(), raw_.materials);
+    read_mtl(text, relative.parent_path().generic_string(), raw_.materials, placement_of_material_);
     return true;
+  }
+
+  // Texture coordinates as the texture of their material lies on them, so that it needs no more.
+  void place_textures() {
+    const auto uv = std::ranges::find(raw_.layers, AttributeRole::TexCoord, &RawLayer::role);
+    if (uv == raw_.layers.end()) return;
+    std::map<std::pair<MaterialId, std::uint32_t>, std::uint32_t> placed;
+    for (std::size_t corner = 0; corner < uv->of_corner.size(); ++corner) {
+      const MaterialId material = raw_.material_of_triangle[corner / 3];
+      const TexturePlacement& placement = placement_of_material_[index_of(material)];
+      std::uint32_t& value = uv->of_corner[corner];
+      if (value == kNone || placement == TexturePlacement{}) continue;
+      const auto [found, is_new] =
+          placed.try_emplace({material, value}, static_cast<std::uint32_t>(uv->value_count()));
+      for (std::size_t k = 0; is_new && k < 2; ++k) {
+        uv->values.push_back(placement.scale[k] * uv->values[2 * value + k] + placement.offset[k]);
+      }
+      value = found->second;
+    }
   }
 
   static constexpr std::size_t kMaxIgnoredWords = 8;
@@ -411,6 +432,7 @@ class ObjReader {
   bool part_is_known_ = false, names_parts_ = false;
   std::unordered_map<std::string, std::uint32_t> material_of_name_, part_of_name_;
   std::vector<std::string> libraries_;
+  std::vector<TexturePlacement> placement_of_material_;
   std::map<std::string, std::size_t, std::less<>> ignored_;
 };
 

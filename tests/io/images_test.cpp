@@ -175,6 +175,23 @@ TEST_CASE("OBJ: images are beside the library, or beside the file after all") {
   CHECK(find_image(in->mesh.images, in->mesh.materials[1].base_color_texture) != nullptr);
 }
 
+TEST_CASE("OBJ: scale and offset of a texture are in the coordinates") {
+  const Folder folder;
+  folder.write("quad.obj", kQuad);
+  folder.write("quad.mtl", "newmtl wood\nmap_Kd -s 2 3 1 -clamp on -o 0.5 red tex.png\n");
+  const Result<Imported> in = import_mesh(folder.path / "quad.obj", {});
+  REQUIRE(in.ok());
+  const Mesh& mesh = in->mesh;
+  CHECK(mesh.materials[0].base_color_texture == "red tex.png");
+  const auto uv = std::ranges::find(mesh.layers, "uv", &AttributeLayer::name);
+  REQUIRE(uv != mesh.layers.end());
+  const float expected[6][2] = {{0.5f, 0}, {2.5f, 0}, {2.5f, 3}, {0, 0}, {1, 1}, {0, 1}};
+  for (std::size_t c = 0; c < 6; ++c) {  // the other material has the file's
+    CHECK(uv->value(uv->of_corner[c])[0] == expected[c][0]);
+    CHECK(uv->value(uv->of_corner[c])[1] == expected[c][1]);
+  }
+}
+
 TEST_CASE("equal images are one, and different ones of a name are told apart") {
   const Folder folder;
   for (const std::string part : {"a", "b", "c"}) {
