@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -53,15 +54,18 @@ struct Line {
     at = end;
     return text;
   }
-  // A number and the blank behind it. "nan" and "inf" are numbers here. False leaves `at` before
-  // what is not a number.
+  // A number and the blank behind it. "nan" and "inf" are numbers here, and so is what older
+  // Microsoft libraries write for them. False leaves `at` before what is not a number.
   bool number(double& x) {
     skip_blanks();
     const char* begin = at != end && *at == '+' ? at + 1 : at;
     if (begin != at && begin != end && *begin == '-') return false;
     const fast_float::from_chars_result got = fast_float::from_chars(begin, end, x);
-    if (got.ec != std::errc() || (got.ptr != end && !is_blank(*got.ptr))) return false;
-    at = got.ptr;
+    if (got.ec != std::errc()) return false;
+    const char* behind = got.ptr;
+    if (behind != end && *behind == '#') behind = not_finite(behind, x);
+    if (behind != end && !is_blank(*behind)) return false;
+    at = behind;
     return true;
   }
   bool integer(std::int64_t& x) {
@@ -72,14 +76,33 @@ struct Line {
     at = got.ptr;
     return true;
   }
+
+ private:
+  // "1.#INF", "-1.#IND00", "1.#QNAN0": what is behind it, or `hash` if it is none of these.
+  const char* not_finite(const char* hash, double& x) const {
+    const std::string_view text(hash, static_cast<std::size_t>(end - hash));
+    const bool is_infinite = text.starts_with("#INF");
+    const bool is_nan =
+        text.starts_with("#IND") || text.starts_with("#QNAN") || text.starts_with("#SNAN");
+    if (!is_infinite && !is_nan) return hash;
+    x = is_nan  ? std::numeric_limits<double>::quiet_NaN()
+        : x < 0 ? -std::numeric_limits<double>::infinity()
+                : std::numeric_limits<double>::infinity();
+    const char* behind = hash + (text[1] == 'I' ? 4 : 5);
+    while (behind != end && *behind == '0') ++behind;
+    return behind;
+  }
 };
 
-// Lines that end in "\n" or "\r\n", or with the text.
+// Lines that end in "\n" or "\r\n", or with the text; in a text without "\n", in "\r".
 class LineReader {
  public:
   // With `backslash_continues`, a line whose last character is a backslash goes on in the next.
   explicit LineReader(std::string_view text, bool backslash_continues = false)
-      : at_(text.data()), end_(text.data() + text.size()), continues_(backslash_continues) {}
+      : at_(text.data()),
+        end_(text.data() + text.size()),
+        line_end_(text.find('\n') == text.npos ? '\r' : '\n'),
+        continues_(backslash_continues) {}
 
   bool next(Line& line) {
     if (at_ == end_) return false;
@@ -94,7 +117,7 @@ class LineReader {
 
  private:
   const char* take() {
-    const void* found = std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_));
+    const void* found = std::memchr(at_, line_end_, static_cast<std::size_t>(end_ - at_));
     const char* line_end = found ? static_cast<const char*>(found) : end_;
     at_ = found ? line_end + 1 : end_;
     return line_end;
@@ -123,6 +146,7 @@ class LineReader {
 
   const char* at_;
   const char* end_;
+  char line_end_;
   bool continues_;
   std::size_t line_number_ = 0;
   std::string joined_;

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -66,6 +67,24 @@ TEST_CASE("import stops when it is asked to") {
   const Result<Imported> got = import_bytes(std::as_bytes(std::span(obj)), "a.obj", options);
   REQUIRE(!got.ok());
   CHECK(got.failure().error == Error::Interrupted);
+}
+
+TEST_CASE("lines may end in carriage returns alone") {
+  for (const auto& [name, text] :
+       {std::pair("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        std::pair("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+        std::pair("a.ply",
+                  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                  "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                  "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+        std::pair("a.stl",
+                  "solid a b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                  "vertex 0 1 0\nendloop\nendfacet\nendsolid a b\n")}) {
+    std::string returns = text;
+    std::ranges::replace(returns, '\n', '\r');
+    CAPTURE(name);
+    CHECK(import_text(returns, name).mesh.positions == import_text(text, name).mesh.positions);
+  }
 }
 
 TEST_CASE("what is ugly is counted") {

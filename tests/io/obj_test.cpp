@@ -190,6 +190,16 @@ TEST_CASE("every refusal names the line and the reason") {
   CHECK(refusal_of("v 0 0 x\n", "a.obj") == "a.obj:1: vertex: not a number: 'x'");
   CHECK(refusal_of("v 0 0 0,5\n", "a.obj") == "a.obj:1: vertex: not a number: '0,5'");
   CHECK(refusal_of("\nv 0 nan 0\n", "a.obj") == "a.obj:2: vertex is not finite");
+  // As Microsoft's libraries write it.
+  for (const char* x : {"-1.#IND00", "1.#QNAN", "1.#QNAN0", "1.#INF", "-1.#INF00", "1.#SNAN"}) {
+    CHECK(refusal_of("\nv 0 " + std::string(x) + " 0\n", "a.obj") ==
+          "a.obj:2: vertex is not finite");
+    const std::string values =
+        std::string("vn ") + x + " 0 1\nvt " + x + " 0\nf 1/1/1 2/1/1 3/1/1\n";
+    CHECK(import_text(kSquare + values, "a.obj").report.bad_attribute_values == 2);
+  }
+  CHECK(refusal_of("v 0 1.#INDEX 0\n", "a.obj").find("not a number: '1.#INDEX'") !=
+        std::string::npos);
   CHECK(refusal_of("v 1e999 0 0\n", "a.obj") == "a.obj:1: vertex is not finite");
   CHECK(refusal_of("v 1e39 0 0\n", "a.obj") == "a.obj:1: vertex is beyond 1e30");
   CHECK(refusal_of(kSquare + "f 1 2 0\n", "a.obj") == "a.obj:5: face index 0: OBJ counts from 1");
