@@ -32,6 +32,10 @@ constexpr Format kFormats[] = {
 
 constexpr std::string_view kKnown = ".obj .ply .stl .off .gltf .glb .b3dm .json";
 
+constexpr std::string_view kCreaseMagic =
+    "\x89"
+    "CREASE\n";  // docs/format.md
+
 std::string lower_case(std::string_view text) {
   std::string out(text);
   for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -108,6 +112,10 @@ Result<RawMesh> read_raw(std::span<const std::byte> bytes, const std::string& na
   const Source source{bytes, name, folder, &options.progress};
   Reader read = reader_by_name(name);
   if (!read) read = reader_by_first_bytes(source.text());
+  if (!read && source.text().starts_with(kCreaseMagic)) {
+    return fail(Error::NotSupported,
+                name + ": is a .crease file, not a mesh; it cannot be read from a pipe");
+  }
   if (!read) {
     return fail(Error::NotSupported,
                 name + ": byte 0: not a format known here (" + std::string(kKnown) + ")");

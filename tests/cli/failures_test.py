@@ -174,6 +174,18 @@ class Failures(tool.Case):
             self.assertIn("is an input", self.fails(1, *arguments)["message"])
         self.assertEqual(pathlib.Path(model).read_bytes(), before)
 
+    def test_3_a_crease_in_a_pipe_is_told_from_no_format(self):
+        crease = self.path("p.crease")
+        self.run_tool("build", self.city(), "-o", crease)
+        with open(crease, "rb") as model:
+            pipe = subprocess.Popen(["cat"], stdin=model, stdout=subprocess.PIPE)
+            done = subprocess.run([tool.BINARY, "info", "/dev/stdin"], stdin=pipe.stdout,
+                                  capture_output=True, text=True)
+            pipe.stdout.close()
+            pipe.wait()
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("is a .crease file, not a mesh", done.stderr)
+
     def test_4_cannot_write(self):
         nowhere = self.path("no/such/folder/")
         self.fails(4, "build", self.city(), "-o", nowhere + "x.crease")
