@@ -2,7 +2,6 @@
 
 #include "io/images.h"
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -56,9 +55,10 @@ std::string GltfImages::take(const Json& texture_info) {
   if (!texture) return {};
   const auto image = source_of(at(at(json_, "textures"), *texture));
   if (!image) {
-    const std::string place = place_of("textures", *texture);
-    const std::string note = "texture left out: " + source_.name + ": " + place + ": has no image";
-    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+    if (without_image_.insert(*texture).second) {
+      notes.push_back("texture left out: " + source_.name + ": " + place_of("textures", *texture) +
+                      ": has no image");
+    }
     return {};
   }
   const auto [known, is_new] = name_of_image_.try_emplace(*image);

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,7 @@ class GltfImages {
   const Json& json_;
   GltfReader& reader_;
   std::map<std::size_t, std::string> name_of_image_;
+  std::set<std::size_t> without_image_;  // textures that were told
   std::size_t taken_bytes_ = 0;
 };
 

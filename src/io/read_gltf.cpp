@@ -140,6 +140,11 @@ class MeshBuilder {
   // What moves the vertices of a skinned mesh, instead of its node: in the pose that it was bound
   // in all joints do so alike. The first stands for them. A skin that is broken moves nothing.
   Transform of_skin(std::size_t index, const GltfScene& scene) {
+    const auto [known, is_new] = of_skin_.try_emplace(index);
+    if (is_new) known->second = read_skin(index, scene);
+    return known->second;
+  }
+  Transform read_skin(std::size_t index, const GltfScene& scene) {
     const Json& skin = at(at(json_, "skins"), index);
     const auto joint = as_index(at(at(skin, "joints"), std::size_t(0)));
     if (!joint || *joint >= scene.to_world_of_node.size()) return {};
@@ -360,6 +365,7 @@ class MeshBuilder {
   GltfReader reader_;
   GltfLayers layers_;
   RawMesh raw_;
+  std::map<std::size_t, Transform> of_skin_;
   std::vector<std::uint32_t> material_of_triangle_;
   std::size_t work_ = 0;
   std::size_t point_and_line_primitives_ = 0, morphed_primitives_ = 0, odd_runs_ = 0;
