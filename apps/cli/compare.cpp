@@ -33,10 +33,14 @@ std::string row(const char* name, const Spread& spread, double diagonal) {
 // As --normals takes it.
 std::string words_of(const NormalPolicy& policy) {
   switch (policy.kind) {
-    case NormalPolicy::Kind::Keep: return "keep";
-    case NormalPolicy::Kind::Flat: return "flat";
-    case NormalPolicy::Kind::Smooth: return "smooth";
-    case NormalPolicy::Kind::Crease: break;
+    case NormalPolicy::Kind::Keep:
+      return "keep";
+    case NormalPolicy::Kind::Flat:
+      return "flat";
+    case NormalPolicy::Kind::Smooth:
+      return "smooth";
+    case NormalPolicy::Kind::Crease:
+      break;
   }
   char words[40];
   std::snprintf(words, sizeof words, "crease:%g", policy.crease_angle_deg);

@@ -45,8 +45,8 @@ struct ImportOptions {
 
 // What was ugly, and what was done about it. Printed by the command line tool.
 struct ImportReport {
-  std::string format;                    // "OBJ", "binary STL", ...
-  std::string normals;                   // where the normals come from, in words
+  std::string format;   // "OBJ", "binary STL", ...
+  std::string normals;  // where the normals come from, in words
   // What makes such normals of another file; none: they are the file's, or by its smoothing groups.
   std::optional<NormalPolicy> made_normals;
   UpAxis up = UpAxis::Unknown;           // Mesh::up

@@ -128,10 +128,12 @@ WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
   return work;
 }
 
-// A normal may be wrong where it is, but those of most of a part are not.
+// Of a part's area, times cosines: what is wrong with single triangles is no reason to turn others.
+constexpr double kMostlyAgainst = 0.9;
+
 void find_inside_out(WorkMesh& work) {
   if (work.inside_out.empty()) return;
-  const auto agreement = [&](std::size_t t) {  // the area, times a cosine
+  const auto agreement = [&](std::size_t t) {  // the area, times the cosine
     const Vec3d twice = twice_area_of(work, t);
     const double size = length(twice);
     return size > 0 ? dot(twice * (1 / size), to_double(work.represented[t].sum)) : 0;
@@ -141,12 +143,18 @@ void find_inside_out(WorkMesh& work) {
     while (work.part_of_vertex[v] != v) v = work.part_of_vertex[v];
     return v;
   };
-  std::vector<double> agreement_of_part(work.positions.size(), 0);
+  struct Part {
+    double agreement = 0, area = 0;
+  };
+  std::vector<Part> parts(work.positions.size());  // by their vertex
   for (std::size_t t = 0; t < work.inside_out.size(); ++t) {
-    agreement_of_part[part_of(t)] += agreement(t);
+    Part& part = parts[part_of(t)];
+    part.agreement += agreement(t);
+    part.area += double(work.represented[t].area);
   }
   for (std::size_t t = 0; t < work.inside_out.size(); ++t) {
-    work.inside_out[t] = agreement(t) < 0 && agreement_of_part[part_of(t)] < 0;
+    const Part& part = parts[part_of(t)];
+    work.inside_out[t] = agreement(t) < 0 && part.agreement < -kMostlyAgainst * part.area;
   }
 }
 
