@@ -352,11 +352,13 @@ inline void PatchSimplifier::add_lines(Index v, const Edge& edge, double share) 
 }
 
 // Triangles with the same three vertices, both sides of a sheet or what somebody exported twice,
-// count as one. Of copies that which goes on from the first sheet: it runs the other way.
+// count as one, if the other sheet at the edge has as many. Of copies that which goes on from the
+// first sheet: it runs the other way.
 PatchSimplifier::Edge PatchSimplifier::without_copies(Index v, const Edge& edge) const {
   Edge sheets{edge.other, {}, {}, 0};
   Index third[2] = {kNone, kNone};
   bool runs_on[2] = {};
+  Index copies[2] = {};
   for (const Index corner : corners_of(v)) {
     const Index begin = 4 * triangle_of(corner);
     Index other_corner = begin;
@@ -370,12 +372,15 @@ PatchSimplifier::Edge PatchSimplifier::without_copies(Index v, const Edge& edge)
     const bool is_copy = place < std::min(sheets.triangle_count, 2u);
     const bool is_better = is_copy && place == 1 && runs_on[1] == runs_on[0] && on != runs_on[0];
     sheets.triangle_count += is_copy ? 0 : 1;
-    if (place > 1 || (is_copy && !is_better)) continue;
+    if (place > 1) return edge;  // several sheets meet
+    ++copies[place];
+    if (is_copy && !is_better) continue;
     third[place] = apex;
     runs_on[place] = on;
     sheets.corner[place] = corner;
     sheets.other_corner[place] = other_corner;
   }
+  if (sheets.triangle_count == 2 && copies[0] != copies[1]) return edge;
   return sheets;
 }
 
