@@ -443,7 +443,7 @@ CREASE_WIDE void PatchSimplifier::load_edges() {
       const Index w = edge.other;
       if (vertices_[v].locked && vertices_[w].locked) continue;
       if (!vertices_[v].locked && !vertices_[w].locked) pairs_.emplace_back(v, w);
-      if (edge.triangle_count > 2) edge = without_copies(v, edge);
+      if (work_->has_copies && edge.triangle_count > 2) edge = without_copies(v, edge);
       const double weight = line_weight(v, edge);
       if (weight > 0) add_lines(v, edge, weight);
     }

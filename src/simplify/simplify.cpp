@@ -172,6 +172,7 @@ class Simplifier {
         [&] {
           find_parts(work_);
           find_inside_out(work_);
+          find_copies(mesh, work_);
         });
     sequence_.grid = grid;
     sequence_.placement = options.placement;

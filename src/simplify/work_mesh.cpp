@@ -1,5 +1,6 @@
 #include "simplify/work_mesh.h"
 
+#include "mesh/clean.h"
 #include "parallel/parallel.h"
 
 #include <algorithm>
@@ -156,6 +157,13 @@ void find_inside_out(WorkMesh& work) {
     const Part& part = parts[part_of(t)];
     work.inside_out[t] = agreement(t) < 0 && part.agreement < -kMostlyAgainst * part.area;
   }
+}
+
+// Of so many triangles one. Coarse levels always have some: a house that became flat.
+constexpr std::size_t kManyCopies = 10;
+
+void find_copies(const Mesh& mesh, WorkMesh& work) {
+  work.has_copies = kManyCopies * count_duplicate_triangles(mesh) > mesh.triangle_count();
 }
 
 }  // namespace crease::simplification

@@ -63,6 +63,7 @@ struct WorkMesh {
   std::vector<std::uint32_t> part_of_vertex;        // a vertex of the part: equal for vertices that
                                                     // triangles or contractions connect
   std::size_t part_count = 0;
+  bool has_copies = false;                       // many of the input's triangles are there twice
   std::vector<std::uint32_t> triangles_of_part;  // by the part's vertex, at the pass's start
   std::vector<std::uint32_t> live;               // the triangles that are left, ascending
   std::vector<WorkLayer> layers;
@@ -73,8 +74,9 @@ struct WorkMesh {
 // are left open.
 WorkMesh make_work(const Mesh& mesh, const Grid& grid);
 
-// Once the parts are known.
+// What holds for the input as a whole; once the parts are known.
 void find_inside_out(WorkMesh& work);
+void find_copies(const Mesh& mesh, WorkMesh& work);
 
 // What one patch did in one band, in its own numbering of new attribute values.
 struct PatchContraction {
