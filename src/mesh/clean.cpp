@@ -132,7 +132,8 @@ std::size_t count_misoriented_edges(const Mesh& mesh) {
       if (next > VertexId{v}) sides.push_back({next, last, true});
       if (last > VertexId{v}) sides.push_back({last, next, false});
     }
-    std::ranges::sort(sides, {}, &EdgeSide::higher);
+    std::sort(sides.begin(), sides.end(),
+              [](const EdgeSide& a, const EdgeSide& b) { return a.higher < b.higher; });
     for (auto first = sides.begin(); first != sides.end();) {
       const auto last = std::find_if(
           first, sides.end(), [&](const EdgeSide& side) { return side.higher != first->higher; });
