@@ -151,6 +151,10 @@ HostReply good_reply(const HostRequest& request, std::span<const std::byte> file
   const std::string fields = "ETag: " + etag + "\r\n";
   const std::optional<FileRange> range = request.range();
   if (!range) return reply("200 OK", fields, text_of(file));
+  if (range->offset >= file.size()) {
+    return reply("416 Range Not Satisfiable",
+                 fields + "Content-Range: bytes */" + std::to_string(file.size()) + "\r\n", "");
+  }
   const std::uint64_t bytes = std::min<std::uint64_t>(range->bytes, file.size() - range->offset);
   return reply("206 Partial Content",
                fields + "Content-Range: bytes " + std::to_string(range->offset) + "-" +

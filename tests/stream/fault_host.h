@@ -67,7 +67,8 @@ std::string text_of(std::span<const std::byte> bytes);
 
 // A whole answer with the fields that go with its body.
 HostReply reply(const std::string& status, const std::string& fields, const std::string& body);
-// 206 of what was asked for, 200 without a range, as a sound host does it.
+// 206 of what was asked for, 416 of what is beyond the end, 200 without a range, as a sound host
+// does it.
 HostReply good_reply(const HostRequest& request, std::span<const std::byte> file,
                      const std::string& etag = "\"one\"");
 
