@@ -2,8 +2,8 @@
 // (docs/format.md).
 //
 //   Result<ByteSourcePtr> source = open_file_source("city.crease");
-//   Result<BlockFile> file = BlockFile::open(*source);                  // one read of at most 64
-//   KiB Result<DirectoryPage> page = file->read_page(page_of(BlockId{7}));  // keep it: 512 blocks
+//   Result<BlockFile> file = BlockFile::open(*source);                     // reads 64 KiB at most
+//   Result<DirectoryPage> page = file->read_page(page_of(BlockId{7}));     // keep it: 512 blocks
 //   const BlockEntry& entry = page->block(BlockId{7});
 //   for (BlockId needed : page->dependencies_of(BlockId{7})) ...        // coarser blocks
 //   Result<std::vector<std::byte>> payload = file->read_block(entry);   // checksum verified
