@@ -104,7 +104,8 @@ class CostEstimator {
       if (is_face_[t]) cost += vanishing_cost(geometry_.normal(t), around);
     }
     cost += wedges_.contract(patch, vanished, first, second, at);
-    own_ = {in_units(surface), in_units(lines ? mean_distance(line_off, lines->weight) : 0),
+    const double line = lines ? mean_distance(line_off, lines->weight) : 0;
+    own_ = {in_units(surface), in_units(std::max(line, wedges_.displacement())),
             std::max(wedges_.degrees(), turned(patch, vanished, first, parent)), wedges_.texture()};
     Errors& errors = errors_[first];
     errors.at_fine_end = larger(errors.at_fine_end, errors_[second].at_fine_end);

@@ -150,6 +150,7 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
                                std::uint32_t second, const Vec3d& at) {
   double cost = 0;
   degrees_ = texture_ = 0;
+  displacement_ = 0;
   for (Layer& layer : layers_) {
     if (layer.wedges.empty()) continue;
     worst_square_ = 0;
@@ -266,6 +267,9 @@ CREASE_WIDE double WedgeQuadrics::join(std::span<const std::uint32_t> members, c
   if (sum.own.weight > 0) {
     const double square = wedge.is_pinned ? cost : sum.at(at, layer.dimension, value.data());
     if (square / sum.own.weight > worst_square_) worst_square_ = square / sum.own.weight;
+    if (layer.role != AttributeRole::Normal && is_float(square)) {
+      displacement_ = std::max(displacement_, sum.displacement(square, layer.role));
+    }
   }
   layer.wedges.push_back(wedge);
   all.into.push_back(kNone);

@@ -50,6 +50,8 @@ class WedgeQuadrics {
   // stand for: the worst wedge's mean.
   float degrees() const { return degrees_; }
   float texture() const { return texture_; }
+  // How far textures and colours are displaced, grid units.
+  double displacement() const { return displacement_; }
 
   // Whether wedges are kept of a layer; and, per vertex, whether it has several of some layer.
   bool has_wedges(std::size_t layer) const { return !layers_[layer].wedges.empty(); }
@@ -87,6 +89,7 @@ class WedgeQuadrics {
   std::vector<char> has_several_;  // per vertex
   double area_ = 0;                // of all triangles
   double worst_square_ = 0;        // of one contraction and layer
+  double displacement_ = 0;
   float degrees_ = 0, texture_ = 0;
   // Scratch of one contraction: the wedges at its vertices, and by which of them each is joined.
   std::vector<std::uint32_t> members_, root_, group_;

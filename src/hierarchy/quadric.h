@@ -9,9 +9,11 @@
 #pragma once
 
 #include "base/wide.h"
+#include "crease/mesh.h"
 #include "crease/vec.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace crease::simplification {
 
@@ -192,6 +194,18 @@ struct AttributeQuadric {
                       c};
     return sum.at(x);
   }
+
+  // How far what the attribute paints on the surface is displaced, the root of the mean, where the
+  // attribute is off by `square`, as at() says: that by the mean slope, of which there are two
+  // directions.
+  double displacement(double square, AttributeRole role) const {
+    const double seen = role == AttributeRole::Color ? square - kUnseenColor * own.weight : square;
+    const double slope = own.trace();
+    return seen > 0 && slope > 0 ? std::sqrt(2 * seen / slope) : 0;
+  }
+
+ private:
+  static constexpr double kUnseenColor = 4e-4;  // squared: five of 255 in one component
 };
 
 }  // namespace crease::simplification

@@ -292,7 +292,7 @@ CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, 
 
   Index* result_of_slot = joins_.parent.start(used_.size());  // join_wedges is done with it
   results_.clear();
-  double square_error = -1;
+  double square_error = -1, displacement = 0;
   for (const Joined& joined : joins_.joined) {
     const std::span<const Index> members(&joins_.members[joined.first_member], joined.member_count);
     bool any_used = false;
@@ -327,8 +327,11 @@ CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, 
     if (work.steers && result.area > 0) {
       double square = 0;
       if (result.quadric != kNone) {
-        square =
-            attribute_quadrics_[layer][result.quadric].at(target, work.dimension, result.value);
+        const AttributeQuadric& quadric = attribute_quadrics_[layer][result.quadric];
+        square = quadric.at(target, work.dimension, result.value);
+        if (!work.is_normal) {
+          displacement = std::max(displacement, quadric.displacement(square, work.source->role));
+        }
       }
       square_error = std::max(square_error, square / result.area);
     }
@@ -343,6 +346,7 @@ CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, 
     } else if (work.source->role == AttributeRole::TexCoord) {
       error.texture = raised(error.texture, own);
     }
+    error.line = std::max(error.line, raised(errors_[kept].base.line, displacement));
   }
 
   // The results take the place of what they come from, where that is large enough.

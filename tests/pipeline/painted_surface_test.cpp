@@ -1,0 +1,177 @@
+// What textures and colours show on a surface is displaced on the screen by no more than a view
+// allows, also where the surface itself is flat; measured on the plane, beside the functions that
+// painted it.
+#include "crease/adaptive_mesh.h"
+#include "crease/build.h"
+#include "crease/build_hierarchy.h"
+#include "crease/decode_model.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+namespace crease {
+namespace {
+
+constexpr std::uint32_t kCells = 80;
+
+using Paint = std::function<std::array<float, 3>(double x, double y)>;
+
+// The unit square in z = 0.
+Mesh flat_sheet(AttributeRole role, std::uint32_t dimension, const Paint& paint) {
+  Mesh mesh;
+  AttributeLayer normals{"normal", AttributeRole::Normal, Interpolation::Direction, 3, {}, {}};
+  AttributeLayer painted{"paint", role, Interpolation::Linear, dimension, {}, {}};
+  normals.values = {0, 0, 1};
+  for (std::uint32_t j = 0; j <= kCells; ++j) {
+    for (std::uint32_t i = 0; i <= kCells; ++i) {
+      const double x = double(i) / kCells, y = double(j) / kCells;
+      mesh.positions.push_back({x, y, 0});
+      const std::array<float, 3> value = paint(x, y);
+      painted.values.insert(painted.values.end(), value.begin(), value.begin() + dimension);
+    }
+  }
+  for (std::uint32_t j = 0; j < kCells; ++j) {
+    for (std::uint32_t i = 0; i < kCells; ++i) {
+      const std::uint32_t a = j * (kCells + 1) + i, b = a + 1, c = b + kCells + 1, d = c - 1;
+      for (const auto& t : {std::array{a, b, c}, std::array{a, c, d}}) {
+        mesh.triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+        for (const std::uint32_t v : t) {
+          painted.of_corner.push_back(AttributeId{v});
+          normals.of_corner.push_back(AttributeId{0});
+        }
+      }
+    }
+  }
+  mesh.layers = {std::move(normals), std::move(painted)};
+  return mesh;
+}
+
+// From far above, so that a pixel is as long everywhere: `allowed`, of the unit square.
+Mesh seen_from_above(Mesh mesh, double allowed, Placement placement) {
+  BuildOptions options;
+  options.simplify.placement = placement;
+  const Result<Built> built = build_model(std::move(mesh), options);
+  REQUIRE(built.ok());
+  const Result<BlockFile> file = BlockFile::open(memory_source(built->file_bytes));
+  REQUIRE(file.ok());
+  const Result<DecodedModel> model = decode_model(*file);
+  REQUIRE(model.ok());
+  Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
+  REQUIRE(hierarchy.ok());
+  AdaptiveMesh adaptive(std::make_shared<const MeshHierarchy>(std::move(*hierarchy)));
+  Camera camera{.position = {0.5, 0.5, 100}, .target = {0.5, 0.5, 0}, .up = {0, 1, 0}};
+  camera.vertical_fov_deg = 2;
+  camera.width_px = camera.height_px = 1000;
+  camera.pixels = allowed * 1000 / (2 * 100 * std::tan(radians(1.0)));
+  adaptive.update({.camera = camera});
+  return adaptive.extract();
+}
+
+struct Sample {
+  double x, y, area;
+  std::array<double, 3> value;
+};
+
+// Points all over a mesh, with what it shows there.
+std::vector<Sample> samples_of(const Mesh& mesh) {
+  std::vector<Sample> samples;
+  const AttributeLayer& paint = mesh.layers[1];
+  constexpr int kSteps = 24;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Triangle& v = mesh.triangles[t];
+    const auto at = [&](std::size_t c) { return mesh.positions[index_of(v[c])]; };
+    const double area = length(cross(at(1) - at(0), at(2) - at(0))) / (kSteps * (kSteps + 1));
+    for (int i = 0; i < kSteps; ++i) {
+      for (int j = 0; i + j < kSteps; ++j) {
+        const double b = (i + 1 / 3.0) / kSteps, c = (j + 1 / 3.0) / kSteps, a = 1 - b - c;
+        const Vec3d p = at(0) * a + at(1) * b + at(2) * c;
+        Sample s{p.x, p.y, area, {}};
+        for (std::size_t k = 0; k < paint.dimension; ++k) {
+          const auto corner = [&](std::size_t at_corner) {
+            return double(paint.value(paint.of_corner[3 * t + at_corner])[k]);
+          };
+          s.value[k] = a * corner(0) + b * corner(1) + c * corner(2);
+        }
+        samples.push_back(s);
+      }
+    }
+  }
+  return samples;
+}
+
+TEST_CASE("a texture that is warped on a flat sheet slides by what a view allows") {
+  const Paint warped = [](double x, double y) {
+    return std::array{static_cast<float>(3 * x + 0.15 * std::sin(9 * y)),
+                      static_cast<float>(3 * y + 0.12 * std::sin(8 * x + 3 * y)), 0.0f};
+  };
+  for (const Placement placement : {Placement::Endpoint, Placement::Optimal}) {
+    for (const double allowed : {0.001, 0.003, 0.01}) {
+      CAPTURE(allowed);
+      const Mesh seen =
+          seen_from_above(flat_sheet(AttributeRole::TexCoord, 2, warped), allowed, placement);
+      double sum = 0, area = 0;
+      for (const Sample& s : samples_of(seen)) {
+        const std::array<float, 3> right = warped(s.x, s.y);
+        const double u = s.value[0] - double(right[0]), v = s.value[1] - double(right[1]);
+        sum += s.area * (u * u + v * v) / 9;  // three units are the square's side
+        area += s.area;
+      }
+      CHECK(area == doctest::Approx(1).epsilon(0.02));
+      CHECK(std::sqrt(sum / area) < allowed);
+      CHECK(std::sqrt(sum / area) > allowed / 8);
+      CHECK(seen.triangle_count() < kCells * kCells / 2);
+    }
+  }
+}
+
+TEST_CASE("a texture that lies straight on a flat sheet needs two triangles") {
+  const Paint straight = [](double x, double y) {
+    return std::array{static_cast<float>(x + y / 4), static_cast<float>(y - x / 8), 0.0f};
+  };
+  const Mesh seen =
+      seen_from_above(flat_sheet(AttributeRole::TexCoord, 2, straight), 0.001, Placement::Optimal);
+  CHECK(seen.triangle_count() <= 8);
+}
+
+TEST_CASE("a line between two colours on a flat sheet stays where a view needs it") {
+  // A disc of a third of the side, as sharp as the cells are.
+  const auto inside = [](double x, double y) {
+    return std::clamp((1 / 3.0 - std::hypot(x - 0.5, y - 0.5)) * kCells + 0.5, 0.0, 1.0);
+  };
+  const Paint disc = [&](double x, double y) {
+    const auto in = static_cast<float>(inside(x, y));
+    return std::array{in, 0.25f, 1 - in};
+  };
+  std::size_t before = kCells * kCells * 2;
+  for (const double allowed : {0.003, 0.01, 0.03}) {
+    CAPTURE(allowed);
+    const Mesh seen =
+        seen_from_above(flat_sheet(AttributeRole::Color, 3, disc), allowed, Placement::Optimal);
+    double wrong = 0;
+    for (const Sample& s : samples_of(seen)) {
+      wrong += s.area * std::abs(s.value[0] - inside(s.x, s.y));
+    }
+    const double along = 2 * kPi / 3;  // the line's length
+    CHECK(wrong / along < allowed + 0.2 / kCells);
+    CHECK(seen.triangle_count() < before);
+    before = seen.triangle_count();
+  }
+  CHECK(before < kCells * kCells / 10);
+}
+
+TEST_CASE("colours that nobody tells apart need no triangles") {
+  const Paint nearly = [](double x, double y) {
+    const double wave = 0.5 + 0.01 * std::sin(70 * x) * std::cos(50 * y);
+    return std::array{static_cast<float>(wave), 0.5f, static_cast<float>(wave)};
+  };
+  const Mesh seen =
+      seen_from_above(flat_sheet(AttributeRole::Color, 3, nearly), 0.001, Placement::Optimal);
+  CHECK(seen.triangle_count() <= 300);
+}
+
+}  // namespace
+}  // namespace crease
