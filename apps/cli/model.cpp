@@ -33,9 +33,11 @@ void add_import_options(CLI::App& command, ReadOptions& options) {
 void add_build_options(CLI::App& command, ReadOptions& options) {
   add_import_options(command, options);
   command
-      .add_option("--precision", options.precision,
-                  "grid that positions are snapped to: a length (0.001), or bits over the longest "
-                  "side (14bits); default 24bits")
+      .add_option(
+          "--precision", options.precision,
+          "grid that positions are snapped to: a length (0.001), or bits over the longest "
+          "side (14bits); default 24bits. Where it is given, open borders that meet within a "
+          "step are joined")
       ->type_name("LENGTH|BITSbits");
   command
       .add_option("--placement", options.placement,
@@ -105,6 +107,11 @@ Result<ImportOptions> import_options(const ReadOptions& options, const Common& c
   ImportOptions import;
   import.normals = *normals;
   import.same_normal_deg = options.same_normal_deg;
+  if (!options.precision.empty()) {
+    Result<Precision> precision = parse_precision(options.precision);
+    if (!precision.ok()) return precision.failure();
+    import.precision = *precision;
+  }
   import.progress = progress_bar(common);
   return import;
 }

@@ -36,11 +36,14 @@ struct NormalPolicy {
 Result<NormalPolicy> parse_normal_policy(std::string_view text);
 
 struct ImportOptions {
-  NormalPolicy normals;
+  NormalPolicy normals{};
   // Normals at one vertex that differ by no more than this, in degrees, become one (exporter noise
   // is not a crease). 0 joins bit-equal values only.
   double same_normal_deg = 0;
-  ProgressCallback progress;
+  // Where it is told, vertices at open borders that are no farther apart than a step of its grid
+  // become one before normals are made.
+  std::optional<Precision> precision{};
+  ProgressCallback progress{};
 };
 
 // What was ugly, and what was done about it. Printed by the command line tool.

@@ -3,6 +3,7 @@
 #include "mesh/guess_up.h"
 #include "mesh/normals.h"
 #include "mesh/weld.h"
+#include "mesh/weld_borders.h"
 
 #include "base/assert.h"
 #include "io/formats.h"
@@ -228,17 +229,6 @@ void weld_vertices(RawMesh& raw, ImportReport& report) {
   }
 }
 
-void drop_degenerate(Mesh& mesh, RawMesh& raw, ImportReport& report) {
-  const std::vector<bool> keep = proper_triangles(mesh);
-  const auto dropped = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), false));
-  if (dropped == 0) return;
-  report.degenerate_triangles += dropped;
-  keep_triangles(mesh, keep);
-  const std::vector<std::uint32_t> kept = kept_rows(keep);
-  if (!raw.face_of_triangle.empty()) keep_rows(raw.face_of_triangle, kept);
-  if (!raw.smoothing_group.empty()) keep_rows(raw.smoothing_group, kept);
-}
-
 double longest_side(const std::vector<Vec3d>& positions) {
   Vec3d low = positions.front(), high = low;
   for (const Vec3d& p : positions) {
@@ -254,6 +244,35 @@ std::string shortest(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", x);
   return text;
+}
+
+// Where many vertices are at borders that nearly meet, a note says which grid would join them.
+void weld_rounded(Mesh& mesh, const std::optional<Precision>& precision, ImportReport& report) {
+  const double asked = precision ? make_grid(mesh, *precision).step : 0;
+  const NearBorders near = find_near_borders(mesh, asked);
+  report.welded_vertices += weld_borders(mesh, near);
+  if (4 * (near.border_count - near.count) < mesh.vertex_count()) return;
+  const auto joined_by = [&](double step) { return find_near_borders(mesh, step).count; };
+  const double longest = longest_side(mesh.positions);
+  double step = std::ldexp(longest, -16);
+  const std::size_t count = joined_by(step);
+  if (count == 0 || 8 * count < mesh.vertex_count()) return;
+  while (step > std::ldexp(longest, -22) && 10 * joined_by(step / 4) > 9 * count) step /= 4;
+  report.notes.push_back(std::to_string(count) + " of " + std::to_string(mesh.vertex_count()) +
+                         " vertices are at open borders within " + shortest(step) +
+                         " of another: its triangles are loose; --precision " + shortest(step) +
+                         " joins them");
+}
+
+void drop_degenerate(Mesh& mesh, RawMesh& raw, ImportReport& report) {
+  const std::vector<bool> keep = proper_triangles(mesh);
+  const auto dropped = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), false));
+  if (dropped == 0) return;
+  report.degenerate_triangles += dropped;
+  keep_triangles(mesh, keep);
+  const std::vector<std::uint32_t> kept = kept_rows(keep);
+  if (!raw.face_of_triangle.empty()) keep_rows(raw.face_of_triangle, kept);
+  if (!raw.smoothing_group.empty()) keep_rows(raw.smoothing_group, kept);
 }
 
 }  // namespace
@@ -314,6 +333,7 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
                            ": views of a camera tell errors of models between 1e-20 and 1e18 "
                            "alone, and stay coarse; scale it");
   }
+  weld_rounded(mesh, options.precision, report);
   drop_unused_parts(mesh);
   report.duplicate_triangles = count_duplicate_triangles(mesh);
   report.zero_area_triangles = count_zero_area_triangles(mesh);

@@ -7,8 +7,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 namespace crease {
 namespace {
@@ -98,6 +101,40 @@ TEST_CASE("what is ugly is counted") {
   CHECK(in.report.isolated_vertices == 1);
   CHECK(in.report.welded_vertices == 1);
   CHECK(in.mesh.triangle_count() == 3);
+}
+
+TEST_CASE(
+    "triangles that an exporter's rounding tore apart are one surface on a grid that joins them") {
+  const PolygonModel cylinder = polygon_cylinder();
+  std::string obj;
+  int count = 0;
+  for (const std::array<std::uint32_t, 3>& t : cylinder.triangles()) {
+    for (const std::uint32_t v : t) {
+      const Vec3d& p = cylinder.positions[v];
+      char line[100];
+      const double off = 1e-7 * (count++ % 5);
+      std::snprintf(line, sizeof line, "v %.9f %.9f %.9f\n", p.x + off, p.y - off, p.z + off);
+      obj += line;
+    }
+    obj += "f -3 -2 -1\n";
+  }
+  const auto hard_count = [&](double length) {
+    return hard_edges(import_text(obj, "a.obj", {.precision = Precision{.length = length}}).mesh)
+        .size();
+  };
+  const Imported loose = import_text(obj, "a.obj");
+  CHECK(loose.mesh.vertex_count() > 2 * cylinder.positions.size());
+  REQUIRE(loose.report.notes.size() == 1);
+  const std::string& note = loose.report.notes[0];
+  const std::size_t at = note.find("--precision ");
+  REQUIRE(at != note.npos);
+  const double told = std::stod(note.substr(at + 12));
+  CHECK(told < 1e-4);
+  const Imported joined = import_text(obj, "a.obj", {.precision = Precision{.length = told}});
+  CHECK(joined.mesh.vertex_count() == cylinder.positions.size());
+  CHECK(joined.report.notes.empty());
+  CHECK(hard_count(told) == cylinder.hard_edge_count);
+  CHECK(hard_count(1e-3) == cylinder.hard_edge_count);
 }
 
 TEST_CASE("mixed orientation is counted, in one file and between files") {

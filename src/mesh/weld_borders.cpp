@@ -1,0 +1,113 @@
+#include "mesh/weld_borders.h"
+
+#include "mesh/clean.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+
+namespace crease {
+
+namespace {
+
+std::uint64_t mixed(std::uint64_t h) {
+  h = (h + 0x9e3779b97f4a7c15u) * 0xbf58476d1ce4e5b9u;
+  h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
+  return h ^ (h >> 31);
+}
+
+// Around a vertex of a closed surface every edge is left by one triangle and reached by another, so
+// that what follows the vertex in its triangles is, all together, what precedes it.
+std::vector<bool> vertices_at_borders(const Mesh& mesh) {
+  std::vector<std::uint64_t> balance(mesh.vertex_count(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    const std::array hash{mixed(index_of(t[0])), mixed(index_of(t[1])), mixed(index_of(t[2]))};
+    for (std::size_t c = 0; c < 3; ++c) {
+      balance[index_of(t[c])] += hash[(c + 1) % 3] - hash[(c + 2) % 3];
+    }
+  }
+  std::vector<bool> is_border(balance.size());
+  for (std::size_t v = 0; v < balance.size(); ++v) is_border[v] = balance[v] != 0;
+  return is_border;
+}
+
+void leave_short_edges(const Mesh& mesh, double distance, std::vector<bool>& may_join) {
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t a = index_of(t[c]), b = index_of(t[(c + 1) % 3]);
+      if (!may_join[a] && !may_join[b]) continue;
+      if (length(mesh.positions[a] - mesh.positions[b]) > 2 * distance) continue;
+      may_join[a] = may_join[b] = false;
+    }
+  }
+}
+
+// Points by cells that are several distances wide, so that few look into the next one.
+class Cells {
+ public:
+  explicit Cells(double distance) : distance_(distance), width_(4 * distance) {}
+
+  // The first point within the distance, or VertexId{kNone}: then it is added.
+  VertexId find_or_add(const std::vector<Vec3d>& positions, VertexId v) {
+    const Vec3d& p = positions[index_of(v)];
+    const std::array<std::int64_t, 3> low = cell_of(p, -distance_), high = cell_of(p, distance_);
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          const auto cell = points_.find(key_of({x, y, z}));
+          if (cell == points_.end()) continue;
+          for (const VertexId other : cell->second) {
+            if (length(positions[index_of(other)] - p) <= distance_) return other;
+          }
+        }
+      }
+    }
+    points_[key_of(cell_of(p, 0))].push_back(v);
+    return VertexId{kNone};
+  }
+
+ private:
+  std::array<std::int64_t, 3> cell_of(const Vec3d& p, double by) const {
+    return {std::llround((p.x + by) / width_), std::llround((p.y + by) / width_),
+            std::llround((p.z + by) / width_)};
+  }
+  // Cells that collide share a list, in which distances tell.
+  static std::uint64_t key_of(const std::array<std::int64_t, 3>& cell) {
+    std::uint64_t key = 0;
+    for (const std::int64_t i : cell) key = mixed(key ^ static_cast<std::uint64_t>(i));
+    return key;
+  }
+
+  double distance_, width_;
+  std::unordered_map<std::uint64_t, std::vector<VertexId>> points_;
+};
+
+}  // namespace
+
+NearBorders find_near_borders(const Mesh& mesh, double distance) {
+  NearBorders near;
+  std::vector<bool> may_join = vertices_at_borders(mesh);
+  for (const bool is_border : may_join) near.border_count += is_border;
+  if (!(distance > 0)) return near;
+  leave_short_edges(mesh, distance, may_join);
+  near.first.reserve(mesh.vertex_count());
+  Cells cells(distance);
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+    const VertexId found =
+        may_join[v] ? cells.find_or_add(mesh.positions, VertexId{v}) : VertexId{kNone};
+    near.count += found != VertexId{kNone};
+    near.first.push_back(found == VertexId{kNone} ? VertexId{v} : found);
+  }
+  return near;
+}
+
+std::size_t weld_borders(Mesh& mesh, const NearBorders& near) {
+  if (near.count == 0) return 0;  // and `first` may be empty
+  for (Triangle& t : mesh.triangles) {
+    for (VertexId& v : t) v = near.first[index_of(v)];
+  }
+  return drop_isolated_vertices(mesh);
+}
+
+}  // namespace crease

@@ -1,0 +1,75 @@
+#include "mesh/weld_borders.h"
+
+#include "support/mesh_builder.h"
+#include "support/mesh_zoo.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+namespace crease {
+namespace {
+
+// Every triangle with corners of its own, each off by `noise` at most in every coordinate.
+Mesh torn(const Mesh& mesh, double noise) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> off(-noise, noise);
+  Mesh loose;
+  for (const Triangle& t : mesh.triangles) {
+    Triangle own;
+    for (std::size_t c = 0; c < 3; ++c) {
+      own[c] = VertexId{static_cast<std::uint32_t>(loose.vertex_count())};
+      const Vec3d& p = mesh.positions[index_of(t[c])];
+      loose.positions.push_back({p.x + off(random), p.y + off(random), p.z + off(random)});
+    }
+    loose.triangles.push_back(own);
+  }
+  return loose;
+}
+
+TEST_CASE("torn triangles are joined within a distance, and not beyond it") {
+  const Mesh whole = smooth_sphere(20, 30);
+  const double noise = 1e-6, apart = 2 * std::sqrt(3) * noise;
+  Mesh mesh = torn(whole, noise);
+  const std::vector<Vec3d> before = mesh.positions;
+  CHECK(find_near_borders(mesh, noise / 100).count < mesh.vertex_count() / 100);
+  const NearBorders near = find_near_borders(mesh, apart);
+  CHECK(near.border_count == mesh.vertex_count());
+  for (std::uint32_t v = 0; v < near.first.size(); ++v) {
+    const std::uint32_t first = static_cast<std::uint32_t>(index_of(near.first[v]));
+    CHECK(first <= v);
+    CHECK(near.first[first] == near.first[v]);
+    CHECK(length(before[first] - before[v]) <= apart);
+  }
+  CHECK(weld_borders(mesh, near) == near.count);
+  CHECK(mesh.vertex_count() == whole.vertex_count());
+  CHECK(mesh.triangle_count() == whole.triangle_count());
+  CHECK(find_near_borders(mesh, apart).border_count == 0);
+}
+
+TEST_CASE("what is closed stays, however near it is") {
+  MeshBuilder builder;
+  builder.box({0, 0, 0}, {1, 1, 1}, 2);
+  builder.box({1 + 1e-9, 0, 0}, {2, 1, 1}, 2);
+  const Mesh boxes = builder.take();
+  const NearBorders near = find_near_borders(boxes, 1e-6);
+  CHECK(near.border_count == 0);
+  CHECK(near.count == 0);
+}
+
+TEST_CASE("no triangle loses a corner") {
+  Mesh mesh;
+  for (int i = 0; i < 6; ++i) mesh.positions.push_back({i * 1e-7, (i % 2) * 1.0, 0});
+  mesh.positions.push_back({5, 5, 0});
+  const auto v = [](std::uint32_t i) { return VertexId{i}; };
+  mesh.triangles = {{v(0), v(1), v(2)}, {v(2), v(1), v(6)}, {v(3), v(4), v(6)}};
+  weld_borders(mesh, find_near_borders(mesh, 1e-3));
+  for (const Triangle& t : mesh.triangles) {
+    CHECK(t[0] != t[1]);
+    CHECK(t[1] != t[2]);
+    CHECK(t[2] != t[0]);
+  }
+}
+
+}  // namespace
+}  // namespace crease
