@@ -44,9 +44,9 @@ void leave_short_edges(const Mesh& mesh, double distance, std::vector<bool>& may
 }
 
 // Points by cells that are several distances wide, so that few look into the next one.
-class Cells {
+class NearPoints {
  public:
-  explicit Cells(double distance) : distance_(distance), width_(4 * distance) {}
+  explicit NearPoints(double distance) : distance_(distance), width_(4 * distance) {}
 
   // The first point within the distance, or VertexId{kNone}: then it is added.
   VertexId find_or_add(const std::vector<Vec3d>& positions, VertexId v) {
@@ -92,10 +92,10 @@ NearBorders find_near_borders(const Mesh& mesh, double distance) {
   if (!(distance > 0)) return near;
   leave_short_edges(mesh, distance, may_join);
   near.first.reserve(mesh.vertex_count());
-  Cells cells(distance);
+  NearPoints points(distance);
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
     const VertexId found =
-        may_join[v] ? cells.find_or_add(mesh.positions, VertexId{v}) : VertexId{kNone};
+        may_join[v] ? points.find_or_add(mesh.positions, VertexId{v}) : VertexId{kNone};
     near.count += found != VertexId{kNone};
     near.first.push_back(found == VertexId{kNone} ? VertexId{v} : found);
   }
