@@ -117,8 +117,9 @@ void ModelBuilder::quad(const std::array<Vec3d, 4>& p, AttributeId n) {
 }
 
 void ModelBuilder::flat_quad(const std::array<Vec3d, 4>& p) {
-  const auto at = [&](std::size_t i) { return mesh_.positions[index_of(vertex(p[i]))]; };
-  quad(p, placed_normal(cross(at(2) - at(0), at(3) - at(1))));
+  std::array<Vec3d, 4> at;  // one after the other: in the arguments of a call their order is open
+  for (const std::size_t i : {1, 3, 0, 2}) at[i] = mesh_.positions[index_of(vertex(p[i]))];
+  quad(p, placed_normal(cross(at[2] - at[0], at[3] - at[1])));
 }
 
 void ModelBuilder::patch(int columns, int rows, AttributeId n, const PointOf& point) {
