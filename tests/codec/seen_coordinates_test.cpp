@@ -84,8 +84,9 @@ std::size_t bytes_of(const std::vector<Asked>& places, bool asks) {
 }
 
 TEST_CASE("coordinates of vertices around take few bits, others no more than without them") {
-  for (const auto& [share, at_most] :
+  for (const auto& [seen, at_most] :
        {std::pair(0.95, 0.45), std::pair(0.5, 0.85), std::pair(0.0, 1.005)}) {
+    const double share = seen;
     CAPTURE(share);
     const std::vector<Asked> places = some_places(share, 4000);
     const auto with = static_cast<double>(bytes_of(places, true));

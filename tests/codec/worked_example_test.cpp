@@ -113,10 +113,11 @@ WrittenFile golden_file(const char* name, const WrittenFile& written) {
 TEST_CASE("the golden files are read, and written to the byte") {
   WrittenFile without = random_file(1, 6, 24), with = without;
   with.content.images = some_images();
-  for (const auto& [name, written] :
+  for (const auto& [golden, written] :
        {std::pair("version_6.crease", &without), std::pair("version_7.crease", &with)}) {
+    const std::string name = golden;
     CAPTURE(name);
-    const WrittenFile file = golden_file(name, *written);
+    const WrittenFile file = golden_file(golden, *written);
     CHECK(file.blocks.size() == 6);
     const ModelFacts& facts = file.content.facts;
     CHECK(facts.triangle_count == 9'999'999'999);

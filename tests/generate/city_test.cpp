@@ -165,10 +165,11 @@ TEST_CASE("normals agree with the geometry, on flat faces exactly") {
 // So there are no T-junctions: at one of them an edge would have only one triangle.
 TEST_CASE("every body is closed and manifold: each edge has two triangles, one each way") {
   const Mesh city = generate_city({.triangles = 200'000});
-  for (const auto& [e, sides] : sides_of_edges(city)) {
+  for (const auto& edge : sides_of_edges(city)) {
     const auto runs_up = [&](const Side& s) {
-      return city.triangles[s.triangle][s.corner] == e.first;
+      return city.triangles[s.triangle][s.corner] == edge.first.first;
     };
+    const auto& sides = edge.second;
     CAPTURE(city.parts[index_of(city.part_of_triangle[sides[0].triangle])]);
     REQUIRE(sides.size() == 2);
     CHECK(runs_up(sides[0]) != runs_up(sides[1]));
@@ -198,9 +199,11 @@ TEST_CASE("edges turn smoothly by little and sharply by much") {
   const Mesh city = generate_city({.triangles = 200'000});
   const std::vector<AttributeId>& normals = city.normals()->of_corner;
   std::size_t smooth = 0, hard = 0, flat = 0;
-  for (const auto& [e, sides] : sides_of_edges(city)) {
+  for (const auto& edge : sides_of_edges(city)) {
+    const auto& e = edge.first;
+    const auto& sides = edge.second;
     REQUIRE(sides.size() == 2);
-    const auto normal_at = [&, e = e](const Side& s, VertexId v) {
+    const auto normal_at = [&](const Side& s, VertexId v) {
       const Triangle& corners = city.triangles[s.triangle];
       const std::size_t c = std::size_t(std::ranges::find(corners, v) - corners.begin());
       return normals[3 * s.triangle + c];

@@ -159,7 +159,7 @@ TEST_CASE("glTF: broken real files are refused with their place") {
   for (const auto& [name, place] : kExpected) {
     const std::filesystem::path path = shared_model(name);
     if (path.empty()) continue;
-    CAPTURE(name);
+    CAPTURE(path);
     const Result<Imported> in = import_mesh(path, {});
     REQUIRE_FALSE(in.ok());
     CAPTURE(in.failure().message);

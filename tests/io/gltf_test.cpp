@@ -55,9 +55,10 @@ TEST_CASE("glTF: the cube and the cylinder keep their hard edges in every contai
   for (const PolygonModel& model : polygon_models()) {
     CAPTURE(model.name);
     const GltfBuilder b = split_model(model);
-    for (const auto& [text, name] :
+    for (const auto& [text, file] :
          {std::pair(b.gltf(), "model.gltf"), std::pair(b.glb(), "model.glb"),
           std::pair(b.b3dm(), "model.b3dm")}) {
+      const std::string name = file;
       CAPTURE(name);
       const Imported imported = import_text(text, name);
       CHECK(imported.mesh.vertex_count() == model.positions.size());

@@ -73,7 +73,7 @@ TEST_CASE("import stops when it is asked to") {
 }
 
 TEST_CASE("lines may end in carriage returns alone") {
-  for (const auto& [name, text] :
+  for (const auto& [file, text] :
        {std::pair("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
         std::pair("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
         std::pair("a.ply",
@@ -83,6 +83,7 @@ TEST_CASE("lines may end in carriage returns alone") {
         std::pair("a.stl",
                   "solid a b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
                   "vertex 0 1 0\nendloop\nendfacet\nendsolid a b\n")}) {
+    const std::string name = file;
     std::string returns = text;
     std::ranges::replace(returns, '\n', '\r');
     CAPTURE(name);

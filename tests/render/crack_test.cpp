@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <functional>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace crease {
@@ -203,7 +204,8 @@ TEST_CASE("the background never shows between the triangles of a closed model") 
   const std::pair<const char*, Mesh> closed[] = {{"smooth sphere", smooth_sphere(12, 24)},
                                                  {"box", hard_box(4)},
                                                  {"cylinder", hard_cylinder(24, 4)}};
-  for (const auto& [name, mesh] : closed) {
+  for (const auto& [shape, mesh] : closed) {
+    const std::string name = shape;
     CAPTURE(name);
     std::mt19937 random(7);
     std::vector<Mesh> models;

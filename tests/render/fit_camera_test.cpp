@@ -34,7 +34,8 @@ TEST_CASE("the fitted camera shows the whole box, as large as it fits, in the mi
   const Vec3d lows[] = {{0, 0, 0}, {-1, -2, -3}, {390000, 5819000, 30}, {-1e-3, -1e-3, -1e-3}};
   const Vec3d highs[] = {{1, 1, 1}, {1, 2, 3}, {395000, 5822000, 180}, {1e-3, 1e-3, 5e-3}};
   for (std::size_t i = 0; i < std::size(lows); ++i) {
-    for (const auto& [width, height] : {std::pair(1920, 1080), std::pair(500, 1000)}) {
+    for (const auto& [w, h] : {std::pair(1920, 1080), std::pair(500, 1000)}) {
+      const int width = w, height = h;
       for (const Vec3d& up : {Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{1, 0, 0}}) {
         CAPTURE(i);
         CAPTURE(width);

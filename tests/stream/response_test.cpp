@@ -97,8 +97,8 @@ TEST_CASE("another file is noticed by size, ETag or date") {
   const char* heads[] = {
       "HTTP/1.1 206 Partial Content\nContent-Range: bytes 100-104/1000\nETag: \"two\"\n",
       "HTTP/1.1 206 Partial Content\nContent-Range: bytes 100-104/1001\n",
-      "HTTP/1.1 206 Partial Content\nContent-Range: bytes 100-104/1000\n"
-      "Last-Modified: Sun, 06 Nov 1994 08:49:38 GMT\n",
+      ("HTTP/1.1 206 Partial Content\nContent-Range: bytes 100-104/1000\n"
+       "Last-Modified: Sun, 06 Nov 1994 08:49:38 GMT\n"),
       "HTTP/1.1 200 OK\nContent-Length: 1000\nETag: \"two\"\n",
       "HTTP/1.1 200 OK\nContent-Length: 900\n",
       "HTTP/1.1 416 Range Not Satisfiable\nContent-Range: bytes */50\n",

@@ -154,7 +154,8 @@ TEST_CASE("no background shows between the blocks of a closed model") {
                                                  {"cylinder", hard_cylinder(128, 48)}};
   Stage stage;
   std::size_t all_between = 0;
-  for (const auto& [name, mesh] : closed) {
+  for (const auto& [shape, mesh] : closed) {
+    const std::string name = shape;
     CAPTURE(name);
     const StreamedModel model = streamed_model(mesh, 400);
     BlockStreamer streamer = model.stream();
