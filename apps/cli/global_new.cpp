@@ -28,7 +28,7 @@ MemoryLimit* memory_limit() {
 
 }  // namespace crease::cli
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef CREASE_SANITIZED  // sanitizers have their own
 
 namespace {
 

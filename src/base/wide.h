@@ -4,9 +4,11 @@
 // never throws, and a std::bad_alloc out of either ends the process.
 #pragma once
 
+#include "base/sanitizer.h"
+
 // Sanitizers cannot start with the indirect functions that this needs.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    !defined(CREASE_ADDRESS_SANITIZER) && !defined(CREASE_THREAD_SANITIZER)
 #define CREASE_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define CREASE_WIDE

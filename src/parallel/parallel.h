@@ -13,6 +13,8 @@
 // the call. Nothing is told about tasks of one call among each other, so their races are found.
 #pragma once
 
+#include "base/sanitizer.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <memory>
@@ -20,7 +22,7 @@
 #include <type_traits>
 #include <vector>
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(CREASE_THREAD_SANITIZER)
 #include <sanitizer/tsan_interface.h>
 #endif
 
@@ -51,7 +53,7 @@ class Fork {
     ~AtEnd() { release(joined); }
   };
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(CREASE_THREAD_SANITIZER)
   static void acquire(const char* point) {
     __tsan_acquire(const_cast<char*>(point));
   }

@@ -2,9 +2,11 @@
 // property on fewer and smaller models, since what they look for does not depend on size.
 #pragma once
 
+#include "base/sanitizer.h"
+
 namespace crease {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(CREASE_ADDRESS_SANITIZER) || defined(CREASE_THREAD_SANITIZER)
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
