@@ -1,9 +1,9 @@
 #!/bin/sh
 # Runs every fuzzer of a build for some seconds each, starting from its seeds in fuzz/seeds/NAME
 # and, where ../shared/data is there, nothing else: seeds are small. A crash leaves its input in
-# build/fuzz/crashes and fails.
+# build/asan/crashes and fails.
 #
-#   scripts/fuzz.sh build/fuzz 60
+#   scripts/fuzz.sh build/asan 60
 set -eu
 build=$1
 seconds=$2

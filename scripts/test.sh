@@ -6,10 +6,10 @@
 #
 #   format    clang-format changes nothing
 #   release   build with warnings as errors, all tests, the layers and the install test among them
-#   asan      all tests under the address and undefined-behaviour sanitizers
+#   asan      all tests under the address and undefined-behaviour sanitizers, with clang
 #   tsan      the tests that use threads, under the thread sanitizer
 #   libcxx    crease_runtime with clang 14 and libc++, without exceptions and RTTI
-#   fuzz      each fuzzer for FUZZ_SECONDS (60), as many at a time as there are processors
+#   fuzz      each fuzzer of that build for FUZZ_SECONDS (60), as many at a time as there are processors
 #   tidy      clang-tidy (not among all: it takes longer than the rest together)
 set -eu
 cd "$(dirname "$0")/.."
@@ -41,7 +41,7 @@ run_stage() {
       ;;
     fuzz)
       scripts/build.sh fuzz
-      scripts/fuzz.sh build/fuzz "$FUZZ_SECONDS"
+      scripts/fuzz.sh build/asan "$FUZZ_SECONDS"
       ;;
     tidy)
       scripts/build.sh release
