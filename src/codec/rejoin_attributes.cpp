@@ -9,10 +9,6 @@ namespace crease::codec {
 
 namespace {
 
-// A value this near to one that is there already is that one.
-constexpr double kSameValue = 1e-3;
-constexpr double kSameCopy = 2e-2;  // for a wedge that only moved along
-
 // Where p is on the way from a to b, 0 to 1; half way where there is no way.
 double share_on_the_way(const Vec3i& p, const Vec3i& a, const Vec3i& b) {
   double along = 0, whole = 0;
@@ -330,7 +326,7 @@ void AttributeRejoiner::change_to_best(const WedgeValues& wedges, std::size_t la
       nearest_away2 = away2;
     }
     if (is_done) continue;
-    const double same = members == 1 ? kSameCopy : kSameValue;
+    const double same = members == 1 ? wedges.same.moved : wedges.same.joined;
     std::uint32_t to = nearest;
     if (!(nearest_away2 <= same * same)) to = pool.add(pool.nearest_code(best));
     for (AtVertex& value : at_vertex_) {

@@ -140,6 +140,7 @@ void WedgeQuadrics::set_scale(const UnfoldedBlock& block, const LayerSchema& sch
     layer.scale = kNormalWeight * kNormalWeight * edge2;
   } else if (texture_area > 0) {
     layer.scale = 0.09 * area_ / texture_area;
+    layer.values.same = same_texture(std::sqrt(edge2 * texture_area / area_));
   } else {
     layer.scale = 0.25 * kNormalWeight * kNormalWeight * edge2;
   }

@@ -15,6 +15,7 @@
 #include "codec/unfold_blocks.h"
 #include "crease/block_file.h"
 #include "hierarchy/quadric.h"
+#include "hierarchy/same_value.h"
 
 #include <array>
 #include <cstdint>
@@ -31,6 +32,7 @@ struct WedgeValues {
   std::vector<std::uint32_t> into;          // per wedge; kNone: no contraction touches its vertex
   std::vector<std::array<float, 4>> value;  // per wedge
   std::vector<char> is_known;               // per wedge: whether it has a value
+  SameValue same;
 };
 
 class WedgeQuadrics {

@@ -8,10 +8,6 @@ namespace crease::simplification {
 
 namespace {
 
-// A solved value this near to one that is there already is that one: it costs no record.
-constexpr double kSameValue = 1e-3;
-constexpr double kSameCopy = 2e-2;  // for a wedge that only moved along
-
 double squared(const Vec3d& v) {
   return dot(v, v);
 }
@@ -220,12 +216,32 @@ inline void PatchSimplifier::combine_quadrics(std::size_t layer, std::span<const
   }
 }
 
+// What the ends have, each the mean of its own by area, mixed by where the vertex will stand
+// between them.
+void PatchSimplifier::blend_along(std::size_t layer, std::span<const Index> members, Slice of_kept,
+                                  double kept_share, double* value) const {
+  const std::vector<Wedge>& wedges = wedges_[layer];
+  const auto is_kept = [&](Index w) { return w - of_kept.first < of_kept.count; };
+  double kept_area = 0, removed_area = 0;
+  for (Index w : members) (is_kept(w) ? kept_area : removed_area) += wedges[w].area;
+  if (!(kept_area > 0)) kept_share = 0;
+  if (!(removed_area > 0)) kept_share = 1;
+  for (Index w : members) {
+    const double share = is_kept(w) ? kept_share / kept_area : (1 - kept_share) / removed_area;
+    if (!(share > 0)) continue;
+    for (int j = 0; j < work_->layers[layer].dimension; ++j) {
+      value[j] += share * wedges[w].area * double(wedges[w].value[j]);
+    }
+  }
+}
+
 // Gives a joined wedge, whose area and quadric are known, its value; returns its attribute id, or
-// kNone if it is new.
+// kNone if it is new. `kept_share`: 1 where the vertex stays at the kept end, 0 at the removed one.
 inline PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
                                                             std::span<const Index> members,
                                                             Index fixed, Slice of_kept,
-                                                            const Vec3d& target, Wedge& result) {
+                                                            const Vec3d& target, double kept_share,
+                                                            Wedge& result) {
   const WorkLayer& work = work_->layers[layer];
   const std::vector<Wedge>& wedges = wedges_[layer];
   Index inherited = fixed;
@@ -245,21 +261,20 @@ inline PatchSimplifier::Index PatchSimplifier::chosen_value(std::size_t layer,
   }
 
   double value[kMaxDimension] = {};
-  double norm2 = 0;
-  for (int j = 0; j < work.dimension; ++j) {
-    if (work.steers) {
-      value[j] = attribute_quadrics_[layer][result.quadric].weighted_value(j, target);
-    } else {
-      for (Index w : members) value[j] += wedges[w].area * double(wedges[w].value[j]);
+  if (work.steers) {
+    for (int j = 0; j < work.dimension; ++j) {
+      value[j] = attribute_quadrics_[layer][result.quadric].weighted_value(j, target) / result.area;
     }
-    value[j] /= result.area;
-    norm2 += value[j] * value[j];
+  } else {
+    blend_along(layer, members, of_kept, kept_share, value);
   }
+  double norm2 = 0;
+  for (int j = 0; j < work.dimension; ++j) norm2 += value[j] * value[j];
   if (work.is_direction) {
     if (!(norm2 > 1e-4)) return inherit();  // opposite directions: there is no middle
     for (int j = 0; j < work.dimension; ++j) value[j] /= std::sqrt(norm2);
   }
-  const double same = members.size() == 1 ? kSameCopy : kSameValue;
+  const double same = members.size() == 1 ? work.same.moved : work.same.joined;
   double away2 = 0;
   for (int j = 0; j < work.dimension; ++j) {
     result.value[j] = static_cast<float>(value[j]);
@@ -293,6 +308,10 @@ CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, 
   Index* result_of_slot = joins_.parent.start(used_.size());  // join_wedges is done with it
   results_.clear();
   double square_error = -1, displacement = 0;
+  const Vec3d along = positions_[kept] - positions_[removed];
+  const double length2 = dot(along, along);
+  const double kept_share =
+      length2 > 0 ? std::clamp(dot(target - positions_[removed], along) / length2, 0.0, 1.0) : 0.5;
   for (const Joined& joined : joins_.joined) {
     const std::span<const Index> members(&joins_.members[joined.first_member], joined.member_count);
     bool any_used = false;
@@ -304,7 +323,8 @@ CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, 
       result.pinned = result.pinned || wedges[w].pinned;
     }
     if (work.steers) combine_quadrics(layer, members, result);
-    const Index inherited = chosen_value(layer, members, joined.fixed, of_kept, target, result);
+    const Index inherited =
+        chosen_value(layer, members, joined.fixed, of_kept, target, kept_share, result);
     if (inherited != kNone) {
       result.id = inherited;
     } else {

@@ -241,8 +241,10 @@ class PatchSimplifier {
   void contract_layer(std::size_t layer, Index kept, Index removed, const Vec3d& target,
                       LevelError& error);
   void combine_quadrics(std::size_t layer, std::span<const Index> members, Wedge& result);
+  void blend_along(std::size_t layer, std::span<const Index> members, Slice of_kept,
+                   double kept_share, double* value) const;
   Index chosen_value(std::size_t layer, std::span<const Index> members, Index fixed, Slice of_kept,
-                     const Vec3d& target, Wedge& result);
+                     const Vec3d& target, double kept_share, Wedge& result);
   float surface_error(Index a, Index b, const Vec3d& target) const;
   // Into farthest_witness_; contract() settles them.
   void measure_witnesses(Index a, Index b, const Placed& placed);

@@ -135,10 +135,13 @@ Extent measure_extent(const WorkMesh& work) {
 void set_scales(WorkMesh& work, const Extent& extent, double normal_weight, double edge) {
   for (std::size_t l = 0; l < work.layers.size(); ++l) {
     WorkLayer& layer = work.layers[l];
+    if (layer.source->role == AttributeRole::Other) layer.same = same_number(layer.range);
     if (layer.is_normal) {
       layer.length_per_unit = normal_weight * edge;
     } else if (extent.area_of_layer[l] > 0) {
-      layer.length_per_unit = 0.3 * std::sqrt(extent.area / extent.area_of_layer[l]);
+      const double length_per_unit = std::sqrt(extent.area / extent.area_of_layer[l]);
+      layer.length_per_unit = 0.3 * length_per_unit;
+      layer.same = same_texture(edge / length_per_unit);
     } else {
       layer.length_per_unit = 0.5 * normal_weight * edge;
     }

@@ -30,6 +30,20 @@ double weight_of_seams(const Mesh& mesh, const AttributeLayer& layer) {
   return 1 + many * (kLeastSeam - 1);
 }
 
+double range_of(const AttributeLayer& layer) {
+  double range = 0;
+  for (std::size_t k = 0; k < layer.dimension; ++k) {
+    double low = 0, high = 0;
+    for (std::size_t i = 0; i < layer.value_count(); ++i) {
+      const double value = double(layer.values[i * layer.dimension + k]);
+      low = i == 0 ? value : std::min(low, value);
+      high = i == 0 ? value : std::max(high, value);
+    }
+    range = std::max(range, high - low);
+  }
+  return range;
+}
+
 void add_layers(const Mesh& mesh, WorkMesh& work) {
   for (const AttributeLayer& source : mesh.layers) {
     WorkLayer layer;
@@ -40,6 +54,7 @@ void add_layers(const Mesh& mesh, WorkMesh& work) {
     layer.is_direction = source.interpolation == Interpolation::Direction;
     layer.is_normal = source.role == AttributeRole::Normal;
     if (!layer.is_normal) layer.line_weight = weight_of_seams(mesh, source);
+    layer.range = range_of(source);
     layer.of_corner.reserve(source.of_corner.size());
     for (AttributeId a : source.of_corner) layer.of_corner.push_back(static_cast<std::uint32_t>(a));
     work.layers.push_back(std::move(layer));

@@ -5,6 +5,7 @@
 
 #include "crease/contraction.h"
 #include "crease/mesh.h"
+#include "hierarchy/same_value.h"
 #include "hierarchy/witnesses.h"
 #include "simplify/far_area.h"
 
@@ -26,9 +27,11 @@ struct WorkLayer {
   bool steers = false;  // counts in the cost: normals, texture coordinates, colours
   bool is_direction = false;
   bool is_normal = false;
+  double range = 0;            // of the input's values, the widest component's
   double line_weight = 1;      // of an edge at whose sides it differs, as a crease; not of normals
   double length_per_unit = 0;  // what one unit of the attribute is worth as a distance,
                                // grid units; set anew in every band
+  SameValue same;              // likewise
   std::vector<std::uint32_t> of_corner;  // 3 a triangle, input values then new ones
   std::vector<float> new_values;
 

@@ -4,7 +4,9 @@
 #include "crease/adaptive_mesh.h"
 #include "crease/build.h"
 #include "crease/build_hierarchy.h"
+#include "crease/build_progressive_arrays.h"
 #include "crease/decode_model.h"
+#include "crease/progressive_mesh.h"
 
 #include <doctest/doctest.h>
 
@@ -135,6 +137,86 @@ TEST_CASE("a texture that lies straight on a flat sheet needs two triangles") {
   const Mesh seen =
       seen_from_above(flat_sheet(AttributeRole::TexCoord, 2, straight), 0.001, Placement::Optimal);
   CHECK(seen.triangle_count() <= 8);
+}
+
+// In two charts, left and right of x = 1/2, with an affine map each.
+Mesh two_charts() {
+  const auto left = [](double x, double y) {
+    return std::array{static_cast<float>(0.4 * x), static_cast<float>(0.8 * y), 0.0f};
+  };
+  Mesh mesh = flat_sheet(AttributeRole::TexCoord, 2, left);
+  AttributeLayer& paint = mesh.layers[1];
+  const std::size_t count = mesh.vertex_count();
+  for (std::size_t v = 0; v < count; ++v) {
+    paint.values.push_back(paint.values[2 * v] + 0.5f);
+    paint.values.push_back(paint.values[2 * v + 1] / 2);
+  }
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    double x = 0;
+    for (const VertexId v : mesh.triangles[t]) x += mesh.positions[index_of(v)].x / 3;
+    if (x < 0.5) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      AttributeId& a = paint.of_corner[3 * t + c];
+      a = AttributeId{static_cast<std::uint32_t>(index_of(a) + count)};
+    }
+  }
+  return mesh;
+}
+
+// At most so far off where something is shown, at some levels of a file of the mesh: the mean over
+// the sheet, and the worst place.
+struct Off {
+  double mean = 0, most = 0;
+};
+using OffAt = std::function<double(const Sample&)>;
+
+std::vector<Off> off_at_levels(Mesh mesh, Placement placement, const OffAt& off_at) {
+  BuildOptions options;
+  options.simplify.placement = placement;
+  const Result<Built> built = build_model(std::move(mesh), options);
+  REQUIRE(built.ok());
+  const Result<BlockFile> file = BlockFile::open(memory_source(built->file_bytes));
+  REQUIRE(file.ok());
+  const Result<DecodedModel> model = decode_model(*file);
+  REQUIRE(model.ok());
+  ProgressiveMesh levels(build_progressive_arrays(model->mesh, model->sequence));
+  std::vector<Off> all;
+  for (const double share : {0.99, 0.9, 0.7, 0.4, 0.2, 0.1, 0.05, 0.01}) {
+    levels.set_triangle_count(std::size_t(share * double(model->mesh.triangle_count())));
+    Off& off = all.emplace_back();
+    for (const Sample& s : samples_of(levels.extract())) {
+      const double here = off_at(s);
+      off.mean += s.area * here;
+      off.most = std::max(off.most, here);
+    }
+  }
+  return all;
+}
+
+TEST_CASE("a seam on a flat sheet moves no texture, at any level") {
+  for (const Placement placement : {Placement::Endpoint, Placement::Optimal}) {
+    for (const Off& off : off_at_levels(two_charts(), placement, [](const Sample& s) {
+           const bool is_left = s.value[0] < 0.45;
+           const double u = is_left ? 0.4 * s.x : 0.5 + 0.4 * s.x;
+           const double v = is_left ? 0.8 * s.y : 0.4 * s.y;
+           return std::max(std::abs(s.value[0] - u), std::abs(s.value[1] - v));
+         })) {
+      CHECK(off.most < 1e-3);
+    }
+  }
+}
+
+TEST_CASE("a number that grows along a flat sheet goes on doing so") {
+  const Paint slope = [](double x, double y) {
+    return std::array{static_cast<float>(500 * x + 200 * y), 0.0f, 0.0f};
+  };
+  for (const Placement placement : {Placement::Endpoint, Placement::Optimal}) {
+    for (const Off& off : off_at_levels(
+             flat_sheet(AttributeRole::Other, 1, slope), placement,
+             [](const Sample& s) { return std::abs(s.value[0] - 500 * s.x - 200 * s.y) / 700; })) {
+      CHECK(off.mean < 0.02);
+    }
+  }
 }
 
 TEST_CASE("a line between two colours on a flat sheet stays where a view needs it") {
