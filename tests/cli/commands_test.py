@@ -218,6 +218,30 @@ class Commands(tool.Case):
         self.assertEqual(level["triangles"], 4)
         self.assertLess(level["error_measured"]["surface_max"], 1e-12)
 
+    def test_extract_by_error_keeps_the_patches_of_another_material(self):
+        # A plane of 32 x 32 squares, every eighth one blue: no distance sees them go.
+        lines, count = ["mtllib none.mtl"], 32
+        lines += [f"v {i} {j} 0" for j in range(count + 1) for i in range(count + 1)]
+        for j in range(count):
+            for i in range(count):
+                a = j * (count + 1) + i + 1
+                lines.append("usemtl " + ("blue" if i % 8 == 3 and j % 8 == 3 else "white"))
+                lines.append(f"f {a} {a + 1} {a + count + 2} {a + count + 1}")
+        plane = self.write("plane.obj", "\n".join(lines) + "\n")
+        out = self.path("level.obj")
+        level = self.json("extract", plane, "-o", out, "--error", 0.01)
+        with open(out, encoding="utf-8") as file:
+            faces = {}
+            material = None
+            for line in file:
+                if line.startswith("usemtl"):
+                    material = line.split()[1]
+                elif line.startswith("f "):
+                    faces[material] = faces.get(material, 0) + 1
+        self.assertEqual(faces.get("blue"), 2 * 16)
+        self.assertLess(level["triangles"], 250)
+        self.assertLess(level["error"]["line"], 16 * 0.01)
+
     def test_streams_are_the_bytes_of_the_blocks(self):
         facts = self.json("info", self.hills())
         blocks = facts["bytes"] - facts["container_bytes"]
