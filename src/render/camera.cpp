@@ -74,8 +74,15 @@ Status check_fields(const Json& object) {
   for (const auto& field : object.items()) {
     const std::string& key = field.key();
     if (std::ranges::find(kFields, key) != kFields.end()) continue;
-    const std::string_view nearest = *std::ranges::min_element(
-        kFields, {}, [&](std::string_view known) { return edits_between(key, known); });
+    // "fov" is a part of one, and nearer to another.
+    const auto whole = std::ranges::find_if(kFields, [&](std::string_view known) {
+      return key.size() >= 3 && known.find(key) != known.npos;
+    });
+    const std::string_view nearest =
+        whole != kFields.end()
+            ? *whole
+            : *std::ranges::min_element(
+                  kFields, {}, [&](std::string_view known) { return edits_between(key, known); });
     return bad(Error::BadFormat, "\"" + key.substr(0, 40) +
                                      "\" is no field of it; the nearest is \"" +
                                      std::string(nearest) + "\"");
@@ -94,8 +101,8 @@ Status read_number(const Json& object, const char* name, double low, double high
   const double given = at->get<double>();
   if (!(given > low && given < high)) {
     char text[160];
-    std::snprintf(text, sizeof text, "\"%s\" is %g, which is not between %g and %g", name, given,
-                  low, high);
+    std::snprintf(text, sizeof text, "\"%s\" is %g, which is not above %g and below %g", name,
+                  given, low, high);
     return bad(Error::BadValue, text);
   }
   value = given;
