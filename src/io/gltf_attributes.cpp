@@ -1,5 +1,7 @@
 #include "io/gltf_attributes.h"
 
+#include "base/srgb.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -110,6 +112,11 @@ void GltfLayers::append(Layer& layer, const GltfReader::Floats& floats,
     for (std::size_t i = 0; i < count; ++i) {
       std::copy_n(&floats.values[i * floats.components], floats.components,
                   &out[begin + i * dimension]);
+    }
+    if (layer.raw.role == AttributeRole::Color) {  // linear in glTF, but for the alpha
+      for (std::size_t i = begin; i < out.size(); ++i) {
+        if ((i - begin) % dimension < 3) out[i] = srgb_from_linear(out[i]);
+      }
     }
     if (layer.raw.role == AttributeRole::TexCoord) {
       for (std::size_t i = begin + 1; i < out.size(); i += 2) out[i] = 1.0f - out[i];  // v up

@@ -1,5 +1,6 @@
 // GLB: one primitive for every part and material, split vertices, floats around one translation,
 // images behind them.
+#include "base/srgb.h"
 #include "crease/export.h"
 #include "io/float_positions.h"
 #include "io/formats.h"
@@ -75,7 +76,7 @@ std::vector<Semantic> semantics_of(std::span<const AttributeLayer* const> layers
   return semantics;
 }
 
-// A value as glTF wants it: unit normals, v down, colours within 0..1 (3.7.2.1).
+// A value as glTF wants it: unit normals, v down, linear colours within 0..1 (3.7.2.1).
 void append_value(const Semantic& semantic, std::span<const float> value, std::vector<float>& to) {
   switch (semantic.role) {
     case AttributeRole::Normal: {
@@ -89,7 +90,10 @@ void append_value(const Semantic& semantic, std::span<const float> value, std::v
       to.push_back(1.0f - value[1]);
       break;
     case AttributeRole::Color:
-      for (const float c : value) to.push_back(std::clamp(c, 0.0f, 1.0f));
+      for (std::size_t k = 0; k < value.size(); ++k) {
+        const float within = std::clamp(value[k], 0.0f, 1.0f);
+        to.push_back(k < 3 ? linear_from_srgb(within) : within);
+      }
       break;
     case AttributeRole::Other:
       to.insert(to.end(), value.begin(), value.end());

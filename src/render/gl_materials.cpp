@@ -58,6 +58,7 @@ void GlMaterials::fill(std::span<const Material> materials, const Textures& text
     glBindTexture(GL_TEXTURE_2D_ARRAY, array.id());
     glGenerateMipmap(GL_TEXTURE_2D_ARRAY);
   }
+  has_colors_of_names_ = have_names_only(materials);
   std::vector<std::array<float, 4>> texels;
   const std::vector<std::array<float, 4>> colors = material_colors(materials);
   for (std::size_t m = 0; m < colors.size(); ++m) {

@@ -27,6 +27,8 @@ class GlMaterials {
   // Two texels a material: its base colour; array and layer of its texture.
   const GlArray& texels() const { return texels_; }
   bool has_textures() const { return texture_bytes_ > 0; }
+  // The base colours are ours, by names, for what has no colours of its own.
+  bool has_colors_of_names() const { return has_colors_of_names_; }
   // Binds the arrays to as many units from `first_unit` on.
   void bind_textures(int first_unit) const;
   std::size_t bytes() const { return texels_.bytes + texture_bytes_; }  // mipmaps among it
@@ -35,6 +37,7 @@ class GlMaterials {
   GlArray texels_;
   std::array<GlTexture, kTextureArrays> arrays_;
   std::size_t texture_bytes_ = 0;
+  bool has_colors_of_names_ = false;
   bool is_filled_ = false;
 };
 

@@ -158,7 +158,7 @@ ProgramKey GlScene::key_for(const Part& part, TriangleKind kind, const DrawStyle
   key.textures = has_materials && part.texcoords && materials_->has_textures();
   if (own_colors && part.colors) {
     key.albedo = AlbedoSource::Corners;
-    key.materials = has_materials;
+    key.materials = has_materials && !materials_->has_colors_of_names();
   } else if (has_materials) {
     key.albedo = AlbedoSource::Materials;
   } else if (!own_colors && !style.surface && scalars_) {

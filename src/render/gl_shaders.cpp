@@ -196,7 +196,8 @@ vec3 surface_color() {
   c *= texture_color();
 #endif
 #if ALBEDO == CORNERS
-  c *= v_color;
+  c *= mix(v_color / 12.92, pow((v_color + 0.055) / 1.055, vec3(2.4)),
+           greaterThan(v_color, vec3(0.04045)));  // sRGB
 #endif
   return c;
 #endif

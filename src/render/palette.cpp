@@ -56,15 +56,6 @@ ColorSrgb color_of_name(const std::string& name, std::size_t order) {
 
 }  // namespace
 
-float linear_from_srgb(float e) {
-  return e <= 0.04045f ? e / 12.92f : std::pow((e + 0.055f) / 1.055f, 2.4f);
-}
-
-float srgb_from_linear(float l) {
-  l = std::clamp(l, 0.0f, 1.0f);
-  return l <= 0.0031308f ? 12.92f * l : 1.055f * std::pow(l, 1 / 2.4f) - 0.055f;
-}
-
 Color linear_from_srgb(const ColorSrgb& e) {
   return {linear_from_srgb(float(e[0]) / 255), linear_from_srgb(float(e[1]) / 255),
           linear_from_srgb(float(e[2]) / 255)};
@@ -101,10 +92,14 @@ ColorSrgb error_color(float share) {
   return color_between(kErrorStops, share);
 }
 
-std::vector<std::array<float, 4>> material_colors(std::span<const Material> materials) {
-  const bool only_names = std::ranges::all_of(materials, [](const Material& m) {
+bool have_names_only(std::span<const Material> materials) {
+  return std::ranges::all_of(materials, [](const Material& m) {
     return m.base_color == std::array<float, 4>{1, 1, 1, 1} && m.base_color_texture.empty();
   });
+}
+
+std::vector<std::array<float, 4>> material_colors(std::span<const Material> materials) {
+  const bool only_names = have_names_only(materials);
   std::vector<std::array<float, 4>> colors;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     if (!only_names) {

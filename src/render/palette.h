@@ -1,6 +1,7 @@
 // The colours of pictures. Linear RGB unless a name says srgb.
 #pragma once
 
+#include "base/srgb.h"
 #include "crease/mesh.h"
 #include "crease/shading.h"
 
@@ -14,8 +15,6 @@ namespace crease {
 using Color = std::array<float, 3>;
 using ColorSrgb = std::array<std::uint8_t, 3>;
 
-float linear_from_srgb(float encoded);  // 0..1
-float srgb_from_linear(float linear);   // 0..1
 Color linear_from_srgb(const ColorSrgb& encoded);
 
 inline constexpr ColorSrgb kBackgroundTop{250, 251, 252}, kBackgroundBottom{218, 224, 231};
@@ -39,9 +38,10 @@ inline constexpr std::size_t kErrorStopCount = 7;
 extern const std::array<ColorSrgb, kErrorStopCount> kErrorStops;
 ColorSrgb error_color(float share);
 
-// What to draw each material in. Files whose materials have names only (all of them white, without
-// textures) get colours by the names, in the words of cities (roof, wall, ground, glass, ...), then
-// by order.
+// All of them white, without textures.
+bool have_names_only(std::span<const Material> materials);
+// What to draw each material in. Those that have names only get colours by the names, in the words
+// of cities (roof, wall, ground, glass, ...), then by order.
 std::vector<std::array<float, 4>> material_colors(std::span<const Material> materials);
 
 }  // namespace crease

@@ -123,7 +123,7 @@ struct SrgbTable {
 };
 
 std::uint8_t encode(float linear) {
-  return std::uint8_t(std::lround(255 * srgb_from_linear(linear)));
+  return std::uint8_t(std::lround(255 * srgb_from_linear(std::clamp(linear, 0.0f, 1.0f))));
 }
 
 // The background's colour in a row, in encoded steps finer than a byte; linear in encoded values,

@@ -170,6 +170,32 @@ TEST_CASE("GLB: texture coordinates, colours, own layers, materials and parts co
                            required_layer(back, "semantic_surface")) == 0);
 }
 
+TEST_CASE("GLB: colours are linear there, and bytes come back") {
+  Mesh mesh = faceted_sphere(12, 16);
+  AttributeLayer colors{"color", AttributeRole::Color, Interpolation::Linear, 4, {}, {}};
+  for (int k = 0; k < 256; ++k) {
+    const float byte = float(k) / 255;
+    colors.values.insert(colors.values.end(), {byte, 1 - byte, 0.5f, byte});
+  }
+  for (std::size_t c = 0; c < 3 * mesh.triangle_count(); ++c) {
+    colors.of_corner.push_back(AttributeId{static_cast<std::uint32_t>(c % 256)});
+  }
+  mesh.layers.push_back(colors);
+  const auto bytes = export_bytes(mesh, ".glb");
+  REQUIRE(bytes.ok());
+  const auto json = json_of(*bytes);
+  const std::size_t accessor = json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"];
+  const std::size_t view = json["accessors"][accessor]["bufferView"];
+  const std::size_t begin = json["bufferViews"][view]["byteOffset"];
+  const std::size_t json_bytes =
+      std::size_t((*bytes)[12]) | std::size_t((*bytes)[13]) << 8 | std::size_t((*bytes)[14]) << 16;
+  float first[4];
+  std::memcpy(first, bytes->data() + 28 + json_bytes + begin, sizeof first);
+  CHECK(first[2] == doctest::Approx(0.214041));  // a half, as light
+  const Mesh back = there_and_back(mesh);
+  CHECK(largest_difference(colors, required_layer(back, "color")) < 1e-6);
+}
+
 TEST_CASE("GLB: city coordinates lose less than a ten-thousandth of a millimetre per metre") {
   Mesh mesh = faceted_sphere(12, 16);
   for (Vec3d& p : mesh.positions) p += Vec3d{389'000.123456, 5'819'000.654321, 34.5};

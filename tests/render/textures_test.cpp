@@ -131,6 +131,33 @@ TEST_CASE("a JPEG is drawn as well, times base colour and vertex colours") {
   CHECK(std::max({dark[0], dark[1], dark[2]}) < 80);
 }
 
+TEST_CASE(
+    "a vertex's colour looks as a material's of the same light, and as a picture's of its bytes") {
+  const ColorSrgb bytes{60, 140, 50};
+  const RenderOptions options = from_above();
+  Mesh plain = painted_sheet(6);
+  plain.images.clear();
+  plain.materials = {{"paint", {1, 1, 1, 1}, ""}};
+  const auto middle_of = [&](const Mesh& mesh) {
+    return at(draw(MeshDrawArrays(mesh).draw_list(), options), options, 0.2, 0.5);
+  };
+  Mesh of_vertices = plain, of_material = plain, of_picture = plain;
+  AttributeLayer colors{"color", AttributeRole::Color, Interpolation::Linear, 3, {}, {}};
+  for (const std::uint8_t b : bytes) colors.values.push_back(float(b) / 255);
+  colors.of_corner.assign(3 * plain.triangle_count(), AttributeId{0});
+  of_vertices.layers.push_back(std::move(colors));
+  const Color light = linear_from_srgb(bytes);
+  of_material.materials[0].base_color = {light[0], light[1], light[2], 1};
+  of_picture.images = {png_file("one.png", 4, 4, bytes)};
+  of_picture.materials[0].base_color_texture = "one.png";
+  const Pixel wanted = middle_of(of_material);
+  for (const Mesh& mesh : {of_vertices, of_picture}) {
+    const Pixel got = middle_of(mesh);
+    for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(int(got[k]) - int(wanted[k])) <= 1);
+  }
+  CHECK(wanted[1] > 2 * wanted[0]);
+}
+
 TEST_CASE("textures repeat, and triangles of other materials have their own") {
   Mesh mesh = painted_sheet(12);
   for (float& x : mesh.layers[1].values) x = 3 * x - 1;  // the middle is the image once
