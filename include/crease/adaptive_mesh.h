@@ -6,9 +6,9 @@
 //   for (Range r : mesh.changes().positions) upload(r);
 //   draw(mesh.draw_list());
 //
-// A vertex is split if what it stands for is seen to be wrong: its surface or its lines, those of a
-// texture among them, are off by more than camera.pixels on the screen, or its shading by more than
-// `degrees`. Errors grow upwards, and those of surfaces are nearly bounds of levels
+// A vertex is split if what it stands for is seen to be wrong: its surface or its lines, those of
+// textures and shading among them, are off by more than camera.pixels on the screen, or its shading
+// by more than `degrees`. Errors grow upwards, and those of surfaces are nearly bounds of levels
 // (crease/contraction.h), so what is left unsplit is about that wrong at most; where neighbours
 // stop at different levels it is up to three times as wrong, in few pixels. No split needs another
 // one: the mesh has no crack, whatever is split (DESIGN 6.1).

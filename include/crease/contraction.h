@@ -30,8 +30,8 @@ namespace crease {
 // be farther from the input between them. The others are means over what a vertex stands for.
 struct LevelError {
   float surface = 0;  // distance between the surfaces, model units
-  float line = 0;     // displacement of creases and open borders, and of what textures and colours
-                      // show on the surface, model units
+  float line = 0;     // displacement of creases and open borders, and of what textures, colours and
+                      // shading show on the surface, model units
   float degrees = 0;  // shading: between the normals shown and the input's
   float texture = 0;  // texture coordinates' displacement, texture units
 };

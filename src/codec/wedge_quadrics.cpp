@@ -268,7 +268,7 @@ CREASE_WIDE double WedgeQuadrics::join(std::span<const std::uint32_t> members, c
   if (sum.own.weight > 0) {
     const double square = wedge.is_pinned ? cost : sum.at(at, layer.dimension, value.data());
     if (square / sum.own.weight > worst_square_) worst_square_ = square / sum.own.weight;
-    if (layer.role != AttributeRole::Normal && is_float(square)) {
+    if (is_float(square)) {
       displacement_ = std::max(displacement_, sum.displacement(square, layer.role));
     }
   }

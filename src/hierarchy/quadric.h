@@ -199,13 +199,17 @@ struct AttributeQuadric {
   // attribute is off by `square`, as at() says: that by the mean slope, of which there are two
   // directions.
   double displacement(double square, AttributeRole role) const {
-    const double seen = role == AttributeRole::Color ? square - kUnseenColor * own.weight : square;
+    const double unseen = role == AttributeRole::Color    ? kUnseenColor
+                          : role == AttributeRole::Normal ? kUnseenNormal
+                                                          : 0;
+    const double seen = square - unseen * own.weight;
     const double slope = own.trace();
     return seen > 0 && slope > 0 ? std::sqrt(2 * seen / slope) : 0;
   }
 
  private:
-  static constexpr double kUnseenColor = 4e-4;  // squared: five of 255 in one component
+  // Squared: five of 255 in one component, and a chord of eight degrees.
+  static constexpr double kUnseenColor = 4e-4, kUnseenNormal = 0.0195;
 };
 
 }  // namespace crease::simplification

@@ -1,6 +1,6 @@
-// What textures and colours show on a surface is displaced on the screen by no more than a view
-// allows, also where the surface itself is flat; measured on the plane, beside the functions that
-// painted it.
+// What textures, colours and normals show on a surface is displaced on the screen by no more than a
+// view allows, also where the surface itself is flat; measured on the plane, beside the functions
+// that painted it.
 #include "crease/adaptive_mesh.h"
 #include "crease/build.h"
 #include "crease/build_hierarchy.h"
@@ -78,10 +78,10 @@ struct Sample {
   std::array<double, 3> value;
 };
 
-// Points all over a mesh, with what it shows there.
+// Points all over a mesh, with what its last layer shows there.
 std::vector<Sample> samples_of(const Mesh& mesh) {
   std::vector<Sample> samples;
-  const AttributeLayer& paint = mesh.layers[1];
+  const AttributeLayer& paint = mesh.layers.back();
   constexpr int kSteps = 24;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const Triangle& v = mesh.triangles[t];
@@ -243,6 +243,34 @@ TEST_CASE("a line between two colours on a flat sheet stays where a view needs i
     before = seen.triangle_count();
   }
   CHECK(before < kCells * kCells / 10);
+}
+
+TEST_CASE("normals that make a flat sheet look wavy are shown as waves") {
+  const auto wavy = [](double x, double y) {
+    return normalized(Vec3d{-0.5 * std::cos(20 * x), -0.5 * std::cos(20 * y), 1});
+  };
+  Mesh mesh = flat_sheet(AttributeRole::Other, 3, [&](double x, double y) {
+    const Vec3d n = wavy(x, y);
+    return std::array{static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
+  });
+  AttributeLayer normals = std::move(mesh.layers[1]);
+  normals.name = "normal";
+  normals.role = AttributeRole::Normal;
+  normals.interpolation = Interpolation::Direction;
+  mesh.layers = {std::move(normals)};
+  for (const Placement placement : {Placement::Endpoint, Placement::Optimal}) {
+    const Mesh seen = seen_from_above(mesh, 0.002, placement);
+    double sum = 0, area = 0;
+    for (const Sample& s : samples_of(seen)) {
+      const Vec3d shown = normalized(Vec3d{s.value[0], s.value[1], s.value[2]});
+      const double turned = degrees(std::acos(std::min(1.0, dot(shown, wavy(s.x, s.y)))));
+      sum += s.area * turned * turned;
+      area += s.area;
+    }
+    CHECK(std::sqrt(sum / area) < 8);
+    CHECK(seen.triangle_count() > 200);
+    CHECK(seen.triangle_count() < kCells * kCells / 4);
+  }
 }
 
 TEST_CASE("colours that nobody tells apart need no triangles") {
