@@ -25,8 +25,10 @@ void* SmallPieces::allocate(std::size_t bytes) noexcept {
                                             .largest_required_pool_block = kLargestPooled},
                      &pages_);
     });
-    auto* head = static_cast<std::byte*>(pools_->allocate(bytes + kHead, kHead));
-    *reinterpret_cast<std::size_t*>(head) = bytes + kHead;
+    // In whole heads: the pools' blocks lie one behind the other, and some are 24 bytes long.
+    const std::size_t whole = (bytes + 2 * kHead - 1) / kHead * kHead;
+    auto* head = static_cast<std::byte*>(pools_->allocate(whole, kHead));
+    *reinterpret_cast<std::size_t*>(head) = whole;
     return head + kHead;
   } catch (const std::bad_alloc&) {
     return nullptr;

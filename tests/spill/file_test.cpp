@@ -44,13 +44,14 @@ template <typename Allocator>
 void use(Allocator& allocator, unsigned seed, int steps, std::size_t most) {
   std::mt19937 random(seed);
   std::vector<Filled> all;
-  bool is_intact = true;
+  bool is_intact = true, is_aligned = true;  // as by malloc()
   for (int step = 0; step < steps; ++step) {
     if (all.size() < 5 || random() % 2 == 0) {
       const std::size_t size = 1 + random() % most;
       all.push_back({static_cast<unsigned char*>(allocator.allocate(size)), size,
                      static_cast<int>(random() % 256)});
       REQUIRE(all.back().memory != nullptr);
+      is_aligned = is_aligned && reinterpret_cast<std::uintptr_t>(all.back().memory) % 16 == 0;
       all.back().fill();
     } else {
       std::swap(all[random() % all.size()], all.back());
@@ -64,6 +65,7 @@ void use(Allocator& allocator, unsigned seed, int steps, std::size_t most) {
     allocator.free(filled.memory);
   }
   CHECK(is_intact);
+  CHECK(is_aligned);
 }
 
 }  // namespace
