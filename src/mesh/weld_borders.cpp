@@ -3,9 +3,10 @@
 #include "mesh/clean.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
+#include <utility>
 
 namespace crease {
 
@@ -43,27 +44,32 @@ void leave_short_edges(const Mesh& mesh, double distance, std::vector<bool>& may
   }
 }
 
-// Points by cells that are several distances wide, so that few look into the next one.
+// Points by cells that are several distances wide, so that few look into the next one. A flat hash
+// table of lists; cells that collide share one, in which distances tell.
 class NearPoints {
  public:
-  explicit NearPoints(double distance) : distance_(distance), width_(4 * distance) {}
+  NearPoints(const std::vector<Vec3d>& positions, std::size_t most, double distance)
+      : positions_(positions),
+        distance_(distance),
+        width_(4 * distance),
+        first_(std::bit_ceil(2 * most + 1), kNone),
+        next_(positions.size(), kNone) {}
 
-  // The first point within the distance, or VertexId{kNone}: then it is added.
-  VertexId find_or_add(const std::vector<Vec3d>& positions, VertexId v) {
-    const Vec3d& p = positions[index_of(v)];
+  // A point within the distance, or VertexId{kNone}: then this one is added.
+  VertexId find_or_add(VertexId v) {
+    const Vec3d& p = positions_[index_of(v)];
     const std::array<std::int64_t, 3> low = cell_of(p, -distance_), high = cell_of(p, distance_);
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const auto cell = points_.find(key_of({x, y, z}));
-          if (cell == points_.end()) continue;
-          for (const VertexId other : cell->second) {
-            if (length(positions[index_of(other)] - p) <= distance_) return other;
+          for (std::uint32_t i = first_of({x, y, z}); i != kNone; i = next_[i]) {
+            if (length(positions_[i] - p) <= distance_) return VertexId{i};
           }
         }
       }
     }
-    points_[key_of(cell_of(p, 0))].push_back(v);
+    std::uint32_t& first = first_of(cell_of(p, 0));
+    next_[index_of(v)] = std::exchange(first, static_cast<std::uint32_t>(index_of(v)));
     return VertexId{kNone};
   }
 
@@ -72,15 +78,16 @@ class NearPoints {
     return {std::llround((p.x + by) / width_), std::llround((p.y + by) / width_),
             std::llround((p.z + by) / width_)};
   }
-  // Cells that collide share a list, in which distances tell.
-  static std::uint64_t key_of(const std::array<std::int64_t, 3>& cell) {
+  std::uint32_t& first_of(const std::array<std::int64_t, 3>& cell) {
     std::uint64_t key = 0;
     for (const std::int64_t i : cell) key = mixed(key ^ static_cast<std::uint64_t>(i));
-    return key;
+    return first_[key & (first_.size() - 1)];
   }
 
+  const std::vector<Vec3d>& positions_;
   double distance_, width_;
-  std::unordered_map<std::uint64_t, std::vector<VertexId>> points_;
+  std::vector<std::uint32_t> first_;  // of a list
+  std::vector<std::uint32_t> next_;   // per vertex
 };
 
 }  // namespace
@@ -92,10 +99,9 @@ NearBorders find_near_borders(const Mesh& mesh, double distance) {
   if (!(distance > 0)) return near;
   leave_short_edges(mesh, distance, may_join);
   near.first.reserve(mesh.vertex_count());
-  NearPoints points(distance);
+  NearPoints points(mesh.positions, near.border_count, distance);
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
-    const VertexId found =
-        may_join[v] ? points.find_or_add(mesh.positions, VertexId{v}) : VertexId{kNone};
+    const VertexId found = may_join[v] ? points.find_or_add(VertexId{v}) : VertexId{kNone};
     near.count += found != VertexId{kNone};
     near.first.push_back(found == VertexId{kNone} ? VertexId{v} : found);
   }

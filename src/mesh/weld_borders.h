@@ -21,7 +21,7 @@ struct NearBorders {
 
 // Vertices at open borders within `distance` of each other, model units; 0: none. Those nearer than
 // twice that to another corner of a triangle of theirs are left alone: no triangle is lost. Time
-// O(corners) where few vertices are that near each other, memory 60 bytes a vertex at a border.
+// O(corners) where few vertices are that near each other, memory 20 bytes a vertex while it runs.
 NearBorders find_near_borders(const Mesh& mesh, double distance);
 
 // Each becomes the vertex that it is near, where that is. Returns how many are gone. Attributes
