@@ -52,17 +52,23 @@ Mesh flat_sheet(AttributeRole role, std::uint32_t dimension, const Paint& paint)
   return mesh;
 }
 
-// From far above, so that a pixel is as long everywhere: `allowed`, of the unit square.
-Mesh seen_from_above(Mesh mesh, double allowed, Placement placement) {
+// What a file of the mesh has.
+DecodedModel from_file(Mesh mesh, Placement placement) {
   BuildOptions options;
   options.simplify.placement = placement;
   const Result<Built> built = build_model(std::move(mesh), options);
   REQUIRE(built.ok());
   const Result<BlockFile> file = BlockFile::open(memory_source(built->file_bytes));
   REQUIRE(file.ok());
-  const Result<DecodedModel> model = decode_model(*file);
+  Result<DecodedModel> model = decode_model(*file);
   REQUIRE(model.ok());
-  Result<MeshHierarchy> hierarchy = build_hierarchy(model->mesh, model->sequence, {});
+  return *std::move(model);
+}
+
+// From far above, so that a pixel is as long everywhere: `allowed`, of the unit square.
+Mesh seen_from_above(Mesh mesh, double allowed, Placement placement) {
+  const DecodedModel model = from_file(std::move(mesh), placement);
+  Result<MeshHierarchy> hierarchy = build_hierarchy(model.mesh, model.sequence, {});
   REQUIRE(hierarchy.ok());
   AdaptiveMesh adaptive(std::make_shared<const MeshHierarchy>(std::move(*hierarchy)));
   Camera camera{.position = {0.5, 0.5, 100}, .target = {0.5, 0.5, 0}, .up = {0, 1, 0}};
@@ -171,18 +177,11 @@ struct Off {
 using OffAt = std::function<double(const Sample&)>;
 
 std::vector<Off> off_at_levels(Mesh mesh, Placement placement, const OffAt& off_at) {
-  BuildOptions options;
-  options.simplify.placement = placement;
-  const Result<Built> built = build_model(std::move(mesh), options);
-  REQUIRE(built.ok());
-  const Result<BlockFile> file = BlockFile::open(memory_source(built->file_bytes));
-  REQUIRE(file.ok());
-  const Result<DecodedModel> model = decode_model(*file);
-  REQUIRE(model.ok());
-  ProgressiveMesh levels(build_progressive_arrays(model->mesh, model->sequence));
+  const DecodedModel model = from_file(std::move(mesh), placement);
+  ProgressiveMesh levels(build_progressive_arrays(model.mesh, model.sequence));
   std::vector<Off> all;
   for (const double share : {0.99, 0.9, 0.7, 0.4, 0.2, 0.1, 0.05, 0.01}) {
-    levels.set_triangle_count(std::size_t(share * double(model->mesh.triangle_count())));
+    levels.set_triangle_count(std::size_t(share * double(model.mesh.triangle_count())));
     Off& off = all.emplace_back();
     for (const Sample& s : samples_of(levels.extract())) {
       const double here = off_at(s);
