@@ -1,6 +1,7 @@
 #include "mesh/weld.h"
 
 #include "crease/ids.h"
+#include "mesh/mix.h"
 
 #include <bit>
 
@@ -14,14 +15,6 @@ std::uint64_t bits_of(double x) {
 }
 std::uint64_t bits_of(float x) {
   return std::bit_cast<std::uint32_t>(x + 0.0f);
-}
-
-// The finaliser of splitmix64: every input bit reaches every output bit, so that the regular bit
-// patterns of grids and millimetres do not pile up in the table.
-std::uint64_t mix(std::uint64_t h) {
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
-  return h ^ (h >> 31);
 }
 
 template <typename Row>  // Row: row(i, k) gives component k of value i

@@ -1,6 +1,7 @@
 #include "mesh/weld_borders.h"
 
 #include "mesh/clean.h"
+#include "mesh/mix.h"
 
 #include <array>
 #include <bit>
@@ -12,18 +13,12 @@ namespace crease {
 
 namespace {
 
-std::uint64_t mixed(std::uint64_t h) {
-  h = (h + 0x9e3779b97f4a7c15u) * 0xbf58476d1ce4e5b9u;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
-  return h ^ (h >> 31);
-}
-
 // Around a vertex of a closed surface every edge is left by one triangle and reached by another, so
 // that what follows the vertex in its triangles is, all together, what precedes it.
 std::vector<bool> vertices_at_borders(const Mesh& mesh) {
   std::vector<std::uint64_t> balance(mesh.vertex_count(), 0);
   for (const Triangle& t : mesh.triangles) {
-    const std::array hash{mixed(index_of(t[0])), mixed(index_of(t[1])), mixed(index_of(t[2]))};
+    const std::array hash{mix(index_of(t[0])), mix(index_of(t[1])), mix(index_of(t[2]))};
     for (std::size_t c = 0; c < 3; ++c) {
       balance[index_of(t[c])] += hash[(c + 1) % 3] - hash[(c + 2) % 3];
     }
@@ -80,7 +75,7 @@ class NearPoints {
   }
   std::uint32_t& first_of(const std::array<std::int64_t, 3>& cell) {
     std::uint64_t key = 0;
-    for (const std::int64_t i : cell) key = mixed(key ^ static_cast<std::uint64_t>(i));
+    for (const std::int64_t i : cell) key = mix(key ^ static_cast<std::uint64_t>(i));
     return first_[key & (first_.size() - 1)];
   }
 
