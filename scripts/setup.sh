@@ -12,7 +12,7 @@ tools="build-essential cmake ninja-build ccache pkg-config git python3 xz-utils 
 libraries="libtbb-dev libembree-dev libcli11-dev nlohmann-json3-dev libfast-float-dev libxxhash-dev
   libzstd-dev liblzma-dev libdraco-dev libmeshoptimizer-dev libpng-dev libturbojpeg0-dev libstb-dev libepoxy-dev libegl-dev libgl1-mesa-dri
   libeigen3-dev libcurl4-openssl-dev libmicrohttpd-dev libglfw3-dev libimgui-dev libgl1"
-tests="doctest-dev librapidcheck-dev nginx-light openssl xvfb xdotool"
+tests="doctest-dev librapidcheck-dev nginx-light openssl xvfb xdotool python3-numpy python3-pil"
 peers="libvtk9-dev libcgal-dev libopenmesh-dev python3-matplotlib"
 
 packages="$tools $libraries $tests"
