@@ -110,9 +110,10 @@ function(crease_test name)
   crease_program(test_${name} SOURCES ${ARG_SOURCES} FOLDERS ${ARG_FOLDERS} mesh
                  LIBRARIES crease_test_support ${ARG_LIBRARIES})
   # To compile doctest, RapidCheck and nlohmann-json takes longer than to run the tests; what they
-  # test is as optimized as ever.
+  # test is as optimized and as watched as ever.
   set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 7)
-  target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(test_${name} PRIVATE
+    $<$<CONFIG:Release>:-O1> $<$<CONFIG:Sanitize>:-O0 -fno-sanitize=undefined>)
   add_test(NAME ${name} COMMAND test_${name})
   if(ARG_THREADED)
     set_tests_properties(${name} PROPERTIES LABELS threads)

@@ -206,10 +206,12 @@ TEST_CASE("letters are read once each, those of a thread in its order") {
   std::array<int, kThreads> next{};
   int read = 0, wrong = 0;
   while (read < kThreads * kLetters) {
+    const int before = read;
     box.read([&](const std::pair<int, int>& letter) {
       wrong += next[std::size_t(letter.first)]++ != letter.second;
       ++read;
     });
+    if (read == before) std::this_thread::yield();  // there may be fewer processors than threads
   }
   CHECK(wrong == 0);
   box.put({0, 0});  // what nobody reads is freed with the box
