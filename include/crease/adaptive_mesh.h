@@ -40,7 +40,8 @@ struct ViewParameters {
   double max_seconds = std::numeric_limits<double>::infinity();
   double (*clock)(void* context) = nullptr;
   void* clock_context = nullptr;
-  // A merge needs an error this much smaller than a split, so that no vertex flickers. >= 1.
+  // A merge needs an error this much smaller than a split, so that no vertex flickers. Less than 1
+  // is 1.
   double hysteresis = 1.25;
   bool coarse_outside = true;  // what is outside the view frustum need not be right
   // Nor what faces away: for closed surfaces, since others show their back.

@@ -99,13 +99,14 @@ void Geomorphs::advance(double seconds) {
 
 void Geomorphs::before_split(const ActiveCut& cut, std::uint32_t slot) {
   if (!is_on() && moving_.empty()) return;
+  // One that began to leave in this very frame is at rest when it stays.
+  if (const SplitId by = leaving(slot); by != kNoSplit) stay(cut, by);
   const std::uint32_t i = moving_of(slot);
   if (i == kNone) {
     above_ = going(cut, slot);
     return;
   }
-  if (moving_[i].leaving != kNoSplit) stay(cut, moving_[i].leaving);
-  above_ = moving_[moving_of(slot)];
+  above_ = moving_[i];
   above_.from = position(cut, slot);
   drop(slot);
 }

@@ -43,7 +43,8 @@ UpdateReport Refiner::update(ActiveCut& cut, const ViewParameters& view) {
   stop_at_ = view.clock == nullptr ? std::numeric_limits<double>::infinity()
                                    : view.clock(view.clock_context) + view.max_seconds;
   moves_until_clock_ = 0;
-  merge_arrived(cut);
+  // What was needed by one that has gone, or was about to go, may be merged now.
+  if (merge_arrived(cut) && view_.consistent) counts_all_merges_ = false;
   if (cut.triangle_count() > view_.max_triangles) {
     keep_to_budget(cut, kMostVisible, 0);
   }

@@ -94,7 +94,7 @@ class Refiner {
   const SplitBounds& bounds_of(const ActiveCut& cut, SplitId s) const {
     return bounds_.empty() ? cut.hierarchy().vertices.bounds[index_of(s)] : bounds_[index_of(s)];
   }
-  void look_from(const ActiveCut& cut, const ViewParameters& view);
+  void look_from(const ActiveCut& cut, ViewParameters view);
   void watch_all(const ActiveCut& cut);
   void watch_vertex(const ActiveCut& cut, std::uint32_t slot);
   bool watch_child(const ActiveCut& cut, std::uint32_t slot);
@@ -127,7 +127,7 @@ class Refiner {
     return geomorphs_ != nullptr && (geomorphs_->is_on() || geomorphs_->moving_count() > 0);
   }
   void turn_back(const ActiveCut& cut);
-  void merge_arrived(ActiveCut& cut);
+  bool merge_arrived(ActiveCut& cut);  // true if some had
   std::size_t leaving_triangles() const {
     return geomorphs_ == nullptr ? 0 : geomorphs_->leaving_triangles();
   }

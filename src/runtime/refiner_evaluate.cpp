@@ -14,7 +14,8 @@ constexpr double kOfBefore = 0.75;       // what a frame before this one tells o
 
 }  // namespace
 
-void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
+void Refiner::look_from(const ActiveCut& cut, ViewParameters view) {
+  view.hysteresis = std::max(1.0, view.hysteresis);  // or what is merged for room is split again
   ViewParameters moved = view_;
   moved.camera.position = view.camera.position;
   moved.camera.target = view.camera.target;
@@ -41,7 +42,7 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
     wrong_.look_at_all();
     merged_.look_at_all();
   }
-  merge_below_ = static_cast<float>(1 / std::max(view.hysteresis, 1.0));
+  merge_below_ = static_cast<float>(1 / view.hysteresis);
   is_ordered_ =
       view.clock != nullptr || view.max_triangles != std::numeric_limits<std::size_t>::max();
   counts_all_merges_ = false;

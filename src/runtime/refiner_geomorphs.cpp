@@ -47,16 +47,19 @@ void Refiner::turn_back(const ActiveCut& cut) {
   }
 }
 
-void Refiner::merge_arrived(ActiveCut& cut) {
-  if (geomorphs_ == nullptr) return;
+bool Refiner::merge_arrived(ActiveCut& cut) {
+  if (geomorphs_ == nullptr) return false;
+  bool has_any = false;
   for (const Geomorphs::Leaving& l : geomorphs_->all_leaving()) {
     if (!l.has_arrived || out_of_time()) continue;
+    has_any = true;
     if (is_needed(cut, l.split)) {
       geomorphs_->stay(cut, l.split);
     } else if (cut.can_merge(l.split)) {
       merge(cut, l.split, cut.children(l.split));
     }
   }
+  return has_any;
 }
 
 }  // namespace crease

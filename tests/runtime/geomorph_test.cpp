@@ -113,6 +113,36 @@ TEST_CASE("no move is seen when it is made, and in the end all is as without geo
   }
 }
 
+TEST_CASE(
+    "a budget that changes while vertices are on their way is kept, and in the end all is told") {
+  const HierarchyCase c = simplified_case(smooth_sphere(40, 60));
+  for (const bool consistent : {false, true}) {
+    for (const double hysteresis : {0.0, 0.5, 1.0, 1.25}) {
+      CAPTURE(consistent);
+      CAPTURE(hysteresis);
+      AdaptiveMesh mesh(shared_hierarchy(c));
+      mesh.set_geomorph_seconds(0.2);
+      RendererCopy copy(mesh.draw_list());
+      std::mt19937_64 random(7);
+      Move move;
+      move.view.camera.position = {3, 3, 3};
+      move.view.camera.pixels = 0.1;
+      move.view.consistent = consistent;
+      move.view.hysteresis = hysteresis;
+      for (int frame = 0; frame < (kSanitized ? 100 : 400); ++frame) {
+        move.view.max_triangles = random() % c.mesh.triangle_count();
+        move_to(mesh, move, 0.016);
+        copy.fetch(mesh.draw_list(), mesh.changes());
+        const std::string different = copy.difference(mesh.draw_list());
+        REQUIRE_MESSAGE(different.empty(), different);
+      }
+      settle(mesh, move, copy);
+      CHECK(copy.difference(mesh.draw_list()).empty());
+      CHECK(mesh.triangle_count() <= std::max<std::size_t>(move.view.max_triangles, 8));
+    }
+  }
+}
+
 // The parts of an AdaptiveMesh, to look into.
 struct Parts {
   explicit Parts(const MeshHierarchy& h) : cut(h), geomorphs(h), refiner(&geomorphs) {
@@ -131,6 +161,36 @@ struct Parts {
   Refiner refiner;
   CutDrawing drawing;
 };
+
+TEST_CASE("a vertex that is split in the moment in which it began to leave starts where it stood") {
+  const HierarchyCase c = simplified_case(smooth_sphere(12, 16));
+  Parts parts(c.hierarchy);
+  ActiveCut& cut = parts.cut;
+  std::size_t checked = 0;
+  for (std::uint32_t slot = 0; slot < cut.vertices().size() && cut.vertices().size() < 200;) {
+    const ActiveVertex v = cut.vertices()[slot];
+    if (v.node == kNoNode || v.split == kNoSplit) {
+      ++slot;
+      continue;
+    }
+    const SplitId above =
+        c.hierarchy.vertices.is_root(v.node) ? kNoSplit : c.hierarchy.vertices.split_above(v.node);
+    if (above != kNoSplit && cut.can_merge(above) &&
+        parts.geomorphs.leave(cut, above, cut.children(above), true)) {
+      ++checked;
+    }
+    const Vec3f stood = draw_position(c.hierarchy.vertices.grid, v.position);
+    parts.geomorphs.before_split(cut, slot);
+    const std::uint32_t other = cut.split(slot);
+    parts.geomorphs.after_split(cut, v.split, slot, other);
+    for (const std::uint32_t child : {slot, other}) {
+      if (child != kNoSlot) CHECK(parts.geomorphs.position(cut, child) == stood);
+    }
+    CHECK(parts.geomorphs.leaving_triangles() == 0);
+    parts.geomorphs.advance(kSeconds);
+  }
+  CHECK(checked > 5);
+}
 
 // A vertex on its way, as it was when the view changed.
 struct Way {
@@ -200,7 +260,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a budget of triangles holds while it stays the same") {
-  const HierarchyCase c = simplified_case(smooth_sphere(24, 32));
+  const HierarchyCase c = simplified_case(smooth_sphere(40, 60));
   AdaptiveMesh mesh(shared_hierarchy(c));
   mesh.set_geomorph_seconds(kSeconds);
   std::mt19937_64 random(3);
