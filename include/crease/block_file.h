@@ -1,4 +1,4 @@
-// model.crease, versions 6 and 7: blocks from coarse to fine and a directory of them
+// model.crease, versions 6 to 8: blocks from coarse to fine and a directory of them
 // (docs/format.md).
 //
 //   Result<ByteSourcePtr> source = open_file_source("city.crease");

@@ -93,7 +93,9 @@ std::string broken_rule(const ModelFacts& facts) {
 }
 
 std::string broken_rule(const Material& material) {
-  return all_finite(material.base_color) ? "" : "a colour is not finite";
+  if (!all_finite(material.base_color)) return "a colour is not finite";
+  const float cutoff = material.alpha_cutoff;
+  return cutoff >= 0 && std::isfinite(cutoff) ? "" : "a cutoff of alpha is no number from 0 on";
 }
 
 std::string broken_rule(std::vector<std::string_view> names_of_images) {

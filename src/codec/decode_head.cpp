@@ -101,8 +101,10 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head, boo
   }
   if (has_images) {
     head.images.bytes = in.u64();
-    if (head.image_list.range.bytes == 0 || head.images.bytes == 0) {
-      return bad_head("version 7 without images");
+    const bool has_none = head.image_list.range.bytes == 0 && head.images.bytes == 0;
+    const bool may_have_none = head.version == format::kVersionWithSurfaces;
+    if (has_none ? !may_have_none : head.image_list.range.bytes == 0 || head.images.bytes == 0) {
+      return bad_head("a list of images without images, or none where there must be one");
     }
   }
   if (!place_last_sections(head)) return bad_head("images that end after the file");
@@ -171,7 +173,7 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
   head.file_bytes = in.u64();
   const std::uint64_t told = in.u64();
   if (in.truncated()) return cut();
-  const bool has_images = *version == format::kVersionWithImages;
+  const bool has_images = *version >= format::kVersionWithImages;
   const std::uint32_t least = format::kFixedHeadBytes + (has_images ? format::kImageHeadBytes : 0);
   if (head.head_bytes < least || head.head_bytes > format::kMaxHeadBytes ||
       head.head_bytes > head.file_bytes) {
@@ -190,7 +192,8 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
   return decode_head_fields(rest, std::move(head), has_images);
 }
 
-Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes) {
+Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes,
+                                               std::uint16_t version) {
   std::vector<Material> materials;
   if (bytes.empty()) return materials;
   const auto bad = [](const std::string& what) {
@@ -207,6 +210,12 @@ Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes)
     material.name = in.text();
     for (float& f : material.base_color) f = in.f32();
     material.base_color_texture = in.text();
+    if (version >= format::kVersionWithSurfaces) {
+      material.alpha_cutoff = in.f32();
+      const std::uint8_t flags = in.u8();
+      if (flags > format::kDoubleSided) return bad("a reserved flag");
+      material.double_sided = flags == format::kDoubleSided;
+    }
     if (std::string wrong = broken_rule(material); !wrong.empty()) return bad(wrong);
     materials.push_back(std::move(material));
   }

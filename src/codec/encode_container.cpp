@@ -8,6 +8,7 @@
 #include "codec/range_encoder.h"
 #include "codec/text_coder.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -22,13 +23,22 @@ void encode_reserved(ByteWriter& out, int count) {
   for (int i = 0; i < count; ++i) out.u8(0);
 }
 
+bool has_surfaces(const std::vector<Material>& materials) {
+  return std::ranges::any_of(
+      materials, [](const Material& m) { return m.alpha_cutoff > 0 || m.double_sided; });
+}
+
 std::vector<std::byte> encode_materials(const std::vector<Material>& materials) {
+  const bool surfaces = has_surfaces(materials);
   ByteWriter out;
   if (!materials.empty()) out.u32(static_cast<std::uint32_t>(materials.size()));
   for (const Material& material : materials) {
     out.text(material.name);
     out.f32s(material.base_color);
     out.text(material.base_color_texture);
+    if (!surfaces) continue;
+    out.f32(material.alpha_cutoff);
+    out.u8(material.double_sided ? format::kDoubleSided : 0);
   }
   return out.take();
 }
@@ -144,12 +154,16 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   writer.images_ = content.images;
   writer.image_list_ = encode_image_list(content.images);
   std::vector<Section> sections = {&materials, &writer.parts_, &content.tables};
-  if (!content.images.empty()) sections.push_back(&writer.image_list_);
+  writer.version_ = has_surfaces(content.materials) ? format::kVersionWithSurfaces
+                    : content.images.empty()        ? format::kContainerVersion
+                                                    : format::kVersionWithImages;
+  const bool tells_images = writer.version_ >= format::kVersionWithImages;
+  if (tells_images) sections.push_back(&writer.image_list_);
   for (const Section section : sections) {
     head.u64(section->size());
     head.u64(section->empty() ? 0 : checksum(*section));
   }
-  if (!content.images.empty()) {
+  if (tells_images) {
     std::uint64_t bytes = 0;
     for (const ImageFile& image : content.images) bytes += image.bytes->size();
     head.u64(bytes);
@@ -228,7 +242,7 @@ Status ContainerWriter::finish() {
   }
   ByteWriter out;
   for (std::uint8_t b : format::kMagic) out.u8(b);
-  out.u16(images_.empty() ? format::kContainerVersion : format::kVersionWithImages);
+  out.u16(version_);
   out.u16(0);  // flags
   out.u32(head_bytes_);
   out.u64(position_);

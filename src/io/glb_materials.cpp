@@ -55,7 +55,13 @@ nlohmann::ordered_json GlbMaterials::material_json(const Material& material) con
   const ImageFile* image = find_image(images_, material.base_color_texture);
   if (image != nullptr) model["baseColorTexture"] = {{"index", image - images_.data()}};
   entry["pbrMetallicRoughness"] = std::move(model);
-  if (color[3] < 1) entry["alphaMode"] = "BLEND";
+  if (material.alpha_cutoff > 0) {
+    entry["alphaMode"] = "MASK";
+    entry["alphaCutoff"] = material.alpha_cutoff;
+  } else if (color[3] < 1) {
+    entry["alphaMode"] = "BLEND";
+  }
+  if (material.double_sided) entry["doubleSided"] = true;
   if (image == nullptr && !material.base_color_texture.empty()) {
     entry["extras"] = {{"base_color_texture", material.base_color_texture}};
   }

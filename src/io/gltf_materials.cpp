@@ -78,9 +78,7 @@ void count_losses(const Json& json, const Json& entry, const Material& material,
   losses.add("normalTexture", has(entry, "normalTexture"));
   losses.add("occlusionTexture", has(entry, "occlusionTexture"));
   losses.add("emission", !is_black(at(entry, "emissiveFactor")));
-  losses.add("doubleSided", as_bool(at(entry, "doubleSided")));
   const std::string alpha = as_text(at(entry, "alphaMode"));
-  losses.add("alphaMode MASK", alpha == "MASK");
   // That of the factor stays, and says by itself that it blends.
   losses.add("the alpha of their textures", alpha == "BLEND" && material.base_color[3] >= 1 &&
                                                 !base_color_texture(entry).is_null());
@@ -88,6 +86,14 @@ void count_losses(const Json& json, const Json& entry, const Material& material,
     losses.add(in_quotes(it.key()), true);
   }
   count_texture_losses(json, base_color_texture(entry), losses);
+}
+
+// glTF compares the product of both alphas (3.9.4).
+float cutoff_of_texture(const Json& cutoff, float factor) {
+  constexpr float kAllHoles = 2;  // no alpha is as large
+  const auto least = static_cast<float>(std::max(as_number(cutoff, 0.5), 0.0));
+  if (least == 0) return 0;
+  return least < kAllHoles * factor ? least / factor : kAllHoles;
 }
 
 Material read_material(const Json& entry, std::size_t index, GltfImages& images) {
@@ -105,8 +111,13 @@ Material read_material(const Json& entry, std::size_t index, GltfImages& images)
   for (std::size_t k = 0; k < 4; ++k) {
     material.base_color[k] = static_cast<float>(as_number(at(color, k), 1));
   }
+  material.double_sided = as_bool(at(entry, "doubleSided"));
+  const std::string alpha_mode = as_text(at(entry, "alphaMode"));
+  if (alpha_mode == "MASK") {
+    material.alpha_cutoff = cutoff_of_texture(at(entry, "alphaCutoff"), material.base_color[3]);
+  }
   // 3.9.4: else alpha says nothing, or where there are holes.
-  if (as_text(at(entry, "alphaMode")) != "BLEND") material.base_color[3] = 1;
+  if (alpha_mode != "BLEND") material.base_color[3] = 1;
   material.base_color_texture = images.take(base_color_texture(entry));
   if (material.base_color_texture.empty()) {  // where write_glb() puts it
     material.base_color_texture = as_text(at(at(entry, "extras"), "base_color_texture"));

@@ -12,7 +12,7 @@ namespace crease {
 
 struct GltfMaterials {
   std::vector<Material> materials;  // as many as the glTF has
-  // One for each kind of thing that is not kept: "2 materials lose doubleSided".
+  // One for each kind of thing that is not kept: "2 materials lose emission".
   std::vector<std::string> notes;
 };
 

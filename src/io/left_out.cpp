@@ -29,6 +29,16 @@ std::string counted(const char* what, std::size_t count) {
   return std::string(what) + " (" + std::to_string(count) + ")";
 }
 
+// Where other formats say so, they say it in too many ways to be understood.
+void add_holes(const Mesh& mesh, std::vector<std::string>& words) {
+  const auto count = std::ranges::count_if(
+      mesh.materials, [](const Material& material) { return material.alpha_cutoff > 0; });
+  if (count > 0) {
+    words.push_back(
+        counted("holes of materials by their textures' alpha", static_cast<std::size_t>(count)));
+  }
+}
+
 bool has_alpha(const AttributeLayer& colors) {
   if (colors.dimension < 4) return false;
   for (std::size_t i = 3; i < colors.values.size(); i += colors.dimension) {
@@ -48,6 +58,7 @@ std::vector<std::string> left_out_of_obj(const Mesh& mesh) {
       words.push_back("alpha of " + in_words(layer));
     }
   }
+  add_holes(mesh, words);
   return words;
 }
 
@@ -57,7 +68,9 @@ std::vector<std::string> left_out_of_ply(const Mesh& mesh) {
         return !material.base_color_texture.empty();
       }));
   if (count == 0) return {};
-  return {"the images that textures name"};
+  std::vector<std::string> words = {"the images that textures name"};
+  add_holes(mesh, words);
+  return words;
 }
 
 std::vector<std::string> left_out_of_stl(const Mesh& mesh) {

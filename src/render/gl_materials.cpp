@@ -65,7 +65,7 @@ void GlMaterials::fill(std::span<const Material> materials, const Textures& text
     const TexturePlace place =
         m < textures.place_of_material.size() ? textures.place_of_material[m] : TexturePlace{};
     texels.push_back(colors[m]);
-    texels.push_back({float(place.array), float(place.layer), 0, 0});
+    texels.push_back({float(place.array), float(place.layer), materials[m].alpha_cutoff, 0});
   }
   texels_ = upload(std::span<const std::array<float, 4>>(texels), GL_RGBA32F);
 }

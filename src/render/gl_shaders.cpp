@@ -57,6 +57,7 @@ uniform samplerBuffer material_colors;  // two texels a material, see gl_materia
 #endif
 #if TEXTURES
 flat out ivec2 v_texture;  // array and layer
+flat out float v_cutoff;   // holes are where its alpha is below
 centroid out vec2 v_texcoord;
 uniform samplerBuffer corner_texcoords;
 #endif
@@ -96,7 +97,9 @@ void main() {
   v_material = texelFetch(material_colors, material).rgb;
 #endif
 #if TEXTURES
-  v_texture = ivec2(texelFetch(material_colors, material + 1).xy);
+  vec3 texture_of_material = texelFetch(material_colors, material + 1).xyz;
+  v_texture = ivec2(texture_of_material.xy);
+  v_cutoff = texture_of_material.z;
   vec2 texcoord = texelFetch(corner_texcoords, gl_VertexID).xy;
   v_texcoord = vec2(texcoord.x, 1 - texcoord.y);  // an image's first row is its top
 #endif
@@ -149,17 +152,18 @@ uniform samplerBuffer material_colors;
 
 #if TEXTURES
 flat in ivec2 v_texture;
+flat in float v_cutoff;
 centroid in vec2 v_texcoord;
 uniform sampler2DArray textures_0, textures_1, textures_2, textures_3;
 
-vec3 texture_color() {
+vec4 texture_color() {
   vec3 at = vec3(v_texcoord, v_texture.y);
   vec2 dx = dFdx(v_texcoord), dy = dFdy(v_texcoord);  // neighbours may go another way
-  if (v_texture.x == 0) return textureGrad(textures_0, at, dx, dy).rgb;
-  if (v_texture.x == 1) return textureGrad(textures_1, at, dx, dy).rgb;
-  if (v_texture.x == 2) return textureGrad(textures_2, at, dx, dy).rgb;
-  if (v_texture.x == 3) return textureGrad(textures_3, at, dx, dy).rgb;
-  return vec3(1);
+  if (v_texture.x == 0) return textureGrad(textures_0, at, dx, dy);
+  if (v_texture.x == 1) return textureGrad(textures_1, at, dx, dy);
+  if (v_texture.x == 2) return textureGrad(textures_2, at, dx, dy);
+  if (v_texture.x == 3) return textureGrad(textures_3, at, dx, dy);
+  return vec4(1);
 }
 #endif
 
@@ -193,7 +197,9 @@ vec3 surface_color() {
   c = texelFetch(material_colors, 2 * material).rgb;
 #endif
 #if TEXTURES
-  c *= texture_color();
+  vec4 texture = texture_color();
+  if (texture.a < v_cutoff) discard;
+  c *= texture.rgb;
 #endif
 #if ALBEDO == CORNERS
   c *= mix(v_color / 12.92, pow((v_color + 0.055) / 1.055, vec3(2.4)),

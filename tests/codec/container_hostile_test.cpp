@@ -284,7 +284,7 @@ TEST_CASE("what a file says of its images is looked at behind the checksums") {
       {144, 0xffffffff, "head: names or tables that end after the file"},
       {144, 0, "head"},
       {160, 0xffffffff, "head: images that end after the file"},
-      {160, 0, "head: version 7 without images"},
+      {160, 0, "head: a list of images without images"},
       {160, 40, "behind"},
       {list, 0xffffffff, "list of images: their number is not as many as there are"},
       {list, 0, "list of images: their number is not as many as there are"},

@@ -210,7 +210,7 @@ TEST_CASE("older layouts and newer versions are told apart") {
     CHECK(refused.error == Error::NotSupported);
     CHECK(refused.message.ends_with("build the file again"));
   }
-  bytes[8] = std::byte(8);
+  bytes[8] = std::byte(9);
   CHECK(BlockFile::open(memory_source(bytes)).failure().error == Error::VersionTooNew);
 }
 

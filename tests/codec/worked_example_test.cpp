@@ -1,4 +1,4 @@
-// The example of docs/format.md, byte by byte, and the golden files of versions 6 and 7.
+// The example of docs/format.md, byte by byte, and the golden files of versions 6 to 8.
 #include "codec/atomic_file.h"
 #include "codec/container_files.h"
 
@@ -113,8 +113,13 @@ WrittenFile golden_file(const char* name, const WrittenFile& written) {
 TEST_CASE("the golden files are read, and written to the byte") {
   WrittenFile without = random_file(1, 6, 24), with = without;
   with.content.images = some_images();
+  WrittenFile surfaces = without;
+  surfaces.content.images = {some_image("brick.png", 40)};
+  surfaces.content.materials[0].alpha_cutoff = 0.25f;
+  surfaces.content.materials[1].double_sided = true;
   for (const auto& [golden, written] :
-       {std::pair("version_6.crease", &without), std::pair("version_7.crease", &with)}) {
+       {std::pair("version_6.crease", &without), std::pair("version_7.crease", &with),
+        std::pair("version_8.crease", &surfaces)}) {
     const std::string name = golden;
     CAPTURE(name);
     const WrittenFile file = golden_file(golden, *written);
@@ -127,6 +132,7 @@ TEST_CASE("the golden files are read, and written to the byte") {
     REQUIRE(facts.bands.size() == 2);
     CHECK(facts.bands[1].error.degrees == 40);
     CHECK((file.content.parts == std::vector<std::string>{"house", "", "shed"}));
+    CHECK(file.content.materials == written->content.materials);
     REQUIRE(file.content.images.size() == written->content.images.size());
     for (std::size_t i = 0; i < file.content.images.size(); ++i) {
       CHECK(*file.content.images[i].bytes == *written->content.images[i].bytes);

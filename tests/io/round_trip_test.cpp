@@ -292,6 +292,19 @@ TEST_CASE("an STL far from the origin is written less a round one, and the repor
   }
 }
 
+TEST_CASE("a GLB keeps where materials have holes and two sides, others say that they do not") {
+  Mesh mesh = coloured_square();
+  mesh.materials[0].base_color_texture = "bricks.png";
+  mesh.materials[0].alpha_cutoff = 0.25f;
+  mesh.materials[1].double_sided = true;
+  CHECK(back(mesh, ".glb").mesh.materials == mesh.materials);
+  const std::string holes = "holes of materials by their textures' alpha (1)";
+  for (const char* ending : {".obj", ".ply"}) {
+    const std::vector<std::string> lost = export_report(mesh, ending).left_out;
+    CHECK(std::ranges::count(lost, holes) == 1);
+  }
+}
+
 TEST_CASE("a file appears with its material library, or not at all") {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / "crease_export_test";

@@ -109,13 +109,14 @@ Head read_head(const Bytes& file) {
   Reader start(file);
   for (const std::uint8_t byte : kMagic) demand(start.u8() == byte, "not a file of this kind");
   const std::uint16_t version = start.u16();
-  demand(version == 6 || version == 7, "neither version 6 nor 7");
+  demand(version >= 6 && version <= 8, "neither version 6, 7 nor 8");
   start.u16();  // flags; below
   Head head;
+  head.version = version;
   head.bytes = start.u32();
   head.file_bytes = start.u64();
   const std::uint64_t told = start.u64();
-  demand(head.bytes >= (version == 7 ? 168 : 144) && head.bytes <= kMaxHead,
+  demand(head.bytes >= (version >= 7 ? 168 : 144) && head.bytes <= kMaxHead,
          "the size of the head");
   const Bytes whole = part_of(file, 0, head.bytes);
   Bytes covered = whole;
@@ -143,10 +144,11 @@ Head read_head(const Bytes& file) {
   head.materials = read_part(in);
   head.part_names = read_part(in);
   head.tables = read_part(in);
-  if (version == 7) {
+  if (version >= 7) {
     head.image_list = read_part(in);
     head.image_bytes = in.u64();
-    demand(head.image_list.bytes > 0 && head.image_bytes > 0, "version 7 without images");
+    demand((head.image_list.bytes > 0) == (head.image_bytes > 0), "a list without images");
+    demand(version == 8 || head.image_bytes > 0, "version 7 without images");
   }
   for (int l = 0; l < layers; ++l) head.layers.push_back(read_layer(in));
   if (bands > 0) head.bands = read_bands(in.bytes(in.u32()), bands, head.triangles);
@@ -178,7 +180,7 @@ Bytes read_part(const Bytes& file, std::uint64_t& offset, const Part& part) {
 }
 
 // "Materials, part names, model tables".
-std::vector<Material> read_materials(const Bytes& bytes) {
+std::vector<Material> read_materials(const Bytes& bytes, int version) {
   std::vector<Material> materials;
   if (bytes.empty()) return materials;
   Reader in(bytes);
@@ -192,6 +194,13 @@ std::vector<Material> read_materials(const Bytes& bytes) {
       demand(std::isfinite(c), "a colour that is not finite");
     }
     material.texture = in.text();
+    if (version == 8) {
+      material.cutoff = in.f32();
+      demand(std::isfinite(material.cutoff) && material.cutoff >= 0, "a cutoff");
+      const int flags = in.u8();
+      demand(flags <= 1, "a reserved flag");
+      material.double_sided = flags == 1;
+    }
     materials.push_back(material);
   }
   in.end();
@@ -310,7 +319,7 @@ Container read_container(const Bytes& file) {
   container.head = read_head(file);
   const Head& head = container.head;
   std::uint64_t offset = head.bytes;
-  container.materials = read_materials(read_part(file, offset, head.materials));
+  container.materials = read_materials(read_part(file, offset, head.materials), head.version);
   container.tables = read_part(file, offset, head.tables);
   std::uint64_t last = end_of_blocks(head);
   demand(offset == (head.pages.empty() ? last : head.pages[0].offset),

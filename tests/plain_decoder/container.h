@@ -36,6 +36,7 @@ struct PageReference {
 };
 
 struct Head {
+  int version = 0;
   std::uint32_t bytes = 0;  // of the head
   std::uint64_t file_bytes = 0;
   std::uint32_t blocks = 0;
@@ -55,6 +56,8 @@ struct Material {
   std::string name;
   std::array<float, 4> colour{};
   std::string texture;
+  float cutoff = 0;
+  bool double_sided = false;
 };
 
 struct Lattice {

@@ -92,6 +92,8 @@ void check_facts(const BlockFile& file, const CodecModel& codec_model,
     CHECK(container.materials[i].name == materials[i].name);
     CHECK(container.materials[i].colour == materials[i].base_color);
     CHECK(container.materials[i].texture == materials[i].base_color_texture);
+    CHECK(container.materials[i].cutoff == materials[i].alpha_cutoff);
+    CHECK(container.materials[i].double_sided == materials[i].double_sided);
   }
   CHECK(container.part_names == *file.read_parts());
   const std::vector<ImageFile> images = *file.read_images();
@@ -303,14 +305,14 @@ TEST_CASE("the plain decoder finds what the codec does, at vertices of many tria
 TEST_CASE("the plain decoder reads the golden files") {
   CHECK(check_file(file_bytes(golden("model_6.crease"))) == 2);
   // Its payloads are the letters "base" and "split".
-  for (const char* name : {"version_6.crease", "version_7.crease"}) {
+  for (const char* name : {"version_6.crease", "version_7.crease", "version_8.crease"}) {
     const plain::Bytes example = file_bytes(golden(name));
     const plain::Container container = plain::read_container(example);
     REQUIRE(!container.entries.empty());
     for (const plain::Entry& entry : container.entries) {
       CHECK(plain::read_payload(example, entry).size() == entry.bytes);
     }
-    CHECK(container.images.size() == (name[8] == '7' ? 2 : 0));
+    CHECK(container.images.size() == (name[8] == '7' ? 2 : name[8] == '8' ? 1 : 0));
   }
 }
 
