@@ -40,8 +40,9 @@ struct ImportOptions {
   // Normals at one vertex that differ by no more than this, in degrees, become one (exporter noise
   // is not a crease). 0 joins bit-equal values only.
   double same_normal_deg = 0;
-  // Where it is told, vertices at open borders that are no farther apart than a step of its grid
-  // become one before normals are made.
+  // Vertices at open borders that are no farther apart than a step of this grid become one before
+  // normals are made. None: than 2^-22 of the longest side, so that seams and poles close which a
+  // sine has not closed.
   std::optional<Precision> precision{};
   ProgressCallback progress{};
 };

@@ -248,7 +248,7 @@ std::string shortest(double x) {
 
 // Where many vertices are at borders that nearly meet, a note says which grid would join them.
 void weld_rounded(Mesh& mesh, const std::optional<Precision>& precision, ImportReport& report) {
-  const double asked = precision ? make_grid(mesh, *precision).step : 0;
+  const double asked = precision ? make_grid(mesh, *precision).step : rounding_of(mesh);
   const NearBorders near = find_near_borders(mesh, asked);
   report.welded_vertices += weld_borders(mesh, near);
   if (4 * (near.border_count - near.count) < mesh.vertex_count()) return;
@@ -334,6 +334,7 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
                            "alone, and stay coarse; scale it");
   }
   weld_rounded(mesh, options.precision, report);
+  drop_degenerate(mesh, raw, report);
   drop_unused_parts(mesh);
   report.duplicate_triangles = count_duplicate_triangles(mesh);
   report.zero_area_triangles = count_zero_area_triangles(mesh);

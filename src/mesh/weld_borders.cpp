@@ -3,6 +3,7 @@
 #include "mesh/clean.h"
 #include "mesh/mix.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -29,11 +30,13 @@ std::vector<bool> vertices_at_borders(const Mesh& mesh) {
 }
 
 void leave_short_edges(const Mesh& mesh, double distance, std::vector<bool>& may_join) {
+  const double rounding = rounding_of(mesh);
   for (const Triangle& t : mesh.triangles) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t a = index_of(t[c]), b = index_of(t[(c + 1) % 3]);
       if (!may_join[a] && !may_join[b]) continue;
-      if (length(mesh.positions[a] - mesh.positions[b]) > 2 * distance) continue;
+      const double side = length(mesh.positions[a] - mesh.positions[b]);
+      if (side <= rounding || side > 2 * distance) continue;
       may_join[a] = may_join[b] = false;
     }
   }
@@ -87,6 +90,10 @@ class NearPoints {
 
 }  // namespace
 
+double rounding_of(const Mesh& mesh) {
+  return make_grid(mesh, {.length = 0, .bits = 22}).step;
+}
+
 NearBorders find_near_borders(const Mesh& mesh, double distance) {
   NearBorders near;
   std::vector<bool> may_join = vertices_at_borders(mesh);
@@ -105,8 +112,14 @@ NearBorders find_near_borders(const Mesh& mesh, double distance) {
 
 std::size_t weld_borders(Mesh& mesh, const NearBorders& near) {
   if (near.count == 0) return 0;  // and `first` may be empty
+  const auto becomes = [&](VertexId v) { return near.first[index_of(v)]; };
+  const bool keeps_some = std::ranges::any_of(mesh.triangles, [&](const Triangle& t) {
+    const VertexId a = becomes(t[0]), b = becomes(t[1]), c = becomes(t[2]);
+    return a != b && b != c && c != a;
+  });
+  if (!keeps_some) return 0;
   for (Triangle& t : mesh.triangles) {
-    for (VertexId& v : t) v = near.first[index_of(v)];
+    for (VertexId& v : t) v = becomes(v);
   }
   return drop_isolated_vertices(mesh);
 }

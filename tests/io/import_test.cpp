@@ -113,7 +113,7 @@ TEST_CASE(
     for (const std::uint32_t v : t) {
       const Vec3d& p = cylinder.positions[v];
       char line[100];
-      const double off = 1e-7 * (count++ % 5);
+      const double off = 1e-6 * (count++ % 5);
       std::snprintf(line, sizeof line, "v %.9f %.9f %.9f\n", p.x + off, p.y - off, p.z + off);
       obj += line;
     }

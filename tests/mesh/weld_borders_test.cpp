@@ -1,10 +1,13 @@
 #include "mesh/weld_borders.h"
 
+#include "mesh/clean.h"
 #include "support/mesh_builder.h"
 #include "support/mesh_zoo.h"
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <numbers>
 #include <random>
 
 namespace crease {
@@ -59,7 +62,7 @@ TEST_CASE("what is closed stays, however near it is") {
 
 TEST_CASE("no triangle loses a corner") {
   Mesh mesh;
-  for (int i = 0; i < 6; ++i) mesh.positions.push_back({i * 1e-7, (i % 2) * 1.0, 0});
+  for (int i = 0; i < 6; ++i) mesh.positions.push_back({i * 1e-4, (i % 2) * 1.0, 0});
   mesh.positions.push_back({5, 5, 0});
   const auto v = [](std::uint32_t i) { return VertexId{i}; };
   mesh.triangles = {{v(0), v(1), v(2)}, {v(2), v(1), v(6)}, {v(3), v(4), v(6)}};
@@ -69,6 +72,49 @@ TEST_CASE("no triangle loses a corner") {
     CHECK(t[1] != t[2]);
     CHECK(t[2] != t[0]);
   }
+}
+
+// A sphere as sines and cosines give it, with a column of vertices for each end of u and a row of
+// them at each pole: 2 * pi and pi are no zeros of a sine in doubles, nor in floats.
+Mesh sphere_of_sines(std::uint32_t around, std::uint32_t down, bool floats) {
+  Mesh mesh;
+  const auto rounded = [&](double x) { return floats ? double(float(x)) : x; };
+  for (std::uint32_t j = 0; j <= down; ++j) {
+    for (std::uint32_t i = 0; i <= around; ++i) {
+      const double u = rounded(2 * std::numbers::pi * i / around);
+      const double v = rounded(std::numbers::pi * j / down);
+      mesh.positions.push_back({rounded(std::cos(u) * std::sin(v)), rounded(std::cos(v)),
+                                rounded(std::sin(u) * std::sin(v))});
+    }
+  }
+  for (std::uint32_t j = 0; j < down; ++j) {
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const std::uint32_t a = j * (around + 1) + i, below = a + around + 1;
+      mesh.triangles.push_back({VertexId{a}, VertexId{below}, VertexId{below + 1}});
+      mesh.triangles.push_back({VertexId{a}, VertexId{below + 1}, VertexId{a + 1}});
+    }
+  }
+  return mesh;
+}
+
+TEST_CASE("the seam and the poles of a sphere close where sines have not") {
+  for (const bool floats : {false, true}) {
+    CAPTURE(floats);
+    Mesh mesh = sphere_of_sines(32, 16, floats);
+    weld_borders(mesh, find_near_borders(mesh, rounding_of(mesh)));
+    keep_triangles(mesh, proper_triangles(mesh));
+    CHECK(mesh.vertex_count() == 32 * 15 + 2);
+    CHECK(mesh.triangle_count() == 32 * 15 * 2);
+    CHECK(find_near_borders(mesh, 0).border_count == 0);
+  }
+}
+
+TEST_CASE("what is all rounding stays as it is") {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1e-12, 0, 0}, {1, 0, 0}};
+  mesh.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}}};
+  CHECK(weld_borders(mesh, find_near_borders(mesh, rounding_of(mesh))) == 0);
+  CHECK(mesh.vertex_count() == 3);
 }
 
 }  // namespace
