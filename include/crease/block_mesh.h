@@ -16,8 +16,8 @@
 // blocks are resident:
 //
 //   mesh->update({.view = {.camera = camera}, .by_vertex = true});
-//   for (const ShownRange& range : mesh->shown()) ...                 // blocks that are shown
-//   whole for (const ShownCut& cut : mesh->shown_cuts()) draw(cut.list);    // and those by vertex
+//   for (const ShownRange& range : mesh->shown()) ...                 // blocks shown whole
+//   for (const ShownCut& cut : mesh->shown_cuts()) draw(cut.list);    // and those by vertex
 //   for (BlockId id : mesh->missing_hierarchies())                    // whenever there is time
 //     if (auto job = mesh->hierarchy_job(id)) mesh->insert(job->run());  // on any thread
 //

@@ -43,8 +43,8 @@ struct Built {
   std::vector<std::byte> file_bytes;
 };
 
-// `mesh` must hold check_mesh() and have normals, and the bits be in their ranges. Fails when
-// check_precision() does and when interrupted.
+// `mesh` must hold check_mesh(), and the bits be in their ranges. Fails with Invalid where it has
+// no normals, when check_precision() does and when interrupted.
 Result<Built> build_model(Mesh mesh, const BuildOptions& options);
 
 }  // namespace crease

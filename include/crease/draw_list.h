@@ -2,8 +2,9 @@
 // one normal each, NSN triangles with three. No renderer is named here.
 //
 //   DrawList list = progressive_mesh.draw_list();
-//   upload(list.positions); draw_indexed(list.sn.indices); draw_flat(list.fn.indices,
-//   list.fn.normals);
+//   upload(list.positions);
+//   draw_indexed(list.sn.indices);
+//   draw_flat(list.fn.indices, list.fn.normals);
 #pragma once
 
 #include "crease/mesh.h"

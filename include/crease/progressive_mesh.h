@@ -1,9 +1,10 @@
 // The linear progressive mesh of DB03: arrays partitioned by shading kind, ordered by the
 // contraction sequence, so that a level is a prefix of every section.
 //
-//   ProgressiveMesh pm(arrays);                   // arrays from build_progressive_arrays() or a
-//   file pm.set_triangle_count(50'000);                // O(change), forwards and backwards for
-//   (Range r : pm.changes().positions) upload(r); draw(pm.draw_list());
+//   ProgressiveMesh pm(arrays);      // from build_progressive_arrays() or a file
+//   pm.set_triangle_count(50'000);   // O(change), forwards and backwards
+//   for (Range r : pm.changes().positions) upload(r);
+//   draw(pm.draw_list());
 #pragma once
 
 #include "crease/contraction.h"

@@ -19,6 +19,9 @@ bool goes_on(const BuildOptions& options, const char* stage, double done) {
 
 Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
   const Failure interrupted = fail(Error::Interrupted, "interrupted");
+  if (mesh.normals() == nullptr) {
+    return fail(Error::Invalid, "the mesh has no normal layer, which simplification needs");
+  }
   const Status precise = check_precision(mesh, options.precision);
   if (!precise.ok()) return precise.failure();
   const Grid grid = make_grid(mesh, options.precision);

@@ -79,5 +79,13 @@ TEST_CASE("a built model is its file, and a stopped build says so") {
   }
 }
 
+TEST_CASE("a mesh without normals is refused") {
+  Mesh mesh = smooth_sphere(8, 12);
+  mesh.layers.clear();
+  const Result<Built> built = build_model(std::move(mesh), {});
+  REQUIRE_FALSE(built.ok());
+  CHECK(built.failure().error == Error::Invalid);
+}
+
 }  // namespace
 }  // namespace crease
