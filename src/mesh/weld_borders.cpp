@@ -113,10 +113,11 @@ NearBorders find_near_borders(const Mesh& mesh, double distance) {
 std::size_t weld_borders(Mesh& mesh, const NearBorders& near) {
   if (near.count == 0) return 0;  // and `first` may be empty
   const auto becomes = [&](VertexId v) { return near.first[index_of(v)]; };
-  const bool keeps_some = std::ranges::any_of(mesh.triangles, [&](const Triangle& t) {
-    const VertexId a = becomes(t[0]), b = becomes(t[1]), c = becomes(t[2]);
-    return a != b && b != c && c != a;
-  });
+  const bool keeps_some =
+      std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+        const VertexId a = becomes(t[0]), b = becomes(t[1]), c = becomes(t[2]);
+        return a != b && b != c && c != a;
+      });
   if (!keeps_some) return 0;
   for (Triangle& t : mesh.triangles) {
     for (VertexId& v : t) v = becomes(v);
