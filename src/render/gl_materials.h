@@ -24,7 +24,7 @@ class GlMaterials {
   void fill(std::span<const Material> materials, const Textures& textures = {});
   bool is_filled() const { return is_filled_; }
 
-  // Two texels a material: its base colour; array and layer of its texture, where it has holes.
+  // Two texels a material: its base colour; array and layer of its texture, and its cutoff.
   const GlArray& texels() const { return texels_; }
   bool has_textures() const { return texture_bytes_ > 0; }
   // The base colours are ours, by names, for what has no colours of its own.

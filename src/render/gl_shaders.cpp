@@ -197,9 +197,9 @@ vec3 surface_color() {
   c = texelFetch(material_colors, 2 * material).rgb;
 #endif
 #if TEXTURES
-  vec4 texture = texture_color();
-  if (texture.a < v_cutoff) discard;
-  c *= texture.rgb;
+  vec4 of_texture = texture_color();
+  if (of_texture.a < v_cutoff) discard;
+  c *= of_texture.rgb;
 #endif
 #if ALBEDO == CORNERS
   c *= mix(v_color / 12.92, pow((v_color + 0.055) / 1.055, vec3(2.4)),

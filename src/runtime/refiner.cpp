@@ -244,8 +244,7 @@ bool Refiner::merge_for_room(ActiveCut& cut, const Wish& wanted, std::size_t roo
   };
   while (!least_visible_.empty() && is_full()) {
     const Wish wish = least_visible_.front();
-    const bool is_least =
-        static_cast<double>(wish.excess) * view_.hysteresis < static_cast<double>(wanted.excess);
+    const bool is_least = wish.excess < wanted.excess * merge_below_;
     if (!is_least || out_of_time()) return false;
     std::pop_heap(least_visible_.begin(), least_visible_.end(),
                   [](const Wish& a, const Wish& b) { return a.excess > b.excess; });

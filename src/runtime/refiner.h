@@ -94,7 +94,7 @@ class Refiner {
   const SplitBounds& bounds_of(const ActiveCut& cut, SplitId s) const {
     return bounds_.empty() ? cut.hierarchy().vertices.bounds[index_of(s)] : bounds_[index_of(s)];
   }
-  void look_from(const ActiveCut& cut, ViewParameters view);
+  void look_from(const ActiveCut& cut, const ViewParameters& view);
   void watch_all(const ActiveCut& cut);
   void watch_vertex(const ActiveCut& cut, std::uint32_t slot);
   bool watch_child(const ActiveCut& cut, std::uint32_t slot);

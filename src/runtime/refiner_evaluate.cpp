@@ -14,8 +14,7 @@ constexpr double kOfBefore = 0.75;       // what a frame before this one tells o
 
 }  // namespace
 
-void Refiner::look_from(const ActiveCut& cut, ViewParameters view) {
-  view.hysteresis = std::max(1.0, view.hysteresis);  // or what is merged for room is split again
+void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
   ViewParameters moved = view_;
   moved.camera.position = view.camera.position;
   moved.camera.target = view.camera.target;
@@ -42,7 +41,7 @@ void Refiner::look_from(const ActiveCut& cut, ViewParameters view) {
     wrong_.look_at_all();
     merged_.look_at_all();
   }
-  merge_below_ = static_cast<float>(1 / view.hysteresis);
+  merge_below_ = static_cast<float>(1 / std::max(1.0, view.hysteresis));
   is_ordered_ =
       view.clock != nullptr || view.max_triangles != std::numeric_limits<std::size_t>::max();
   counts_all_merges_ = false;

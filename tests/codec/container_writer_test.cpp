@@ -1,10 +1,13 @@
+#include "base/bytes.h"
 #include "codec/atomic_file.h"
 #include "codec/container.h"
 #include "codec/container_files.h"
+#include "codec/decode_container.h"
 #include "codec/encode_page.h"
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -137,6 +140,10 @@ TEST_CASE("a writer refuses what a reader would") {
         "layer 3: bits out of range");
   CHECK(with([](WrittenFile& f) { f.content.materials[0].base_color[2] = kNan; }) ==
         "materials: a colour is not finite");
+  for (const float cutoff : {float(kNan), -1.0f}) {
+    CHECK(with([&](WrittenFile& f) { f.content.materials[0].alpha_cutoff = cutoff; }) ==
+          "materials: a cutoff of alpha is no number from 0 on");
+  }
   CHECK(with([](WrittenFile& f) {
           f.content.facts.layers[0].name.resize(70'000);
         }).starts_with("layers, bands and pages take "));
@@ -199,6 +206,25 @@ TEST_CASE("a sphere that is rounded up has all of what it was within it") {
     REQUIRE(rounded->radius <= 1.02 * facts.radius);
     REQUIRE(same_facts(*rounded_up(*rounded), *rounded));
   }
+}
+
+TEST_CASE("what a material says beyond its colour is looked at when it is read") {
+  const auto read = [](float cutoff, std::uint8_t flags) {
+    ByteWriter out;
+    out.u32(1);
+    out.text("leaf");
+    out.f32s(std::array<float, 4>{1, 1, 1, 1});
+    out.text("");
+    out.f32(cutoff);
+    out.u8(flags);
+    return decode_materials(out.take(), format::kVersionWithSurfaces);
+  };
+  REQUIRE(read(0.5f, 1).ok());
+  CHECK(read(0.5f, 1)->front().alpha_cutoff == 0.5f);
+  CHECK(read(0.5f, 1)->front().double_sided);
+  CHECK_FALSE(read(0.5f, 0)->front().double_sided);
+  CHECK(read(0.5f, 2).failure().message == "materials: a reserved flag");
+  CHECK(read(-0.5f, 0).failure().message == "materials: a cutoff of alpha is no number from 0 on");
 }
 
 TEST_CASE("older layouts and newer versions are told apart") {

@@ -158,6 +158,20 @@ TEST_CASE(
   CHECK(wanted[1] > 2 * wanted[0]);
 }
 
+TEST_CASE("where the alpha of a texture is below the cutoff there is a hole") {
+  Mesh mesh = painted_sheet(4);
+  const RenderOptions options = from_above();
+  const auto middle = [&](float cutoff) {
+    mesh.materials[0].alpha_cutoff = cutoff;
+    return at(draw(MeshDrawArrays(mesh).draw_list(), options), options, 0.4, 0.4);
+  };
+  const Pixel opaque = middle(0);
+  CHECK(middle(1) == opaque);  // its alpha is 1
+  const Pixel hole = middle(2);
+  CHECK(hole != opaque);
+  CHECK(std::abs(int(hole[0]) - int(hole[2])) < 24);  // the background, which is nearly grey
+}
+
 TEST_CASE("textures repeat, and triangles of other materials have their own") {
   Mesh mesh = painted_sheet(12);
   for (float& x : mesh.layers[1].values) x = 3 * x - 1;  // the middle is the image once
