@@ -198,7 +198,7 @@ ProgressiveMesh Model::levels() const {
 
 std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles) {
   std::uint16_t band = 0;
-  while (band < facts.bands.size() && facts.bands[band].triangles_after >= triangles) ++band;
+  while (band < facts.bands.size() && facts.bands[band].triangles_after > triangles) ++band;
   return band;
 }
 

@@ -53,7 +53,9 @@ struct Detail {
   bool part_names = true;
 };
 
-// The coarsest band whose fine end has as many triangles: what is finer is not needed.
+// The coarsest band whose fine end has more triangles, or the finest: what is finer is not needed.
+// Where a band's coarse end has exactly as many, it may go on for a while without taking any away,
+// as where loose cards join, and the finest level of so many is within it.
 std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles);
 
 struct Model {
