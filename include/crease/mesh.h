@@ -56,11 +56,11 @@ struct AttributeLayer {
 };
 
 struct Material {
-  std::string name;
+  std::string name{};
   std::array<float, 4> base_color{1, 1, 1, 1};  // linear RGBA
   // The name of an image that multiplies the base colour, or empty. Where no image has it, it is
   // the source's reference to one that was not found, and the base colour stands alone.
-  std::string base_color_texture;
+  std::string base_color_texture{};
   // The surface has holes where the alpha of its texture is below this (MASK of glTF); 0: none.
   float alpha_cutoff = 0;
   bool double_sided = false;  // a hint for who culls what faces away; crease draws both sides
