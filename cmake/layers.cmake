@@ -32,7 +32,7 @@ set(CREASE_HEADERS_mesh      mesh.h shading.h)
 set(CREASE_HEADERS_hierarchy contraction.h progressive_arrays.h compact_ranges.h packed_indices.h
     parent_maps.h split_bounds.h stored_values.h mesh_hierarchy.h)
 set(CREASE_HEADERS_assemble  build_progressive_arrays.h build_hierarchy.h)
-set(CREASE_HEADERS_io        import.h export.h)
+set(CREASE_HEADERS_io        import.h import_arrays.h export.h)
 set(CREASE_HEADERS_generate  generate.h)
 set(CREASE_HEADERS_measure   compare.h)
 set(CREASE_HEADERS_simplify  simplify.h)

@@ -185,7 +185,7 @@ TEST_CASE("size does not matter") {
   }
 }
 
-TEST_CASE("the number of threads changes nothing") {
+TEST_CASE("the number of threads changes nothing" * doctest::test_suite("threads")) {
   const Mesh a = torus(48, 24), b = torus(20, 9);
   const Comparison one = *compare_meshes(a, b, {.samples = 20'000, .threads = 1});
   for (int threads : {2, 7}) {

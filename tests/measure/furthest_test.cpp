@@ -216,7 +216,8 @@ TEST_CASE("what was not looked at for want of queries is in the bound") {
   CHECK(furthest(a, b, {.max_queries = 1}).bound > 2 * half);
 }
 
-TEST_CASE("the furthest distance is the same for any number of threads, and for any samples") {
+TEST_CASE("the furthest distance is the same for any number of threads, and for any samples" *
+          doctest::test_suite("threads")) {
   const Mesh a = turned(torus(48, 24)), b = turned(torus(20, 9));
   const Comparison one = *compare_meshes(a, b, {.samples = 2000, .threads = 1});
   for (int threads : {2, 7}) {

@@ -1,5 +1,6 @@
 #include "crease/build.h"
 #include "crease/progressive_mesh.h"
+#include "crease/threads.h"
 #include "support/level_equality.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
@@ -76,6 +77,36 @@ TEST_CASE("a built model is its file, and a stopped build says so") {
     const Result<Built> stopped = build_model(hard_cylinder(24, 4), options);
     REQUIRE(!stopped.ok());
     CHECK(stopped.failure().error == Error::Interrupted);
+  }
+}
+
+TEST_CASE("a built file is the same for 1, 2 and 7 threads, and so is what is decoded" *
+          doctest::test_suite("threads")) {
+  for (const Mesh& mesh : {height_field(40), city_blocks(6, 3)}) {
+    BuildOptions options;
+    options.simplify.patch_triangles = 300;
+    options.simplify.threads = 1;
+    const Result<Built> alone = build_model(mesh, options);
+    REQUIRE(alone.ok());
+    const Result<BlockFile> file = BlockFile::open(memory_source(alone->file_bytes));
+    REQUIRE(file.ok());
+    CHECK(file->block_count() > 7);
+    const Result<DecodedModel> model = decode_model(*file);
+    REQUIRE(model.ok());
+    for (const int threads : {2, 7}) {
+      CAPTURE(threads);
+      options.simplify.threads = threads;
+      const Result<Built> built = build_model(mesh, options);
+      REQUIRE(built.ok());
+      CHECK(built->file_bytes == alone->file_bytes);
+      const Result<DecodedModel> decoded =
+          decode_model(*file, {.for_each = loop_on_threads(threads)});
+      REQUIRE(decoded.ok());
+      CHECK(decoded->mesh.positions == model->mesh.positions);
+      CHECK(decoded->mesh.triangles == model->mesh.triangles);
+      CHECK(decoded->mesh.layers[0].values == model->mesh.layers[0].values);
+      CHECK(decoded->mesh.layers[0].of_corner == model->mesh.layers[0].of_corner);
+    }
   }
 }
 

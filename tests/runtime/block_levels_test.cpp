@@ -343,7 +343,7 @@ TEST_CASE("what is shown of a view in the end does not depend on what came when"
   CHECK(between > 0);
 }
 
-TEST_CASE("a streamer makes levels beside the frames") {
+TEST_CASE("a streamer makes levels beside the frames" * doctest::test_suite("threads")) {
   const EncodedCase c = simplified_case(smooth_sphere(60, 90), 400, 14, kCoarsePrecision);
   std::mt19937_64 random(5);
   for (const int threads : {0, 2}) {

@@ -91,7 +91,8 @@ StreamOptions hasty(int threads) {
           .first_pause = std::chrono::milliseconds(1)};
 }
 
-TEST_CASE("a view is complete in the end, whatever the source does on the way") {
+TEST_CASE("a view is complete in the end, whatever the source does on the way" *
+          doctest::test_suite("threads")) {
   std::uint64_t seed = 0;
   for (const ZooMesh& zoo : mesh_zoo()) {
     if (zoo.mesh.vertex_count() == 0) continue;
@@ -117,7 +118,8 @@ TEST_CASE("a view is complete in the end, whatever the source does on the way") 
   }
 }
 
-TEST_CASE("by vertex, hierarchies are made beside the frames, and shared by views") {
+TEST_CASE("by vertex, hierarchies are made beside the frames, and shared by views" *
+          doctest::test_suite("threads")) {
   const EncodedCase c = simplified_case(smooth_sphere(40, 60), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   std::mt19937_64 random(8);
@@ -145,7 +147,8 @@ TEST_CASE("by vertex, hierarchies are made beside the frames, and shared by view
   }
 }
 
-TEST_CASE("an asynchronous source is all that it takes to open a model") {
+TEST_CASE("an asynchronous source is all that it takes to open a model" *
+          doctest::test_suite("threads")) {
   const EncodedCase c = small_case();
   Result<BlockStreamer> streamer = BlockStreamer::open(async_memory_source(c.bytes), hasty(1));
   REQUIRE(streamer.ok());
@@ -159,7 +162,8 @@ TEST_CASE("an asynchronous source is all that it takes to open a model") {
   CHECK(!BlockStreamer::open(std::make_shared<UnsteadySource>(c.bytes, 1, 10), hasty(1)).ok());
 }
 
-TEST_CASE("two views of one model are both complete, and share what both have") {
+TEST_CASE("two views of one model are both complete, and share what both have" *
+          doctest::test_suite("threads")) {
   const EncodedCase c = simplified_case(smooth_sphere(60, 90), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   std::mt19937_64 random(4);
@@ -200,7 +204,8 @@ TEST_CASE("two views of one model are both complete, and share what both have") 
   }
 }
 
-TEST_CASE("while the source fails what is shown stays, and says what is wrong") {
+TEST_CASE("while the source fails what is shown stays, and says what is wrong" *
+          doctest::test_suite("threads")) {
   const EncodedCase c = simplified_case(smooth_sphere(40, 60), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   const auto source = std::make_shared<UnsteadySource>(c.bytes, 3, 0);
@@ -226,7 +231,8 @@ TEST_CASE("while the source fails what is shown stays, and says what is wrong") 
   CHECK(!streamer.trouble().has_value());
 }
 
-TEST_CASE("what is asked for at once is bounded, and cancelled when nobody wants it") {
+TEST_CASE("what is asked for at once is bounded, and cancelled when nobody wants it" *
+          doctest::test_suite("threads")) {
   const EncodedCase c = simplified_case(smooth_sphere(60, 90), 100, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   const auto source = std::make_shared<UnsteadySource>(c.bytes, 5, 0);
@@ -249,7 +255,8 @@ TEST_CASE("what is asked for at once is bounded, and cancelled when nobody wants
   CHECK((refined_blocks(file, streamer.mesh()) == wanted_blocks(file, last.view)));
 }
 
-TEST_CASE("the names of parts come once the view has what it wants") {
+TEST_CASE("the names of parts come once the view has what it wants" *
+          doctest::test_suite("threads")) {
   for (const ZooMesh& zoo : mesh_zoo()) {
     if (zoo.mesh.parts.empty()) continue;
     INFO(zoo.name);
@@ -267,7 +274,7 @@ TEST_CASE("the names of parts come once the view has what it wants") {
   }
 }
 
-TEST_CASE("a camera that moves on finds what it will want") {
+TEST_CASE("a camera that moves on finds what it will want" * doctest::test_suite("threads")) {
   const EncodedCase c = simplified_case(smooth_sphere(80, 120), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   for (const bool prefetches : {false, true}) {
@@ -286,7 +293,7 @@ TEST_CASE("a camera that moves on finds what it will want") {
   }
 }
 
-TEST_CASE("memory stays within the budget along a flight") {
+TEST_CASE("memory stays within the budget along a flight" * doctest::test_suite("threads")) {
   const EncodedCase c = simplified_case(smooth_sphere(80, 120), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   for (const bool in_levels : {false, true}) {
@@ -327,7 +334,8 @@ TEST_CASE("memory stays within the budget along a flight") {
   }
 }
 
-TEST_CASE("a budget by triangles is kept in every mode, at every moment") {
+TEST_CASE("a budget by triangles is kept in every mode, at every moment" *
+          doctest::test_suite("threads")) {
   const EncodedCase c = simplified_case(smooth_sphere(60, 90), 300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   enum class Mode { Whole, InLevels, ByVertex };
@@ -352,7 +360,8 @@ TEST_CASE("a budget by triangles is kept in every mode, at every moment") {
   }
 }
 
-TEST_CASE("a directory page that is not as long as it should be is asked for again") {
+TEST_CASE("a directory page that is not as long as it should be is asked for again" *
+          doctest::test_suite("threads")) {
   const EncodedCase c = small_case();
   const BlockFile file = opened(c.bytes);
   for (const Fault fault : {Fault::Truncated, Fault::Longer, Fault::Corrupted}) {

@@ -55,14 +55,16 @@ void check_all(Mesh mesh, std::uint32_t patch_triangles) {
 
 }  // namespace
 
-TEST_CASE("sequences of the zoo are legal and the same for 1, 2 and 7 threads") {
+TEST_CASE("sequences of the zoo are legal and the same for 1, 2 and 7 threads" *
+          doctest::test_suite("threads")) {
   for (const ZooMesh& z : mesh_zoo()) {
     CAPTURE(z.name);
     check_all(z.mesh, 200);  // many patches even for small meshes
   }
 }
 
-TEST_CASE("sequences of real models are legal and the same for 1, 2 and 7 threads") {
+TEST_CASE("sequences of real models are legal and the same for 1, 2 and 7 threads" *
+          doctest::test_suite("threads")) {
   for (const char* name : {"cad/hoppe_cessna.obj.zst", "city/berlin_52k.obj.zst",
                            "attributes/pirate.obj.zst", "nasty/topology_everything_twice.obj"}) {
     const std::filesystem::path path = shared_model(name);
