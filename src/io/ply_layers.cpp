@@ -1,6 +1,9 @@
 #include "io/ply_layers.h"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
+#include <string>
 #include <string_view>
 
 namespace crease {
@@ -65,6 +68,32 @@ bool take_group(const PlyElement& element, const NamedGroup& group, PlyLayers& t
   return true;
 }
 
+constexpr std::string_view kCategoryWords[] = {
+    "id",     "label",    "labels",   "class",   "classification", "category",
+    "object", "instance", "material", "part",    "segment",        "segmentation",
+    "region", "cluster",  "group",    "semantic"};
+
+// In words that are apart by what is no letter, or by the case: class, material_id, scalar_Label,
+// objectId.
+bool names_category(std::string_view name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto is_upper = [](char c) { return c >= 'A' && c <= 'Z'; };
+  for (std::size_t i = 0; i < name.size();) {
+    std::string word;
+    for (; i < name.size() && is_letter(name[i]); ++i) {
+      const bool is_new = i > 0 && is_upper(name[i]) && !is_upper(name[i - 1]);
+      if (is_new && !word.empty()) break;
+      word += static_cast<char>(is_upper(name[i]) ? name[i] - 'A' + 'a' : name[i]);
+    }
+    if (std::ranges::find(kCategoryWords, word) != std::end(kCategoryWords)) return true;
+    if (i < name.size() && !is_letter(name[i])) ++i;
+  }
+  return false;
+}
+
+// A category has at least so many vertices on average; else the numbers tell vertices apart.
+constexpr std::size_t kVerticesOfCategory = 4;
+
 PlyTarget::Kind list_target(const PlyProperty& property, bool is_face,
                             std::vector<std::string>& notes) {
   if (is_face && (property.name == "vertex_indices" || property.name == "vertex_index")) {
@@ -104,7 +133,8 @@ PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
     } else if (!is_face && is_axis(property.name) && find_scalar(element, property.name) == p) {
       target = {PlyTarget::Kind::Position, 0, static_cast<std::size_t>(property.name[0] - 'x'), 1};
     } else {
-      const bool is_category = is_face && is_integer(property.type);
+      const bool is_category =
+          is_integer(property.type) && (is_face || names_category(property.name));
       target = {PlyTarget::Kind::Layer, plan.layers.size(), 0, 1};
       plan.add({property.name,
                 AttributeRole::Other,
@@ -116,6 +146,20 @@ PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
     }
   }
   return plan;
+}
+
+void settle_categories(RawLayer& layer, std::vector<std::string>& notes) {
+  if (layer.interpolation != Interpolation::Categorical) return;
+  std::vector<float> values = layer.values;
+  std::ranges::sort(values);
+  const auto repeated = std::ranges::unique(values);
+  const auto count = static_cast<std::size_t>(repeated.begin() - values.begin());
+  if (kVerticesOfCategory * count > values.size()) {
+    layer.interpolation = Interpolation::Linear;
+  } else {
+    notes.push_back("'" + layer.name + "' of the vertices has " + std::to_string(count) +
+                    " values, which are taken as categories: never blended");
+  }
 }
 
 }  // namespace crease

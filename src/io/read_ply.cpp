@@ -296,6 +296,7 @@ class PlyReader {
     // Vertices' normals and colours go before faces'. Faces that strips made have no values.
     for (RawLayer& layer : vertices_.layers) {
       scale_float_colors(layer);
+      settle_categories(layer, raw_.report.notes);
       raw_.layers.push_back(std::move(layer));
     }
     const auto is_there = [&](AttributeRole role) {

@@ -23,10 +23,11 @@ std::vector<float> value_at(const AttributeLayer& layer, std::size_t corner) {
 }
 
 const std::string kThreePoints = "0 0 0\n1 0 0\n0 1 0\n";
-std::string header(const std::string& vertex, const std::string& face) {
-  return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
-         "float z\n" +
-         vertex + "element face 1\nproperty list uchar int vertex_indices\n" + face +
+std::string header(const std::string& vertex, const std::string& face, int vertices = 3,
+                   int faces = 1) {
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertices) +
+         "\nproperty float x\nproperty float y\nproperty float z\n" + vertex + "element face " +
+         std::to_string(faces) + "\nproperty list uchar int vertex_indices\n" + face +
          "end_header\n";
 }
 
@@ -95,6 +96,33 @@ TEST_CASE("unknown properties are kept: linear per vertex, categorical per face 
   CHECK(value_at(*layer_named(mesh, "label"), 1) == std::vector<float>{9});
   REQUIRE(layer_named(mesh, "wear"));
   CHECK(layer_named(mesh, "wear")->interpolation == Interpolation::Linear);
+}
+
+TEST_CASE(
+    "whole numbers of vertices are categories where their name says so and vertices share them") {
+  const auto interpolation = [](const std::string& property, bool each_its_own) {
+    std::string rows;
+    for (int i = 0; i < 12; ++i) {
+      rows += std::to_string(i) + " " + std::to_string(i % 3) + " 0 " +
+              std::to_string(each_its_own ? 7 * i : i / 6) + "\n";
+    }
+    std::string text = header("property " + property + "\n", "", 12, 2);
+    text += rows + "3 0 1 2\n3 6 7 8\n";
+    const Imported in = import_text(text, "a.ply");
+    const std::string name = property.substr(property.find(' ') + 1);
+    REQUIRE(layer_named(in.mesh, name.c_str()));
+    return layer_named(in.mesh, name.c_str())->interpolation;
+  };
+  for (const char* property : {"int material_id", "uchar label", "ushort objectId",
+                               "int scalar_Classification", "uint part2"}) {
+    CAPTURE(property);
+    CHECK(interpolation(property, false) == Interpolation::Categorical);
+    CHECK(interpolation(property, true) == Interpolation::Linear);
+  }
+  for (const char* property : {"ushort intensity", "int width", "float label", "uchar idle"}) {
+    CAPTURE(property);
+    CHECK(interpolation(property, false) == Interpolation::Linear);
+  }
 }
 
 TEST_CASE("properties that share a name stay apart, read and written") {

@@ -118,6 +118,11 @@ class UnsteadyHost {
   FaultHost host_;  // the last one: its threads end before what they use
 };
 
+// Each frame is drawn by a check, which takes far longer than the frame does.
+bool is_checked(int frame) {
+  return !kSanitized || frame % 4 == 3;
+}
+
 class Flight {
  public:
   explicit Flight(const BlockFile& file) : file_(file), checksums_(*drawn_checksums(file)) {
@@ -195,7 +200,7 @@ TEST_CASE("whatever a host does along a flight, what is shown is right, and in t
       if (frame == 48) unsteady.host().open_again();
       const BlockViewParameters parameters = flight.view(frame);
       streamer.update(parameters);
-      flight.check(streamer, parameters, frame % (kSanitized ? 24 : 6) == 0);
+      if (is_checked(frame)) flight.check(streamer, parameters, frame % (kSanitized ? 24 : 6) == 3);
       streamer.wait(std::chrono::milliseconds(4));
     }
     CHECK(unsteady.faults() > 5);
@@ -235,7 +240,7 @@ TEST_CASE(
     for (int frame = 0; frame < 30 || !streamer.trouble(); ++frame) {
       REQUIRE(frame < 100'000);
       CHECK(!streamer.update(view_of_all()).is_complete);
-      flight.check(streamer, view_of_all(), frame % 8 == 7 && frame < 30);
+      if (is_checked(frame)) flight.check(streamer, view_of_all(), frame % 8 == 7 && frame < 30);
       streamer.wait(std::chrono::milliseconds(4));
     }
     CHECK(streamer.trouble()->error == (tells_version ? Error::Replaced : Error::BadChecksum));
