@@ -152,9 +152,9 @@ void settle_categories(RawLayer& layer, std::vector<std::string>& notes) {
   if (layer.interpolation != Interpolation::Categorical) return;
   std::vector<float> values = layer.values;
   std::ranges::sort(values);
-  const auto repeated = std::ranges::unique(values);
-  const auto count = static_cast<std::size_t>(repeated.begin() - values.begin());
-  if (kVerticesOfCategory * count > values.size()) {
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  const std::size_t count = values.size();
+  if (kVerticesOfCategory * count > layer.values.size()) {
     layer.interpolation = Interpolation::Linear;
   } else {
     notes.push_back("'" + layer.name + "' of the vertices has " + std::to_string(count) +
