@@ -85,6 +85,10 @@ std::vector<double> weights_of(const Json& mesh, const Json& node) {
   return weights;
 }
 
+bool has_name(const Json& named) {
+  return !as_text(at(named, "name")).empty();
+}
+
 std::string name_of(const Json& named, const std::string& otherwise) {
   std::string name = as_text(at(named, "name"));
   return name.empty() ? otherwise : name;
@@ -120,7 +124,8 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
                                  {},
                                  name_of(meshes[i], "mesh " + std::to_string(i)),
                                  weights_of(meshes[i], meshes[i]),
-                                 {}});
+                                 {},
+                                 has_name(meshes[i])});
     }
     return scene;
   }
@@ -173,7 +178,8 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
       }
       const std::string otherwise = name_of(meshes[*mesh], "node " + std::to_string(current.node));
       scene.instances.push_back({*mesh, to_world, name_of(node, otherwise),
-                                 weights_of(meshes[*mesh], node), as_index(at(node, "skin"))});
+                                 weights_of(meshes[*mesh], node), as_index(at(node, "skin")),
+                                 has_name(node) || has_name(meshes[*mesh])});
       if (scene.instances.back().skin) ++skinned;
       if (!at(at(node, "extensions"), "EXT_mesh_gpu_instancing").is_null()) ++instanced;
     }

@@ -44,6 +44,7 @@ struct MeshInstance {
   std::string name;                 // of the node, else of the mesh, else "node 3"
   std::vector<double> weights;      // of morph targets: the node's, else the mesh's; none: at rest
   std::optional<std::size_t> skin;  // to_world is void, then (3.7.3.3)
+  bool is_named = false;            // by the file
 };
 
 struct GltfScene {

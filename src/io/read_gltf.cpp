@@ -97,7 +97,9 @@ class MeshBuilder {
     std::ranges::copy(materials.notes, std::back_inserter(raw_.report.notes));
     raw_.up = as_text(at(at(at(json_, "asset"), "extras"), "up")) == "z" ? UpAxis::Z : UpAxis::Y;
     raw_.default_normals = {NormalPolicy::Kind::Flat, 0};
-    const bool has_parts = scene->instances.size() > 1;
+    // The only one is a part for its name's sake.
+    const bool has_parts = scene->instances.size() > 1 ||
+                           (scene->instances.size() == 1 && scene->instances[0].is_named);
 
     const Json& meshes = at(json_, "meshes");
     std::vector<std::map<Weights, std::vector<Instance>>> instances_of_mesh(size_of(meshes));

@@ -1,4 +1,5 @@
 // Triangles of a glTF and where its nodes put them.
+#include "crease/export.h"
 #include "crease/import.h"
 #include "io/gltf_triangle.h"
 #include "io/polygon_model.h"
@@ -125,6 +126,21 @@ TEST_CASE("glTF: one mesh under several nodes is a part each time") {
   CHECK(mesh.triangle_count() == 2);
   CHECK(mesh.part_of_triangle == std::vector<PartId>{PartId{0}, PartId{1}});
   CHECK(corner(mesh, 1, 0) == Vec3d{3, 0, 0});
+}
+
+TEST_CASE("glTF: the only node keeps its name, or its mesh's, there and back") {
+  GltfBuilder b = triangle_at_a_node();
+  CHECK(import_text(b.gltf(), "a.gltf").mesh.parts.empty());
+  b.json["meshes"][0]["name"] = "shape";
+  CHECK(import_text(b.gltf(), "a.gltf").mesh.parts == std::vector<std::string>{"shape"});
+  b.json["nodes"][0]["name"] = "hero";
+  const Mesh mesh = import_text(b.gltf(), "a.gltf").mesh;
+  CHECK(mesh.parts == std::vector<std::string>{"hero"});
+  const auto written = export_bytes(mesh, ".glb");
+  REQUIRE(written.ok());
+  const auto back = import_bytes(*written, "back.glb", {});
+  REQUIRE(back.ok());
+  CHECK(back->mesh.parts == mesh.parts);
 }
 
 TEST_CASE("glTF: instances that are not taken are told") {
