@@ -14,6 +14,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 jobs=$(nproc)
+tests=$((jobs + 1)) # at a time, since some wait for a window or a host
 
 run_stage() {
   case $1 in
@@ -22,19 +23,19 @@ run_stage() {
       ;;
     release)
       scripts/build.sh release
-      ctest --preset release -j "$jobs"
+      ctest --preset release -j "$tests"
       ;;
     asan)
       scripts/build.sh asan
       # LeakSanitizer sees the driver's own leaks once a GL context has been made.
       ASAN_OPTIONS=detect_stack_use_after_return=1 \
         LSAN_OPTIONS=suppressions=$PWD/scripts/leaks.supp:print_suppressions=0 \
-        ctest --preset asan -j "$jobs"
+        ctest --preset asan -j "$tests"
       ;;
     tsan)
       scripts/build.sh tsan threaded_tests
       TSAN_OPTIONS=suppressions=$PWD/scripts/threads.supp:halt_on_error=1 \
-        ctest --preset tsan -L threads -j "$jobs"
+        ctest --preset tsan -L threads -j "$tests"
       ;;
     libcxx)
       scripts/build.sh libcxx crease_runtime
