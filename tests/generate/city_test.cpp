@@ -1,6 +1,7 @@
 #include "crease/generate.h"
 #include "crease/shading.h"
 #include "generate/street_grid.h"
+#include "support/sanitized.h"
 
 #include <doctest/doctest.h>
 
@@ -16,6 +17,8 @@
 using namespace crease;
 
 namespace {
+
+constexpr std::size_t kLarge = kSanitized ? 40'000 : 200'000;  // triangles
 
 std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
   return (hash ^ value) * 0x100000001b3u;
@@ -143,7 +146,7 @@ TEST_CASE("the same seed gives the same city, another seed another") {
 }
 
 TEST_CASE("normals agree with the geometry, on flat faces exactly") {
-  const Mesh city = generate_city({.triangles = 200'000});
+  const Mesh city = generate_city({.triangles = kLarge});
   const AttributeLayer& normals = *city.normals();
   for (std::size_t t = 0; t < city.triangle_count(); ++t) {
     const Vec3d scaled = scaled_normal(city, t);
@@ -164,7 +167,7 @@ TEST_CASE("normals agree with the geometry, on flat faces exactly") {
 
 // So there are no T-junctions: at one of them an edge would have only one triangle.
 TEST_CASE("every body is closed and manifold: each edge has two triangles, one each way") {
-  const Mesh city = generate_city({.triangles = 200'000});
+  const Mesh city = generate_city({.triangles = kLarge});
   for (const auto& edge : sides_of_edges(city)) {
     const auto runs_up = [&](const Side& s) {
       return city.triangles[s.triangle][s.corner] == edge.first.first;
@@ -179,7 +182,7 @@ TEST_CASE("every body is closed and manifold: each edge has two triangles, one e
 // Bodies that belong together run into each other; where two faces lay on each other, the same
 // three points would come twice.
 TEST_CASE("no triangle lies on another with the same corners") {
-  const Mesh city = generate_city({.triangles = 200'000});
+  const Mesh city = generate_city({.triangles = kLarge});
   std::map<std::array<std::array<double, 3>, 3>, int> count;
   for (const Triangle& v : city.triangles) {
     std::array<std::array<double, 3>, 3> corners;
@@ -196,7 +199,7 @@ TEST_CASE("no triangle lies on another with the same corners") {
 // Smooth: the two triangles share both normals on their edge, or at the tip of a cone, where each
 // has its own, one. Hard: neither.
 TEST_CASE("edges turn smoothly by little and sharply by much") {
-  const Mesh city = generate_city({.triangles = 200'000});
+  const Mesh city = generate_city({.triangles = kLarge});
   const std::vector<AttributeId>& normals = city.normals()->of_corner;
   std::size_t smooth = 0, hard = 0, flat = 0;
   for (const auto& edge : sides_of_edges(city)) {
