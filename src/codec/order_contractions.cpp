@@ -33,6 +33,12 @@ constexpr double kPartWeight = 3;
 constexpr double kLengthShare = 1e-8;
 constexpr std::size_t kFewOfThem = 8;  // one of so many
 constexpr double kMostCost = 1e300;    // of nonsense, that a hostile block may have
+// Witnesses that are farther off than so many times what planes say: of one contraction in hundreds
+// where triangles are connected. Where loose parts join, ends of a part may have joined others
+// already when it is contracted itself, which comes before in the order that is found then. Where
+// more than one of so many is so, all are measured again in that order.
+constexpr double kAstray = 8;
+constexpr std::size_t kFewAstray = 32;
 // How many contractions before it the memory of one is asked for.
 constexpr std::size_t kVerticesAhead = 4, kTrianglesAhead = 2;
 
@@ -115,6 +121,7 @@ class CostEstimator {
     const float far =
         in_units(double(distance_of_witnesses(patch, vanished, first, parent, stays, known)));
     if (const float added = far - errors.at_fine_end.surface; added > own_.surface) {
+      astray_count_ += double(added) > kAstray * std::max(double(own_.surface), step_);
       own_.surface = added;
       errors.now = larger(errors.now, added_error(errors.at_fine_end, own_, block_.coarse));
     }
@@ -149,6 +156,8 @@ class CostEstimator {
   bool moves_to_end() const { return moves_to_end_; }
   // Contractions so far that change nothing.
   std::size_t flat_count() const { return flat_count_; }
+  // Contractions so far after which witnesses are much farther off than planes say.
+  std::size_t astray_count() const { return astray_count_; }
 
   // Of the last contraction, and of `first` since.
   const LevelError& own() const { return own_; }
@@ -273,7 +282,7 @@ class CostEstimator {
   std::vector<Errors> errors_;    // per vertex
   LevelError own_;
   double turn_weight_ = 0;
-  std::size_t flat_count_ = 0;
+  std::size_t flat_count_ = 0, astray_count_ = 0;
   bool moves_to_end_ = true;
 };
 
@@ -287,6 +296,27 @@ LevelError added_error(const LevelError& base, const LevelError& own, const Leve
           at_most(base.line + own.line, most.line), at_most(degrees, most.degrees),
           at_most(base.texture + own.texture, most.texture)};
 }
+
+namespace {
+
+// The errors of contractions as they come in this order.
+void measure_in_order(const UnfoldedBlock& block, const ModelSchema& schema,
+                      std::span<const LayerValues> values,
+                      std::span<const LevelError> error_of_slot, Witnesses& witnesses,
+                      std::vector<OrderedContraction>& order) {
+  ContractingPatch patch(block.end);
+  CostEstimator estimator(block, schema, values, error_of_slot, witnesses, patch);
+  for (OrderedContraction& contraction : order) {
+    const Split& split = block.splits[contraction.split];
+    const std::uint32_t second = block.second_child(contraction.split);
+    estimator.contract(patch, split.vertex, second, split.parent_position);
+    contraction.own = estimator.own();
+    contraction.error = estimator.error(split.vertex);
+  }
+  estimator.give_back_witnesses(witnesses);
+}
+
+}  // namespace
 
 ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchema& schema,
                                     std::span<const LayerValues> values,
@@ -317,13 +347,17 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
     undone.push_back(
         {static_cast<std::uint32_t>(i), cost, estimator.own(), estimator.error(first)});
   }
-  estimator.give_back_witnesses(witnesses);
   std::sort(ranks.begin(), ranks.end());
   std::vector<OrderedContraction> order;
   order.reserve(ranks.size());
   for (const auto& [cost, place] : ranks) order.push_back(undone[place]);
   if (estimator.flat_count() > order.size() / kFewOfThem)
     order = defer_folds(block, std::move(order));
+  if (estimator.astray_count() > order.size() / kFewAstray) {
+    measure_in_order(block, schema, values, error_of_slot, witnesses, order);
+  } else {
+    estimator.give_back_witnesses(witnesses);
+  }
   const Placement placement = estimator.moves_to_end() ? Placement::Endpoint : Placement::Optimal;
   return {std::move(order), estimator.take_wedges(), placement};
 }

@@ -1,9 +1,12 @@
 // A file says how wrong its blocks are at both ends; what a contraction between them adds is worked
 // out again from the shape, and should be what the simplifier said.
 #include "codec/encoded_model.h"
+#include "crease/build_progressive_arrays.h"
 #include "crease/compare.h"
 #include "crease/decode_model.h"
 #include "crease/import.h"
+#include "crease/progressive_mesh.h"
+#include "support/mesh_builder.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
 #include "support/shared_data.h"
@@ -13,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -153,6 +157,37 @@ TEST_CASE("a level is hardly farther from the full mesh than it says") {
     Result<Imported> in = import_mesh(path, {});
     REQUIRE(in.ok());
     check_stated(simplified_case(std::move(in->mesh), 8000, 20, kCoarsePrecision));
+  }
+}
+
+// Leaves of a tree: cards of two quads in one plane, all over a ball, none of which touches
+// another.
+Mesh loose_cards(int count) {
+  MeshBuilder b;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto direction = [&] { return normalized(Vec3d{any(random), any(random), any(random)}); };
+  for (int i = 0; i < count; ++i) {
+    const Vec3d out = direction();
+    const Vec3d u = normalized(cross(out, direction())), v = normalized(cross(out, u));
+    b.grid(out * (0.6 + 0.4 * std::abs(any(random))), u * 0.06, v * 0.12, 1, 2);
+  }
+  return b.take();
+}
+
+TEST_CASE("what cards lose before they join is told as little, though others have joined by then") {
+  const int count = 800;
+  const EncodedCase c = simplified_case(loose_cards(count), 8000, 24, kCoarsePrecision);
+  const BlockFile file = opened(c.bytes);
+  const Result<DecodedModel> model = decode_model(file);
+  REQUIRE(model.ok());
+  ProgressiveMesh levels(build_progressive_arrays(model->mesh, model->sequence));
+  for (const int left : {3900, 3200, 2600, 2200, 1800}) {  // of 4000
+    CAPTURE(left);
+    levels.set_triangle_count(std::size_t(left) * std::size_t(count) / 1000);
+    const Result<Comparison> measured = compare_meshes(c.mesh, levels.extract(), {.samples = 1000});
+    REQUIRE(measured.ok());
+    CHECK(double(levels.error().surface) <= 2 * measured->distance.a_to_b.max + 1e-5);
   }
 }
 
