@@ -31,9 +31,8 @@ function(crease_module name)
     target_compile_options(crease_${name}_objects PRIVATE -fno-semantic-interposition)
   endif()
   if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    # GCC takes what several files are put together in for a header, and what std::variant does not
-    # hold for something that is read.
-    target_compile_options(crease_${name}_objects PRIVATE -Wno-subobject-linkage -Wno-maybe-uninitialized)
+    # GCC takes what several files are put together in for a header.
+    target_compile_options(crease_${name}_objects PRIVATE -Wno-subobject-linkage)
   endif()
   if(name MATCHES "^(render|view|http|serve)$")
     # They wait for a display or a line, and their code takes clang longest under sanitizers.

@@ -1,10 +1,9 @@
 #include "crease/import_arrays.h"
 
+#include "io/formats.h"
 #include "io/raw_mesh.h"
 
-#include <algorithm>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -49,8 +48,7 @@ class ArrayReader {
     raw_.default_normals = arrays_.made_normals;
     raw_.up = arrays_.up;
     raw_.images = arrays_.images;
-    read_positions();
-    if (!read_triangles() || !read_layers()) return *failure_;
+    if (!read_positions() || !read_triangles() || !read_layers()) return *failure_;
     if (!read_ids("material_of_triangle", arrays_.material_of_triangle, arrays_.materials.size(),
                   raw_.material_of_triangle) ||
         !read_ids("part_of_triangle", arrays_.part_of_triangle, arrays_.parts.size(),
@@ -83,7 +81,7 @@ class ArrayReader {
     return true;
   }
 
-  void read_positions() {
+  bool read_positions() {
     raw_.positions.resize(vertex_count_);
     std::visit(
         [&](const auto& rows) {
@@ -95,6 +93,11 @@ class ArrayReader {
           }
         },
         arrays_.positions);
+    for (std::size_t v = 0; v < vertex_count_; ++v) {
+      if (is_position(raw_.positions[v])) continue;
+      return refuse("positions[" + std::to_string(v) + "] is " + fault_of(raw_.positions[v]));
+    }
+    return true;
   }
 
   bool read_triangles() {

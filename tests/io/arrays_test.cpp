@@ -219,7 +219,7 @@ TEST_CASE("arrays that do not fit together are refused, by name and place") {
   bad[4] = std::numeric_limits<float>::infinity();
   arrays = positions_of(bad);
   arrays.indices = kTwoTriangles;
-  CHECK(refusal(arrays).starts_with("part 17: a position is "));
+  CHECK(refusal(arrays).starts_with("part 17: positions[1] is "));
 }
 
 }  // namespace
