@@ -295,7 +295,12 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
     if (!is_position(p)) return fail(Error::BadValue, name + ": a position is " + fault_of(p));
   }
   for (RawLayer& layer : raw.layers) {
-    report.bad_attribute_values += clear_bad_values(layer);
+    if (const std::size_t bad = clear_bad_values(layer)) {
+      report.bad_attribute_values += bad;
+      report.notes.push_back("'" + layer.name + "' has " + std::to_string(bad) +
+                             (bad == 1 ? " value that is" : " values that are") +
+                             " not finite: set to zero");
+    }
     mesh.layers.push_back(by_corner(std::move(layer), raw));
   }
   weld_vertices(raw, report);

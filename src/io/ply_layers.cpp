@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <string_view>
@@ -133,8 +134,7 @@ PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
     } else if (!is_face && is_axis(property.name) && find_scalar(element, property.name) == p) {
       target = {PlyTarget::Kind::Position, 0, static_cast<std::size_t>(property.name[0] - 'x'), 1};
     } else {
-      const bool is_category =
-          is_integer(property.type) && (is_face || names_category(property.name));
+      const bool is_category = is_face ? is_integer(property.type) : names_category(property.name);
       target = {PlyTarget::Kind::Layer, plan.layers.size(), 0, 1};
       plan.add({property.name,
                 AttributeRole::Other,
@@ -151,6 +151,10 @@ PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
 void settle_categories(RawLayer& layer, std::vector<std::string>& notes) {
   if (layer.interpolation != Interpolation::Categorical) return;
   std::vector<float> values = layer.values;
+  if (std::ranges::any_of(values, [](float x) { return x != std::floor(x); })) {
+    layer.interpolation = Interpolation::Linear;  // NaN among them
+    return;
+  }
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
   const std::size_t count = values.size();

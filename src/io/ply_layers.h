@@ -49,13 +49,13 @@ struct PlyLayers {
 // The first property of this name that is no list.
 std::optional<std::size_t> find_scalar(const PlyElement& element, std::string_view name);
 
-// By the names of its properties; `notes` says which lists have no place. Whole numbers of faces
-// are categories, and those of vertices whose name says so.
+// By the names of its properties; `notes` says which lists have no place. Integers of faces are
+// categories, and whatever of vertices has a name that says so, until settle_categories().
 PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
                       std::vector<std::string>& notes);
 
-// Of a layer of the vertices that is complete: numbers of which nearly every vertex has its own, an
-// id of each, are no categories. Notes those that are.
+// Of a layer of the vertices that is complete: numbers that are not whole, in floats or not, and of
+// which nearly every vertex has its own, an id of each, are no categories. Notes those that are.
 void settle_categories(RawLayer& layer, std::vector<std::string>& notes);
 
 }  // namespace crease

@@ -113,16 +113,30 @@ TEST_CASE(
     REQUIRE(layer_named(in.mesh, name.c_str()));
     return layer_named(in.mesh, name.c_str())->interpolation;
   };
-  for (const char* property : {"int material_id", "uchar label", "ushort objectId",
-                               "int scalar_Classification", "uint part2"}) {
+  for (const char* property :
+       {"int material_id", "uchar label", "ushort objectId", "int scalar_Classification",
+        "uint part2", "float label", "double scalar_Classification"}) {
     CAPTURE(property);
     CHECK(interpolation(property, false) == Interpolation::Categorical);
     CHECK(interpolation(property, true) == Interpolation::Linear);
   }
-  for (const char* property : {"ushort intensity", "int width", "float label", "uchar idle"}) {
+  for (const char* property : {"ushort intensity", "int width", "float idle", "uchar idle"}) {
     CAPTURE(property);
     CHECK(interpolation(property, false) == Interpolation::Linear);
   }
+}
+
+TEST_CASE("numbers of vertices that are not whole are no categories, whatever their name") {
+  std::string rows;
+  for (int i = 0; i < 12; ++i) {
+    rows += std::to_string(i) + " " + std::to_string(i % 3) + " 0 " + (i < 6 ? "1.5\n" : "2\n");
+  }
+  const Mesh mesh =
+      import_text(header("property float label\n", "", 12, 2) + rows + "3 0 1 2\n3 6 7 8\n",
+                  "a.ply")
+          .mesh;
+  REQUIRE(layer_named(mesh, "label"));
+  CHECK(layer_named(mesh, "label")->interpolation == Interpolation::Linear);
 }
 
 TEST_CASE("properties that share a name stay apart, read and written") {
@@ -307,7 +321,8 @@ TEST_CASE("numbers that are no floats are rounded and told") {
   };
   CHECK(told("1 values of 'id' rounded to floats, by 3 at most"));
   CHECK(told("1 values of 'time' rounded to floats, by 0.123 at most"));
-  CHECK(in.report.notes.size() == 2);  // 0.5 is a float, and normals have their own precision
+  CHECK(told("'quality' has 1 value that is not finite: set to zero"));
+  CHECK(in.report.notes.size() == 3);  // 0.5 is a float, and normals have their own precision
   CHECK(in.report.bad_attribute_values == 1);
   CHECK(value_at(*layer_named(in.mesh, "id"), 0)[0] == 123456792.0f);
 }
