@@ -9,6 +9,7 @@
 #include "parallel/shared_progress.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <vector>
 
 namespace crease {
@@ -20,6 +21,9 @@ namespace {
 constexpr double kTie = 1e-5;
 // Frame units: nothing that is less wrong than this is found out.
 constexpr double kRounding = 1e-9;
+// Further apart, in sizes of the larger, everything is equally near, as far as the floats of a
+// search can tell, and each sample would look at every triangle.
+constexpr double kMostApart = 1000;
 // What bounds the work where distances are nearly the same all over a surface.
 constexpr std::size_t kQueriesATriangle = 16, kQueriesAtLeast = 1'000'000;
 
@@ -91,6 +95,15 @@ std::size_t size_of(const Mesh& a, const Mesh& b) {
 
 Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareOptions& options) {
   const Frame frame = common_frame(a, b);
+  if (frame.gap > kMostApart * frame.larger) {
+    char line[200];
+    std::snprintf(
+        line, sizeof line,
+        "compare: the two are %.3g apart, %.0f times the size of the larger: has one another "
+        "axis up, other units, or lost its origin?",
+        frame.gap, frame.gap / frame.larger);
+    return fail(Error::BadValue, line);
+  }
   const double tie = kTie * frame.diagonal * frame.scale;
   const Surface surface_a(a, frame), surface_b(b, frame);
 

@@ -47,6 +47,12 @@ Frame common_frame(const Mesh& a, const Mesh& b) {
   Frame frame;
   frame.origin = box_a.low + (box_a.high - box_a.low) * 0.5;
   frame.diagonal = length(box_a.high - box_a.low);
+  frame.larger = std::max(frame.diagonal, length(box_b.high - box_b.low));
+  Vec3d gap;
+  for (int i = 0; i < 3; ++i) {
+    gap[i] = std::max({box_a.low[i] - box_b.high[i], box_b.low[i] - box_a.high[i], 0.0});
+  }
+  frame.gap = length(gap);
   double reach = 0;
   for (const Vec3d& corner : {box_a.low, box_a.high, box_b.low, box_b.high}) {
     const Vec3d d = corner - frame.origin;

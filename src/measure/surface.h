@@ -23,6 +23,8 @@ struct Frame {
   Vec3d origin;
   double scale = 1;
   double diagonal = 0;  // of a's bounding box, model units
+  double larger = 0;    // the larger diagonal of the two, model units
+  double gap = 0;       // between the two boxes, model units; 0 where they meet
 
   Vec3d to_frame(const Vec3d& p) const { return (p - origin) * scale; }
 };

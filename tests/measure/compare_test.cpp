@@ -185,6 +185,22 @@ TEST_CASE("size does not matter") {
   }
 }
 
+TEST_CASE(
+    "what is a thousand times its size apart is refused, not looked at triangle by triangle") {
+  const Mesh near = square(0, 4);
+  const double size = std::sqrt(2.0);
+  const Result<Comparison> apart = compare_meshes(near, moved(near, {0, 0, 1001 * size}), {});
+  REQUIRE(!apart.ok());
+  CHECK(apart.failure().error == Error::BadValue);
+  CHECK(apart.failure().message.find("1001 times the size of the larger") != std::string::npos);
+  // The larger of the two counts, and the gap, not the middles.
+  const Mesh large = moved(near, {}, 1001);
+  const auto beside = compare_meshes(near, moved(near, {0, 0, 999 * size}), {.samples = 10});
+  REQUIRE(beside.ok());
+  CHECK(beside->distance.a_to_b.max == doctest::Approx(999 * size));
+  CHECK(compare_meshes(near, moved(large, {0, 0, 1001 * size}), {.samples = 10}).ok());
+}
+
 TEST_CASE("the number of threads changes nothing" * doctest::test_suite("threads")) {
   const Mesh a = torus(48, 24), b = torus(20, 9);
   const Comparison one = *compare_meshes(a, b, {.samples = 20'000, .threads = 1});
