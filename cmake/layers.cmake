@@ -50,6 +50,9 @@ set(CREASE_HEADERS_view      viewer.h)
 # What goes into crease_runtime. These are compiled without exceptions and RTTI and need no library.
 set(CREASE_RUNTIME_FOLDERS base mesh hierarchy assemble codec stream runtime)
 
+# What fuzzers drive: instrumented for them where they are built. What only makes their models is not.
+set(CREASE_FUZZED_FOLDERS base mesh hierarchy codec io stream http serve assemble runtime)
+
 # Third-party headers that live in one place only: <prefix...> may be included by these folders.
 set(CREASE_THIRD_PARTY embree3 epoxy EGL GL png.h turbojpeg.h lzma.h draco meshoptimizer.h tbb oneapi nlohmann CLI zstd.h
   curl microhttpd.h GLFW imgui.h backends)

@@ -39,6 +39,9 @@ function(crease_module name)
     target_compile_options(crease_${name}_objects PRIVATE
       $<$<CONFIG:Sanitize>:-O0 -fno-sanitize=undefined>)
   endif()
+  if(CREASE_FUZZERS AND name IN_LIST CREASE_FUZZED_FOLDERS)
+    target_compile_options(crease_${name}_objects PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
   if(name IN_LIST CREASE_RUNTIME_FOLDERS AND CREASE_RUNTIME_ONLY)
     target_compile_options(crease_${name}_objects PRIVATE -fno-exceptions -fno-rtti)
   endif()
@@ -118,6 +121,7 @@ function(crease_test name)
   # To compile doctest, RapidCheck and nlohmann-json takes longer than to run the tests; what they
   # test is as optimized and as watched as ever, but for functions of headers.
   set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 7)
+  target_compile_definitions(test_${name} PRIVATE DOCTEST_CONFIG_SUPER_FAST_ASSERTS)
   target_compile_options(test_${name} PRIVATE
     $<$<CONFIG:Release>:-O1> $<$<CONFIG:Sanitize>:-O0 -fno-sanitize=undefined>)
   set(cases)

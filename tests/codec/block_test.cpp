@@ -7,6 +7,7 @@
 #include "pipeline/snap_attributes.h"
 #include "support/mesh_zoo.h"
 #include "support/random_contractions.h"
+#include "support/sanitized.h"
 #include "support/shared_data.h"
 
 #include <doctest/doctest.h>
@@ -117,6 +118,7 @@ TEST_CASE("blocks of real models decode to every band's mesh") {
        {"cad/fandisk.off", "city/delft_36k.obj.zst", "attributes/corset.glb"}) {
     const std::filesystem::path path = shared_model(name);
     if (path.empty() || !std::filesystem::exists(path)) continue;
+    if (kSanitized && name != "attributes/corset.glb") continue;
     INFO(name);
     Result<Imported> in = import_mesh(path, {});
     REQUIRE(in.ok());
@@ -192,7 +194,7 @@ TEST_CASE("harmed blocks decode to an error or to a block within the limits") {
       refused += !decode(block, std::span(good).first(length), start);
     }
     if (good.size() > 100) CHECK(refused > good.size() / 2);
-    for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+    for (std::size_t bit = 0; bit < 8 * good.size(); bit += kSanitized ? 3 : 1) {
       std::vector<std::byte> bad = good;
       bad[bit / 8] ^= std::byte(1u << bit % 8);
       decode(block, bad, start);

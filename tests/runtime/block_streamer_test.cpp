@@ -275,7 +275,8 @@ TEST_CASE("the names of parts come once the view has what it wants" *
 }
 
 TEST_CASE("a camera that moves on finds what it will want" * doctest::test_suite("threads")) {
-  const EncodedCase c = simplified_case(smooth_sphere(80, 120), 300, 14, kCoarsePrecision);
+  const EncodedCase c = simplified_case(kSanitized ? smooth_sphere(50, 80) : smooth_sphere(80, 120),
+                                        300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   for (const bool prefetches : {false, true}) {
     StreamOptions options = hasty(0);
@@ -294,7 +295,8 @@ TEST_CASE("a camera that moves on finds what it will want" * doctest::test_suite
 }
 
 TEST_CASE("memory stays within the budget along a flight" * doctest::test_suite("threads")) {
-  const EncodedCase c = simplified_case(smooth_sphere(80, 120), 300, 14, kCoarsePrecision);
+  const EncodedCase c = simplified_case(kSanitized ? smooth_sphere(50, 80) : smooth_sphere(80, 120),
+                                        300, 14, kCoarsePrecision);
   const BlockFile file = opened(c.bytes);
   for (const bool in_levels : {false, true}) {
     BlockStreamer streamer = opened_streamer(file, async_memory_source(c.bytes), hasty(1));
@@ -306,7 +308,7 @@ TEST_CASE("memory stays within the budget along a flight" * doctest::test_suite(
     parameters.view.coarse_outside = true;
     parameters.view.camera.pixels = 0.25;
     std::size_t dropped = 0, lists = 0;
-    const int frames = kSanitized ? 60 : 200;
+    const int frames = kSanitized ? 40 : 200;
     for (int frame = 0; frame < frames; ++frame) {
       const double angle = 10.0 * frame / frames;
       parameters.view.camera.position = {1.6 * std::cos(angle), 1.6 * std::sin(angle), 0.3};
