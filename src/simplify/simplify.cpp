@@ -143,7 +143,7 @@ void set_scales(WorkMesh& work, const Extent& extent, double normal_weight, doub
       layer.length_per_unit = 0.3 * length_per_unit;
       layer.same = same_texture(edge / length_per_unit);
     } else {
-      layer.length_per_unit = 0.5 * normal_weight * edge;
+      layer.length_per_unit = 0.5 * normal_weight * edge * layer.importance;
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numeric>
 
 namespace crease::simplification {
@@ -44,17 +45,58 @@ double range_of(const AttributeLayer& layer) {
   return range;
 }
 
+// Numbers that are off the mean of those around them by more than this share of their range, on
+// average, are noise for the most part, which is not to decide what triangles there are.
+constexpr double kNoise = 0.01;
+
+double noise_of(const Mesh& mesh, const AttributeLayer& layer) {
+  const std::size_t dimension = layer.dimension;
+  std::vector<double> around(mesh.vertex_count() * dimension, 0);
+  std::vector<std::uint32_t> count(mesh.vertex_count(), 0), own(mesh.vertex_count(), 0);
+  for (std::size_t corner = 0; corner < layer.of_corner.size(); ++corner) {
+    const std::size_t first = corner - corner % 3;
+    const std::size_t v = index_of(mesh.triangles[first / 3][corner % 3]);
+    own[v] = static_cast<std::uint32_t>(layer.of_corner[corner]);
+    count[v] += 2;
+    for (const std::size_t other : {first + (corner + 1) % 3, first + (corner + 2) % 3}) {
+      const std::span<const float> value = layer.value(layer.of_corner[other]);
+      for (std::size_t k = 0; k < dimension; ++k) around[v * dimension + k] += double(value[k]);
+    }
+  }
+  double sum = 0;
+  std::size_t vertices = 0;
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (count[v] == 0) continue;
+    double off = 0;
+    for (std::size_t k = 0; k < dimension; ++k) {
+      const double value = double(layer.values[own[v] * dimension + k]);
+      off = std::max(off, std::abs(value - around[v * dimension + k] / count[v]));
+    }
+    sum += off;
+    ++vertices;
+  }
+  return sum / double(std::max<std::size_t>(1, vertices));
+}
+
+// What a unit of it counts for beside one of a colour, whose range is 0 to 1.
+double importance_of(const Mesh& mesh, const AttributeLayer& layer, double range) {
+  const double noise = noise_of(mesh, layer) / (kNoise * range);
+  return 1 / (range * (1 + noise * noise));
+}
+
 void add_layers(const Mesh& mesh, WorkMesh& work) {
   for (const AttributeLayer& source : mesh.layers) {
     WorkLayer layer;
     layer.source = &source;
     layer.dimension = static_cast<int>(source.dimension);
     layer.blends = source.interpolation != Interpolation::Categorical;
-    layer.steers = layer.blends && source.role != AttributeRole::Other;
     layer.is_direction = source.interpolation == Interpolation::Direction;
     layer.is_normal = source.role == AttributeRole::Normal;
     if (!layer.is_normal) layer.line_weight = weight_of_seams(mesh, source);
     layer.range = range_of(source);
+    const bool is_other = source.role == AttributeRole::Other;
+    layer.steers = layer.blends && (!is_other || layer.range > 0);
+    if (is_other && layer.steers) layer.importance = importance_of(mesh, source, layer.range);
     layer.of_corner.reserve(source.of_corner.size());
     for (AttributeId a : source.of_corner) layer.of_corner.push_back(static_cast<std::uint32_t>(a));
     work.layers.push_back(std::move(layer));

@@ -24,14 +24,16 @@ struct WorkLayer {
   const AttributeLayer* source = nullptr;
   int dimension = 1;
   bool blends = true;   // not categorical
-  bool steers = false;  // counts in the cost: normals, texture coordinates, colours
+  bool steers = false;  // counts in the cost: what blends, but for a number that is always the same
   bool is_direction = false;
   bool is_normal = false;
-  double range = 0;            // of the input's values, the widest component's
-  double line_weight = 1;      // of an edge at whose sides it differs, as a crease; not of normals
-  double length_per_unit = 0;  // what one unit of the attribute is worth as a distance,
-                               // grid units; set anew in every band
-  SameValue same;              // likewise
+  double range = 0;        // of the input's values, the widest component's
+  double importance = 1;   // of a unit of it, where it is no normal and no texture coordinate: 1
+                           // of colours, whose range is 0 to 1
+  double line_weight = 1;  // of an edge at whose sides it differs, as a crease; not of normals
+  double length_per_unit = 0;            // what one unit of the attribute is worth as a distance,
+                                         // grid units; set anew in every band
+  SameValue same;                        // likewise
   std::vector<std::uint32_t> of_corner;  // 3 a triangle, input values then new ones
   std::vector<float> new_values;
 
