@@ -121,6 +121,25 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
   return level;
 }
 
+// How many parts have triangles left, of how many; nothing where the level knows of none.
+struct PartsLeft {
+  std::size_t left = 0, full = 0;
+
+  Json json() const {
+    return full > 0 ? Json{{"parts", left}, {"full_parts", full}} : Json::object();
+  }
+  std::string words() const {
+    return left < full ? ", " + grouped(left) + " of " + grouped(full) + " parts" : "";
+  }
+};
+
+PartsLeft parts_left(const Mesh& level) {
+  std::vector<bool> is_there(level.parts.size());
+  for (const PartId part : level.part_of_triangle) is_there[index_of(part)] = true;
+  if (level.part_of_triangle.empty()) return {};
+  return {static_cast<std::size_t>(std::ranges::count(is_there, true)), level.parts.size()};
+}
+
 // What of the file its meshes lack: parts go by their names, which lie at its end.
 std::vector<std::string> lost_parts(const ModelFile& file, const Mesh& mesh,
                                     const std::filesystem::path& output, const Common& common) {
@@ -165,6 +184,7 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
   Result<ExtractedLevel> extracted = extract_level(options, file, common);
   if (!extracted.ok()) return extracted.failure();
   const Mesh& level = extracted->mesh;
+  const PartsLeft parts = parts_left(level);
   Chosen& chosen = extracted->chosen;
   if (interrupted()) return interrupted_failure();
   if (options.level.samples > 0 && !chosen.measured) {
@@ -192,8 +212,9 @@ Result<Report> extract_one(const ExtractArguments& options, const ModelFile& fil
       {"error_measured", chosen.measured ? measured_json(*chosen.measured) : Json(nullptr)}};
   report.json.update(to_json(exported));
   report.json.update(read_json(file, extracted->model));
+  report.json.update(parts.json());
   report.text = options.output.string() + ": " + grouped(level.triangle_count()) + " of " +
-                grouped(file.triangle_count()) + " triangles, stopped by " +
+                grouped(file.triangle_count()) + " triangles" + parts.words() + ", stopped by " +
                 name_of(chosen.stopped_by) + in_words(chosen.measured);
   if (!chosen.target_met) tell_shortfall(options, level.triangle_count(), common, report);
   return report;
@@ -210,6 +231,7 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
   if (!model.ok()) return model.failure();
 
   Mesh seen = model->mesh.extract();
+  const PartsLeft parts = parts_left(seen);
   std::optional<Comparison> measured;
   if (options.level.samples > 0 && seen.triangle_count() > 0) {
     const Result<Comparison> comparison = measure(file, seen, options.level, common);
@@ -240,9 +262,10 @@ Result<Report> extract_view(const ExtractArguments& options, const ModelFile& fi
                  {"blocks_read", model->blocks_read},
                  {"file_bytes", file.blocks().head().file_bytes}};
   report.json.update(to_json(exported));
+  report.json.update(parts.json());
   report.text = options.output.string() + ": " + grouped(seen.triangle_count()) + " of " +
-                grouped(file.triangle_count()) + " triangles for the view, stopped by " +
-                name_of(model->stopped_by) + in_words(measured);
+                grouped(file.triangle_count()) + " triangles for the view" + parts.words() +
+                ", stopped by " + name_of(model->stopped_by) + in_words(measured);
   if (!is_met) tell_shortfall(options, seen.triangle_count(), common, report);
   return report;
 }
