@@ -311,6 +311,28 @@ class Commands(tool.Case):
             self.assertEqual(words, [f"parts ({parts})"])
             self.assertIn("cut.crease: the names of its parts are missing: the file was cut", log)
 
+    def test_how_many_parts_a_level_has_is_told(self):
+        parts = self.json("info", self.built())["parts"]
+
+        def extract(name, *options):
+            made = self.run_tool("extract", self.built(), "-o", self.path(name), "--samples", "0",
+                                 "--json", *options)
+            return json.loads(made.stdout)
+
+        whole = extract("whole.glb")
+        self.assertEqual((whole["parts"], whole["full_parts"]), (parts, parts))
+        coarse = extract("coarse.glb", "--ratio", "0.02")
+        self.assertEqual(coarse["full_parts"], parts)
+        self.assertLess(coarse["parts"], parts)
+        self.assertEqual(self.json("info", self.path("coarse.glb"))["parts"], coarse["parts"])
+        text = self.run_tool("extract", self.built(), "-o", self.path("c.glb"), "--samples", "0",
+                             "--ratio", "0.02").stdout
+        self.assertIn(f"{coarse['parts']:,} of {parts:,} parts".replace(",", " "), text)
+        view = self.camera("far.json", [9000, -9000, 4000])
+        seen = extract("seen.glb", "--view", view)
+        self.assertEqual((seen["parts"] <= parts, seen["full_parts"]), (True, parts))
+        self.assertNotIn("parts", extract("coarse.stl", "--ratio", "0.02"))
+
     def test_an_ending_may_be_in_capitals(self):
         model = self.write("t.obj", tool.TETRAHEDRON)
         for command, name in (("build", "A.CREASE"), ("extract", "A.GLB"), ("extract", "A.Obj"),
