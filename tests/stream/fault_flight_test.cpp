@@ -18,7 +18,7 @@ std::vector<std::byte> city_in_blocks(std::uint32_t seed) {
   BuildOptions options;
   options.simplify.patch_triangles = 800;
   Result<Built> built = build_model(
-      generate_city({.seed = seed, .triangles = kSanitized ? 12'000u : 30'000u}), options);
+      generate_city({.seed = seed, .triangles = kSanitized ? 18'000u : 30'000u}), options);
   REQUIRE(built.ok());
   return std::move(built->file_bytes);
 }
