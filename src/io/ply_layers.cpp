@@ -151,8 +151,9 @@ PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
 void settle_categories(RawLayer& layer, std::vector<std::string>& notes) {
   if (layer.interpolation != Interpolation::Categorical) return;
   std::vector<float> values = layer.values;
+  std::erase_if(values, [](float x) { return !std::isfinite(x); });  // they become 0
   if (std::ranges::any_of(values, [](float x) { return x != std::floor(x); })) {
-    layer.interpolation = Interpolation::Linear;  // NaN among them
+    layer.interpolation = Interpolation::Linear;
     return;
   }
   std::ranges::sort(values);

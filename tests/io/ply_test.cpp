@@ -127,16 +127,20 @@ TEST_CASE(
 }
 
 TEST_CASE("numbers of vertices that are not whole are no categories, whatever their name") {
-  std::string rows;
-  for (int i = 0; i < 12; ++i) {
-    rows += std::to_string(i) + " " + std::to_string(i % 3) + " 0 " + (i < 6 ? "1.5\n" : "2\n");
-  }
-  const Mesh mesh =
-      import_text(header("property float label\n", "", 12, 2) + rows + "3 0 1 2\n3 6 7 8\n",
-                  "a.ply")
-          .mesh;
-  REQUIRE(layer_named(mesh, "label"));
-  CHECK(layer_named(mesh, "label")->interpolation == Interpolation::Linear);
+  const auto interpolation = [](const char* odd_one) {
+    std::string rows;
+    for (int i = 0; i < 12; ++i) {
+      rows +=
+          std::to_string(i) + " " + std::to_string(i % 3) + " 0 " + (i == 6 ? odd_one : "2") + "\n";
+    }
+    const std::string text = header("property float label\n", "", 12, 2) + rows;
+    const Mesh mesh = import_text(text + "3 0 1 2\n3 6 7 8\n", "a.ply").mesh;
+    REQUIRE(layer_named(mesh, "label"));
+    return layer_named(mesh, "label")->interpolation;
+  };
+  CHECK(interpolation("1.5") == Interpolation::Linear);
+  CHECK(interpolation("1") == Interpolation::Categorical);
+  CHECK(interpolation("nan") == Interpolation::Categorical);  // one that is none spoils no others
 }
 
 TEST_CASE("properties that share a name stay apart, read and written") {
