@@ -197,8 +197,9 @@ struct AttributeQuadric {
 
   // How far what the attribute paints on the surface is displaced, the root of the mean, where the
   // attribute is off by `square`, as at() says: that by the mean slope, of which there are two
-  // directions.
+  // directions. None of numbers: nobody knows how they are painted.
   double displacement(double square, AttributeRole role) const {
+    if (role == AttributeRole::Other) return 0;
     const double unseen = role == AttributeRole::Color    ? kUnseenColor
                           : role == AttributeRole::Normal ? kUnseenNormal
                                                           : 0;

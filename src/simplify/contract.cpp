@@ -349,9 +349,7 @@ CREASE_WIDE void PatchSimplifier::contract_layer(std::size_t layer, Index kept, 
       if (result.quadric != kNone) {
         const AttributeQuadric& quadric = attribute_quadrics_[layer][result.quadric];
         square = quadric.at(target, work.dimension, result.value);
-        if (work.source->role != AttributeRole::Other) {
-          displacement = std::max(displacement, quadric.displacement(square, work.source->role));
-        }
+        displacement = std::max(displacement, quadric.displacement(square, work.source->role));
       }
       square_error = std::max(square_error, square / result.area);
     }
