@@ -58,16 +58,17 @@ CornerChanges AttributeRejoiner::rejoin(const UnfoldedBlock& block,
     derive(block, patch, first, all.derived);
     all.derived_of[i] = since(first_derived, all.derived.size());
     for (std::size_t l = 0; l < layers_.size(); ++l) {
-      find_values(block, patch, first, l, is_last, wedges[l]);
+      find_values(block, patch, first, l, wedges[l]);
       join(patch, vanished, first, second, l);
       if (is_last) {
-        change_to_coarse(block, first, l, all.changes);
+        go_to_coarse(block, first, l);
       } else if (are_known(wedges[l])) {
-        change_to_best(wedges[l], l, all.changes);
+        go_to_best(wedges[l], l);
       } else {
-        blend(l, share_on_the_way(parent, before, positions[second]), all.changes);
+        blend(l, share_on_the_way(parent, before, positions[second]));
       }
-      for (const Shown& shown : shown_) *shown.id = at_vertex_[shown.value].to;
+      if (!is_last) part(block, l);
+      record(l, all.changes);
     }
     all.changes_of[i] = since(first_change, all.changes.size());
   }
@@ -149,8 +150,7 @@ AttributeRejoiner::AtVertex* AttributeRejoiner::find(std::uint32_t id) {
 
 // Which values stand at v, and where each is to be looked up at the coarse end.
 void AttributeRejoiner::find_values(const UnfoldedBlock& block, const ContractingPatch& patch,
-                                    std::uint32_t v, std::size_t layer, bool is_last,
-                                    const WedgeValues& wedges) {
+                                    std::uint32_t v, std::size_t layer, const WedgeValues& wedges) {
   at_vertex_.clear();
   shown_.clear();
   std::uint32_t last = kNone;
@@ -177,7 +177,7 @@ void AttributeRejoiner::find_values(const UnfoldedBlock& block, const Contractin
     }
     shown_.push_back({&at.ids[c], static_cast<std::size_t>(value - at_vertex_.data())});
     ++value->corners[i >= from_first];
-    if (!is_last || t >= block.coarse_triangle_count()) continue;
+    if (t >= block.coarse_triangle_count()) continue;
     if (value->wanted == kNone) value->wanted = 3 * t + c;
     value->is_flat = value->is_flat || is_flat[t] != 0;
   }
@@ -199,8 +199,8 @@ void AttributeRejoiner::join(const ContractingPatch& patch, std::span<const std:
   }
 }
 
-void AttributeRejoiner::change_to_coarse(const UnfoldedBlock& block, std::uint32_t v,
-                                         std::size_t layer, std::vector<AttributeChange>& changes) {
+void AttributeRejoiner::go_to_coarse(const UnfoldedBlock& block, std::uint32_t v,
+                                     std::size_t layer) {
   ValuePool& pool = pools_[layer];
   const std::vector<CodedValue>& coarse = block.coarse_values[layer];
   // Those that vanish in this block have no value at its coarse end; they go with their neighbours.
@@ -238,12 +238,11 @@ void AttributeRejoiner::change_to_coarse(const UnfoldedBlock& block, std::uint32
           find(to) != nullptr || std::count(goes_to.begin(), goes_to.end(), to) > 0;
       goes_to[i] = is_taken ? pool.add(wanted) : to;
     }
-    change(layer, value, goes_to[i], changes);
+    value.to = goes_to[i];
   }
 }
 
-void AttributeRejoiner::blend(std::size_t layer, double second_share,
-                              std::vector<AttributeChange>& changes) {
+void AttributeRejoiner::blend(std::size_t layer, double second_share) {
   ValuePool& pool = pools_[layer];
   for (std::uint32_t i = 0; i < at_vertex_.size(); ++i) {
     if (at_vertex_[i].joined != i) continue;
@@ -289,7 +288,7 @@ void AttributeRejoiner::blend(std::size_t layer, double second_share,
       to = pool.code(most->id) == code ? most->id : pool.add(code);
     }
     for (AtVertex& value : at_vertex_) {
-      if (value.joined == i && value.id != to) change(layer, value, to, changes);
+      if (value.joined == i) value.to = to;
     }
   }
 }
@@ -300,8 +299,7 @@ bool AttributeRejoiner::are_known(const WedgeValues& wedges) const {
   });
 }
 
-void AttributeRejoiner::change_to_best(const WedgeValues& wedges, std::size_t layer,
-                                       std::vector<AttributeChange>& changes) {
+void AttributeRejoiner::go_to_best(const WedgeValues& wedges, std::size_t layer) {
   ValuePool& pool = pools_[layer];
   const std::size_t dimension = layers_[layer].dimension;
   for (std::size_t i = 0; i < at_vertex_.size(); ++i) {
@@ -330,15 +328,33 @@ void AttributeRejoiner::change_to_best(const WedgeValues& wedges, std::size_t la
     std::uint32_t to = nearest;
     if (!(nearest_away2 <= same * same)) to = pool.add(pool.nearest_code(best));
     for (AtVertex& value : at_vertex_) {
-      if (value.wedge == wedge && value.id != to) change(layer, value, to, changes);
+      if (value.wedge == wedge) value.to = to;
     }
   }
 }
 
-void AttributeRejoiner::change(std::size_t layer, AtVertex& value, std::uint32_t to,
-                               std::vector<AttributeChange>& changes) {
-  value.to = to;
-  changes.push_back({static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{to}});
+void AttributeRejoiner::part(const UnfoldedBlock& block, std::size_t layer) {
+  ValuePool& pool = pools_[layer];
+  const std::vector<CodedValue>& coarse = block.coarse_values[layer];
+  for (const AtVertex& value : at_vertex_) {
+    const std::uint32_t shared = value.to;
+    if (!pool.is_flat(shared) || value.wanted == kNone) continue;
+    const CodedValue code = pool.code(shared);
+    if (code == coarse[value.wanted]) continue;
+    const std::uint32_t own = pool.add(code);
+    for (AtVertex& other : at_vertex_) {
+      if (other.to == shared) other.to = own;
+    }
+  }
+}
+
+void AttributeRejoiner::record(std::size_t layer, std::vector<AttributeChange>& changes) {
+  for (const Shown& shown : shown_) *shown.id = at_vertex_[shown.value].to;
+  for (const AtVertex& value : at_vertex_) {
+    if (value.to == value.id) continue;
+    changes.push_back(
+        {static_cast<std::uint32_t>(layer), AttributeId{value.id}, AttributeId{value.to}});
+  }
 }
 
 }  // namespace crease::codec

@@ -78,19 +78,19 @@ class AttributeRejoiner {
   void derive(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
               std::vector<TriangleId>& derived);
   void find_values(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
-                   std::size_t layer, bool is_last, const WedgeValues& wedges);
+                   std::size_t layer, const WedgeValues& wedges);
   void join(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
             std::uint32_t first, std::uint32_t second, std::size_t layer);
-  void change_to_coarse(const UnfoldedBlock& block, std::uint32_t v, std::size_t layer,
-                        std::vector<AttributeChange>& changes);
+  void go_to_coarse(const UnfoldedBlock& block, std::uint32_t v, std::size_t layer);
   // `second_share`: where the parent stands on the way from the first child to the second.
-  void blend(std::size_t layer, double second_share, std::vector<AttributeChange>& changes);
-  bool are_known(const WedgeValues& wedges) const;  // all at the vertex
-  // They must be known.
-  void change_to_best(const WedgeValues& wedges, std::size_t layer,
-                      std::vector<AttributeChange>& changes);
-  void change(std::size_t layer, AtVertex& value, std::uint32_t to,
-              std::vector<AttributeChange>& changes);
+  void blend(std::size_t layer, double second_share);
+  bool are_known(const WedgeValues& wedges) const;                // all at the vertex
+  void go_to_best(const WedgeValues& wedges, std::size_t layer);  // they must be known
+  // What is flat at the fine end and has another value at the coarse end goes there under an id of
+  // its own, not to be taken for what it meets on the way and stays flat.
+  void part(const UnfoldedBlock& block, std::size_t layer);
+  void record(std::size_t layer,
+              std::vector<AttributeChange>& changes);  // what became of the values
   bool is_hidden(std::size_t layer, std::uint32_t triangle) const {
     return layers_[layer].role == AttributeRole::Normal && normals_[triangle] == Normals::Derived;
   }

@@ -54,6 +54,7 @@ class ValuePool {
   }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(entries_.size()); }
+  bool is_flat(std::uint32_t id) const { return entries_[id].before == kIsFlat; }
   const CodedValue& code(std::uint32_t id) const { return entries_[id].code; }
   std::span<const float> value(std::uint32_t id) const {
     return std::span(numbers_).subspan(std::size_t(id) * dimension_, dimension_);
@@ -65,9 +66,10 @@ class ValuePool {
 
  private:
   static constexpr std::int32_t kIsDirection = 1;  // in a component that directions leave 0
+  static constexpr std::uint32_t kIsFlat = kNone - 1;
   struct Entry {
     CodedValue code;
-    std::uint32_t before = kNone;  // interned at the same vertex
+    std::uint32_t before = kNone;  // interned at the same vertex; or kIsFlat
   };
 
   static std::size_t hash_of(const CodedValue& code) {
@@ -87,6 +89,7 @@ class ValuePool {
     flat_[at] = size();
     ++flat_count_;
     add_it();
+    entries_.back().before = kIsFlat;
     return size() - 1;
   }
   void grow() {
