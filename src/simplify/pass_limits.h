@@ -19,6 +19,10 @@ inline constexpr double kPassShare = 0.5;
 inline constexpr int kPasses = 2;
 inline constexpr int kPassesOfFirst = 1;  // so that half of the triangles see two borders
 
+// By no more than this, though more triangles stay. Beyond it, what lies within a patch goes before
+// what costs far less and lies at its border: the walls of a building before its pipes.
+inline constexpr double kMostGrowth = 24;
+
 class PassLimits {
  public:
   explicit PassLimits(double first) : limit_(first) {}
@@ -37,7 +41,7 @@ class PassLimits {
     is_first_band_ = is_first_band_ && !ends;
     pass_ = ends ? 0 : pass_ + 1;
     const double next = powers_[static_cast<std::size_t>(pass_)];
-    factor_ = std::clamp(std::pow(kPassShare, -1 / next), 2.0, 4096.0);
+    factor_ = std::clamp(std::pow(kPassShare, -1 / next), 2.0, kMostGrowth);
     limit_ *= factor_;
     return ends;
   }
