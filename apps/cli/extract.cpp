@@ -6,6 +6,7 @@
 #include "cli/lod_chain.h"
 #include "cli/model.h"
 #include "cli/output.h"
+#include "cli/parts_left.h"
 #include "cli/text.h"
 #include "cli/view.h"
 #include "crease/progressive_mesh.h"
@@ -119,25 +120,6 @@ Result<ExtractedLevel> extract_level(const ExtractArguments& options, const Mode
   level.error = larger(level.error, model->decoded.error);
   level.model = *std::move(model);
   return level;
-}
-
-// How many parts have triangles left, of how many; nothing where the level knows of none.
-struct PartsLeft {
-  std::size_t left = 0, full = 0;
-
-  Json json() const {
-    return full > 0 ? Json{{"parts", left}, {"full_parts", full}} : Json::object();
-  }
-  std::string words() const {
-    return left < full ? ", " + grouped(left) + " of " + grouped(full) + " parts" : "";
-  }
-};
-
-PartsLeft parts_left(const Mesh& level) {
-  std::vector<bool> is_there(level.parts.size());
-  for (const PartId part : level.part_of_triangle) is_there[index_of(part)] = true;
-  if (level.part_of_triangle.empty()) return {};
-  return {static_cast<std::size_t>(std::ranges::count(is_there, true)), level.parts.size()};
 }
 
 // What of the file its meshes lack: parts go by their names, which lie at its end.

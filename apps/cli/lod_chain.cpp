@@ -4,6 +4,7 @@
 #include "cli/fields.h"
 #include "cli/level.h"
 #include "cli/number_check.h"
+#include "cli/parts_left.h"
 #include "cli/text.h"
 #include "crease/export.h"
 #include "crease/write_file.h"
@@ -46,6 +47,7 @@ std::filesystem::path manifest_file(const std::filesystem::path& output) {
 struct ChainLevel {
   std::vector<std::byte> glb;  // of its own, or
   Mesh mesh;                   // for one of all levels
+  PartsLeft parts;
   Json json;
 };
 
@@ -59,6 +61,8 @@ Result<ChainLevel> make_level(ProgressiveMesh& mesh, const std::vector<ImageFile
   made.json = {{"triangles", level.triangle_count()},
                {"vertices", level.vertex_count()},
                {"error", to_json(mesh.error())}};
+  made.parts = parts_left(level);
+  made.json.update(made.parts.json());
   if (samples > 0) {
     const Result<Comparison> measured = measure_level(full, level, samples, common);
     if (!measured.ok()) return measured.failure();
@@ -146,7 +150,8 @@ Result<Report> extract_chain(ProgressiveMesh& mesh, const std::vector<ImageFile>
       json["file"] = file.filename().string();
     }
     report.text += (i > 0 ? "\n" : "") + std::string("level ") + std::to_string(i) + ": " +
-                   grouped(json["triangles"].get<std::size_t>()) + " triangles";
+                   grouped(json["triangles"].get<std::size_t>()) + " triangles" +
+                   levels[i].parts.words();
     if (json.contains("error_measured")) {
       report.text += ", off by " + in_length(json["error_measured"]["surface_max"].get<double>()) +
                      " at most, " +

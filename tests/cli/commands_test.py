@@ -332,6 +332,10 @@ class Commands(tool.Case):
         seen = extract("seen.glb", "--view", view)
         self.assertEqual((seen["parts"] <= parts, seen["full_parts"]), (True, parts))
         self.assertNotIn("parts", extract("coarse.stl", "--ratio", "0.02"))
+        for options in (), ("--lod-glb",):
+            levels = extract("chain.glb", "--levels", "2", "--step", "0.02", *options)["levels"]
+            self.assertEqual([level["parts"] for level in levels], [parts, coarse["parts"]])
+            self.assertEqual(levels[1]["full_parts"], parts)
 
     def test_an_ending_may_be_in_capitals(self):
         model = self.write("t.obj", tool.TETRAHEDRON)
