@@ -99,6 +99,9 @@ Result<Report> run_compare(const CompareArguments& options, const Common& common
                 row("B to A", c.distance.b_to_a, diagonal) + "\nnormals    mean " +
                 in_degrees(c.normal_deviation.mean) + ", 95 % below " +
                 in_degrees(c.normal_deviation.p95) + ", max " + in_degrees(c.normal_deviation.max);
+  for (const AttributeDeviation& attribute : c.attributes) {
+    report.text += "\n" + line_of(attribute);
+  }
   report.text_is_answer = true;
   return report;
 }

@@ -4,8 +4,40 @@
 #include "cli/up_option.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <utility>
 
 namespace crease::cli {
+
+namespace {
+
+Json to_json(const DeviationSpread& spread) {
+  return {{"mean", spread.mean}, {"p95", spread.p95}, {"max", spread.max}};
+}
+
+const char* name_of(DeviationUnit unit) {
+  switch (unit) {
+    case DeviationUnit::Values:
+      return "values";
+    case DeviationUnit::Degrees:
+      return "degrees";
+    case DeviationUnit::Share:
+      break;
+  }
+  return "share";
+}
+
+Json to_json(const std::vector<AttributeDeviation>& attributes) {
+  Json all = Json::array();
+  for (const AttributeDeviation& attribute : attributes) {
+    Json json = {{"name", attribute.name}, {"unit", name_of(attribute.unit)}};
+    json.update(to_json(attribute.spread));
+    all.push_back(std::move(json));
+  }
+  return all;
+}
+
+}  // namespace
 
 Json to_json(const LevelError& error) {
   return {{"surface", error.surface},
@@ -29,10 +61,8 @@ Json to_json(const Comparison& c) {
             {"mean_relative", both(to.mean / diagonal, from.mean / diagonal)},
             {"rms_relative", both(to.rms / diagonal, from.rms / diagonal)},
             {"max_relative", both(to.max / diagonal, from.max / diagonal)}}},
-          {"normal_deviation",
-           {{"mean", c.normal_deviation.mean},
-            {"p95", c.normal_deviation.p95},
-            {"max", c.normal_deviation.max}}},
+          {"normal_deviation", to_json(c.normal_deviation)},
+          {"attributes", to_json(c.attributes)},
           {"diagonal", c.diagonal},
           {"samples", c.samples}};
 }
@@ -90,7 +120,25 @@ Json measured_json(const Comparison& c) {
           {"degrees_mean", c.normal_deviation.mean},
           {"degrees_p95", c.normal_deviation.p95},
           {"degrees_max", c.normal_deviation.max},
+          {"attributes", to_json(c.attributes)},
           {"samples", c.samples}};
+}
+
+std::string line_of(const AttributeDeviation& attribute) {
+  const auto in_unit = [&](double value) {
+    if (attribute.unit == DeviationUnit::Degrees) return in_degrees(value);
+    char words[40];
+    std::snprintf(words, sizeof words, "%.3g", value);
+    return std::string(words);
+  };
+  const std::string& name = attribute.name;
+  const std::string start = name + std::string(name.size() < 10 ? 11 - name.size() : 1, ' ');
+  const DeviationSpread& spread = attribute.spread;
+  if (attribute.unit == DeviationUnit::Share) {
+    return start + "differs on " + in_unit(100 * spread.mean) + " %";
+  }
+  return start + "mean " + in_unit(spread.mean) + ", 95 % below " + in_unit(spread.p95) + ", max " +
+         in_unit(spread.max);
 }
 
 std::string lines_of(const ImportReport& report) {

@@ -8,7 +8,8 @@
 // other through a bounding volume hierarchy (Embree), evaluated in doubles. Normals are
 // interpolated from corner normals. Where several triangles lie within a hair of the closest
 // distance (on a hard edge), the one whose normal agrees best counts, so that a sample on an edge
-// is not punished.
+// is not punished. So it is with whatever else both meshes carry: colours, texture coordinates,
+// numbers, materials, parts.
 //
 // The largest distance is not that of samples, which miss a window that one triangle covers: it is
 // found by branch and bound over the triangles (measure/furthest.h), and holds for all points of
@@ -23,6 +24,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace crease {
@@ -38,15 +40,32 @@ struct Spread {
 // same all over a rough surface.
 inline constexpr double kMaxTolerance = 0.01;
 
+enum class DeviationUnit : std::uint8_t {
+  Values,   // the length of the difference, in the layer's own units (colours: 0..1)
+  Degrees,  // of directions
+  Share,    // of what does not blend: the share of both surfaces where it differs, 0..1
+};
+
+// Of the samples, both ways together.
+struct DeviationSpread {
+  double mean = 0, p95 = 0, max = 0;
+};
+
+struct AttributeDeviation {
+  std::string name;  // a's word for the layer; "material", "part"
+  DeviationUnit unit = DeviationUnit::Values;
+  DeviationSpread spread;
+};
+
 struct Comparison {
   struct {
     Spread a_to_b, b_to_a;
-  } distance;  // model units
-  struct {
-    double mean = 0, p95 = 0, max = 0;  // both ways together
-  } normal_deviation;                   // degrees
-  double diagonal = 0;                  // of a's bounding box, model units
-  std::size_t samples = 0;              // on each surface
+  } distance;                        // model units
+  DeviationSpread normal_deviation;  // degrees
+  // Layers of a that b has too: by role, the others by name. Materials and parts are told by name.
+  std::vector<AttributeDeviation> attributes;
+  double diagonal = 0;      // of a's bounding box, model units
+  std::size_t samples = 0;  // on each surface
 };
 
 struct CompareOptions {

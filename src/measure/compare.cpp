@@ -4,6 +4,7 @@
 #include "measure/furthest.h"
 #include "measure/look_for_each.h"
 #include "measure/sample.h"
+#include "measure/shared_attributes.h"
 #include "measure/surface.h"
 #include "parallel/parallel.h"
 #include "parallel/shared_progress.h"
@@ -28,17 +29,21 @@ constexpr double kMostApart = 1000;
 constexpr std::size_t kQueriesATriangle = 16, kQueriesAtLeast = 1'000'000;
 
 struct OneWay {
-  std::vector<double> distance;   // frame units, per sample
-  std::vector<double> deviation;  // radians, per sample
-  Furthest furthest;              // frame units
+  std::vector<double> distance;                   // frame units, per sample
+  std::vector<double> deviation;                  // radians, per sample
+  std::vector<std::vector<double>> of_attribute;  // deviations, per shared attribute and sample
+  Furthest furthest;                              // frame units
 };
 
 // Per sample into arrays of its own, so that sums do not depend on how threads share the work.
-OneWay measure_samples(const Surface& from, const Surface& to, const CompareOptions& options,
-                       double tie, SharedProgress& progress) {
+// `side`: 0 from a to b, 1 from b to a.
+OneWay measure_samples(const Surface& from, const Surface& to, const SharedAttributes& shared,
+                       std::size_t side, const CompareOptions& options, double tie,
+                       SharedProgress& progress) {
   OneWay result;
   result.distance.resize(options.samples);
   result.deviation.resize(options.samples);
+  result.of_attribute.resize(shared.count(), std::vector<double>(options.samples));
   const Sampler sampler(from, options.samples, options.seed);
   const auto is_over = [&] { return progress.stopped(); };
   look_for_each(options.samples, progress, is_over, [&](std::size_t i, Surface::Scratch& scratch) {
@@ -51,6 +56,9 @@ OneWay measure_samples(const Surface& from, const Surface& to, const CompareOpti
     const Nearest nearest = to.nearest(p, &normal, tie, scratch);
     result.distance[i] = nearest.distance;
     result.deviation[i] = nearest.deviation_rad;
+    for (std::size_t k = 0; k < shared.count(); ++k) {
+      result.of_attribute[k][i] = shared.deviation(k, sample, scratch.candidates, side);
+    }
   });
   for (double d : result.distance) {
     result.furthest.distance = std::max(result.furthest.distance, d);
@@ -62,9 +70,10 @@ std::size_t max_queries(const Surface& from, const Surface& to) {
   return kQueriesATriangle * (from.triangle_count() + to.triangle_count()) + kQueriesAtLeast;
 }
 
-OneWay measure_way(const Surface& from, const Surface& to, const CompareOptions& options,
-                   double tie, SharedProgress& progress) {
-  OneWay way = measure_samples(from, to, options, tie, progress);
+OneWay measure_way(const Surface& from, const Surface& to, const SharedAttributes& shared,
+                   std::size_t side, const CompareOptions& options, double tie,
+                   SharedProgress& progress) {
+  OneWay way = measure_samples(from, to, shared, side, options, tie, progress);
   way.furthest = find_furthest(from, to,
                                {.at_least = way.furthest.distance,
                                 .relative = kMaxTolerance,
@@ -88,6 +97,20 @@ Spread spread_of(const OneWay& way, double scale) {
   return spread;
 }
 
+// Adds the others, and sorts.
+DeviationSpread spread_of_both(std::vector<double>& deviations, const std::vector<double>& others) {
+  DeviationSpread spread;
+  deviations.insert(deviations.end(), others.begin(), others.end());
+  if (deviations.empty()) return spread;
+  double sum = 0;
+  for (const double d : deviations) sum += d;
+  spread.mean = sum / double(deviations.size());
+  std::sort(deviations.begin(), deviations.end());
+  spread.p95 = deviations[(deviations.size() - 1) * 95 / 100];
+  spread.max = deviations.back();
+  return spread;
+}
+
 // How far there is to go beside the samples.
 std::size_t size_of(const Mesh& a, const Mesh& b) {
   return a.vertex_count() + b.vertex_count() + a.triangle_count() + b.triangle_count();
@@ -108,8 +131,9 @@ Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareOptions& o
   const Surface surface_a(a, frame), surface_b(b, frame);
 
   SharedProgress progress(options.progress, "compare", 2 * options.samples + size_of(a, b));
-  OneWay a_to_b = measure_way(surface_a, surface_b, options, tie, progress);
-  OneWay b_to_a = measure_way(surface_b, surface_a, options, tie, progress);
+  const SharedAttributes shared(a, b);
+  OneWay a_to_b = measure_way(surface_a, surface_b, shared, 0, options, tie, progress);
+  OneWay b_to_a = measure_way(surface_b, surface_a, shared, 1, options, tie, progress);
   if (progress.stopped()) return fail(Error::Interrupted, "compare: interrupted");
 
   Comparison result;
@@ -118,15 +142,13 @@ Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareOptions& o
   result.distance.a_to_b = spread_of(a_to_b, frame.scale);
   result.distance.b_to_a = spread_of(b_to_a, frame.scale);
 
-  std::vector<double>& deviation = a_to_b.deviation;
-  deviation.insert(deviation.end(), b_to_a.deviation.begin(), b_to_a.deviation.end());
-  if (deviation.empty()) return result;
-  double sum = 0;
-  for (double d : deviation) sum += d;
-  result.normal_deviation.mean = degrees(sum / double(deviation.size()));
-  std::sort(deviation.begin(), deviation.end());
-  result.normal_deviation.p95 = degrees(deviation[(deviation.size() - 1) * 95 / 100]);
-  result.normal_deviation.max = degrees(deviation.back());
+  const DeviationSpread normals = spread_of_both(a_to_b.deviation, b_to_a.deviation);
+  result.normal_deviation = {
+      .mean = degrees(normals.mean), .p95 = degrees(normals.p95), .max = degrees(normals.max)};
+  for (std::size_t k = 0; k < shared.count(); ++k) {
+    result.attributes.push_back({shared.name(k), shared.unit(k),
+                                 spread_of_both(a_to_b.of_attribute[k], b_to_a.of_attribute[k])});
+  }
   return result;
 }
 

@@ -169,9 +169,11 @@ Nearest Surface::nearest(const Vec3d& p, const Vec3d* normal, double tie, Scratc
   rtcPointQuery(scene_.get(), &search, &context, visit_triangle, &query);
 
   Nearest nearest{.distance = query.best};
+  std::erase_if(scratch.candidates, [&](const Scratch::Candidate& candidate) {
+    return candidate.distance > query.best + tie;
+  });
   double least = kInfinity;
   for (const Scratch::Candidate& candidate : scratch.candidates) {
-    if (candidate.distance > query.best + tie) continue;
     if (candidate.distance == query.best) {
       nearest.triangle = std::min(nearest.triangle, candidate.triangle);
     }

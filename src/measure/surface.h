@@ -58,7 +58,7 @@ class Surface {
       std::uint32_t triangle;
       std::array<double, 3> weights;
     };
-    std::vector<Candidate> candidates;
+    std::vector<Candidate> candidates;    // after a query: all triangles within its tie
     std::uint32_t last_triangle = kNone;  // samples come in an order that stays near
   };
   // Deviation is measured against `normal` where one is given.

@@ -402,6 +402,28 @@ class Commands(tool.Case):
         self.has(c["normal_deviation"], "mean", "p95", "max")
         self.assertAlmostEqual(c["normal_deviation"]["max"], 0, 3)
         self.assertEqual(c["samples"], 1000)
+        self.assertEqual(c["attributes"], [])
+
+    def test_compare_and_extract_say_how_far_colours_and_labels_are_off(self):
+        def write(name, blue, label):
+            corners = "".join(f"{x} {y} 0 {int(255 * x)} 0 {blue}\n" for y in (0, 1) for x in (0, 1))
+            return self.write(name, "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+                              "property float y\nproperty float z\nproperty uchar red\n"
+                              "property uchar green\nproperty uchar blue\nelement face 2\n"
+                              "property list uchar int vertex_indices\nproperty uchar label\n"
+                              f"end_header\n{corners}3 0 1 3 1\n3 0 3 2 {label}\n")
+        a, b = write("a.ply", 0, 1), write("b.ply", 51, 2)
+        color, label = self.json("compare", a, b, "--samples", 10000)["attributes"]
+        self.assertEqual((color["name"], color["unit"]), ("color", "values"))
+        for key in ("mean", "p95", "max"):
+            self.assertAlmostEqual(color[key], 0.2, 5)
+        self.assertEqual((label["name"], label["unit"]), ("label", "share"))
+        self.assertAlmostEqual(label["mean"], 0.5, 2)
+        self.assertIn("label      differs on 50", self.run_tool("compare", a, b).stdout)
+        self.run_tool("build", a, "-o", self.path("a.crease"))
+        whole = self.json("extract", self.path("a.crease"), "-o", self.path("whole.ply"))
+        self.assertEqual([round(attribute["max"], 9)
+                          for attribute in whole["error_measured"]["attributes"]], [0, 0])
 
     def test_compare_makes_normals_of_both_alike(self):
         # A scan, and a level of it that has too few triangles to look like one.
