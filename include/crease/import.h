@@ -88,7 +88,9 @@ Result<Imported> import_bytes(std::span<const std::byte> bytes, std::string_view
                               const ImportOptions& options,
                               const std::filesystem::path* folder = nullptr);
 
-// Several files as one mesh: vertices at bit-equal positions are shared, each file is a part.
+// Several files as one mesh: vertices at bit-equal positions are shared, each file is a part, or
+// several where it has some of its own ("wing.glb/flap"). Where a file lacks colours that another
+// has it is white; where it lacks another layer, zero.
 Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
                                const ImportOptions& options);
 

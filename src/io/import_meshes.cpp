@@ -7,19 +7,42 @@
 #include "mesh/weld.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace crease {
 
 namespace {
 
+// Colours of one name are one layer, with alpha or without.
 bool is_same_layer(const AttributeLayer& a, const AttributeLayer& b) {
-  return a.name == b.name && a.role == b.role && a.dimension == b.dimension &&
-         a.interpolation == b.interpolation;
+  return a.name == b.name && a.role == b.role && a.interpolation == b.interpolation &&
+         (a.dimension == b.dimension || a.role == AttributeRole::Color);
 }
 
-// Adds `from`'s layers to `to`, which has `before` triangles, `from` having `added`. Where one side
-// lacks a layer, its corners get zero there.
+// What a corner has that lacks the layer, and a colour that lacks alpha: white, opaque.
+float fill_of(const AttributeLayer& layer) {
+  return layer.role == AttributeRole::Color ? 1.0f : 0.0f;
+}
+
+void widen(AttributeLayer& layer, std::uint32_t dimension) {
+  std::vector<float> values(layer.value_count() * dimension, fill_of(layer));
+  for (std::size_t i = 0; i < layer.value_count(); ++i) {
+    std::copy_n(&layer.values[i * layer.dimension], layer.dimension, &values[i * dimension]);
+  }
+  layer.values = std::move(values);
+  layer.dimension = dimension;
+}
+
+AttributeId add_fill(AttributeLayer& layer) {
+  const AttributeId fill{static_cast<std::uint32_t>(layer.value_count())};
+  layer.values.resize(layer.values.size() + layer.dimension, fill_of(layer));
+  return fill;
+}
+
+// Adds `from`'s layers to `to`, which has `before` triangles, `from` having `added`.
 void append_layers(Mesh& to, std::vector<AttributeLayer> from, std::size_t before,
                    std::size_t added) {
   for (AttributeLayer& layer : from) {
@@ -29,11 +52,12 @@ void append_layers(Mesh& to, std::vector<AttributeLayer> from, std::size_t befor
     const auto at = static_cast<std::size_t>(same - to.layers.begin());
     if (at == to.layers.size()) {
       AttributeLayer fresh{layer.name, layer.role, layer.interpolation, layer.dimension, {}, {}};
-      fresh.values.assign(layer.dimension, 0.0f);
-      fresh.of_corner.assign(3 * before, AttributeId{0});
+      fresh.of_corner.assign(3 * before, add_fill(fresh));
       to.layers.push_back(std::move(fresh));
     }
     AttributeLayer& target = to.layers[at];
+    if (target.dimension < layer.dimension) widen(target, layer.dimension);
+    if (layer.dimension < target.dimension) widen(layer, target.dimension);
     const auto first = static_cast<std::uint32_t>(target.value_count());
     target.values.insert(target.values.end(), layer.values.begin(), layer.values.end());
     for (AttributeId a : layer.of_corner) {
@@ -42,9 +66,7 @@ void append_layers(Mesh& to, std::vector<AttributeLayer> from, std::size_t befor
   }
   for (AttributeLayer& layer : to.layers) {
     if (layer.of_corner.size() == 3 * (before + added)) continue;
-    const AttributeId zero{static_cast<std::uint32_t>(layer.value_count())};
-    layer.values.resize(layer.values.size() + layer.dimension, 0.0f);
-    layer.of_corner.resize(3 * (before + added), zero);
+    layer.of_corner.resize(3 * (before + added), add_fill(layer));
   }
 }
 
@@ -67,10 +89,25 @@ void append_materials(Mesh& to, const Mesh& from, std::size_t before, std::size_
   }
 }
 
-void append(Mesh& to, Mesh from, std::string part) {
+// Those of a file that has several keep their names, behind its own.
+void append_parts(Mesh& to, const Mesh& from, const std::string& file) {
+  const auto first = static_cast<std::uint32_t>(to.parts.size());
+  if (from.parts.size() < 2) {
+    to.part_of_triangle.resize(to.part_of_triangle.size() + from.triangle_count(), PartId{first});
+    to.parts.push_back(file);
+    return;
+  }
+  for (const PartId part : from.part_of_triangle) {
+    to.part_of_triangle.push_back(PartId{first + static_cast<std::uint32_t>(index_of(part))});
+  }
+  for (const std::string& part : from.parts) to.parts.push_back(file + "/" + part);
+}
+
+void append(Mesh& to, Mesh from, const std::string& file) {
   const std::size_t before = to.triangle_count(), added = from.triangle_count();
   append_images(from.images, from.materials, to.images);
   append_materials(to, from, before, added);
+  append_parts(to, from, file);
   append_layers(to, std::move(from.layers), before, added);
   const auto first = static_cast<std::uint32_t>(to.vertex_count());
   to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
@@ -81,8 +118,10 @@ void append(Mesh& to, Mesh from, std::string part) {
     }
     to.triangles.push_back(moved);
   }
-  to.part_of_triangle.resize(before + added, PartId{static_cast<std::uint32_t>(to.parts.size())});
-  to.parts.push_back(std::move(part));
+}
+
+const char* name_of(UpAxis up) {
+  return up == UpAxis::Y ? "y" : "z";
 }
 
 // Sums up; formats and normals are listed once each.
@@ -111,15 +150,19 @@ Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
   if (paths.empty()) return fail(Error::CommandLine, "no file to import");
   if (paths.size() == 1) return import_mesh(paths[0], options);
   Imported all;
-  bool had_parts = false, is_first = true;
+  std::optional<UpAxis> said;  // the first up axis that a file says
   for (const std::filesystem::path& path : paths) {
     Result<Imported> one = import_mesh(path, options);
     if (!one.ok()) return one.failure();
-    had_parts = had_parts || one->mesh.parts.size() > 1;
-    if (is_first) all.mesh.up = one->mesh.up;
-    is_first = false;
-    const bool is_said = !one->report.up_is_guessed && one->mesh.up == all.mesh.up;
-    all.report.up_is_guessed = all.report.up_is_guessed || !is_said;
+    const bool is_said = !one->report.up_is_guessed;
+    if (path == paths[0]) all.mesh.up = one->mesh.up;
+    all.report.up_is_guessed = all.report.up_is_guessed || !is_said || one->mesh.up != all.mesh.up;
+    if (is_said && said && *said != one->mesh.up) {
+      all.report.notes.push_back(path.string() + ": says that " + name_of(one->mesh.up) +
+                                 " is up, files before it that " + name_of(*said) +
+                                 " is; none is turned");
+    }
+    if (is_said && !said) said = one->mesh.up;
     append(all.report, one->report, path.string());
     append(all.mesh, std::move(one->mesh), path.filename().string());
   }
@@ -144,8 +187,6 @@ Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
   all.report.duplicate_triangles = count_duplicate_triangles(mesh);
   all.report.zero_area_triangles = count_zero_area_triangles(mesh);
   all.report.misoriented_edges = count_misoriented_edges(mesh);
-  if (had_parts)
-    all.report.notes.push_back("each file is one part; parts inside files are not kept");
   return all;
 }
 

@@ -210,6 +210,67 @@ TEST_CASE("several files become one mesh with shared vertices and a part a file"
   std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("files beside each other keep colours and parts, and say where they disagree") {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "crease_import_beside_test";
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const char* name, std::uint32_t dimension, bool has_parts) {
+    Mesh mesh = hard_box(1);
+    if (dimension > 0) {
+      AttributeLayer& color = mesh.layers.emplace_back();
+      color.name = "color";
+      color.role = AttributeRole::Color;
+      color.dimension = dimension;
+      color.values.assign(dimension, 0.5f);
+      color.of_corner.assign(3 * mesh.triangle_count(), AttributeId{0});
+    }
+    if (has_parts) {
+      mesh.parts = {"left", "right"};
+      for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+        mesh.part_of_triangle.push_back(PartId{t % 2});
+      }
+    }
+    REQUIRE(export_mesh(mesh, folder / name).ok());
+    return folder / name;
+  };
+  const std::vector<std::filesystem::path> paths{write("a.glb", 0, false), write("b.glb", 3, true),
+                                                 write("c.ply", 4, false),
+                                                 write("d.stl", 0, false)};
+  std::ofstream(folder / "e.city.json")
+      << R"({"type":"CityJSON","version":"1.1","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"
+      << R"("vertices":[[0,0,0],[9,0,0],[0,9,0]],"CityObjects":{"x":{"type":"Building","geometry":)"
+      << R"([{"type":"MultiSurface","lod":"1","boundaries":[[[0,1,2]]]}]}}})";
+  for (const bool is_turned : {false, true}) {
+    std::vector<std::filesystem::path> some = paths;
+    some.push_back(folder / "e.city.json");
+    if (is_turned) std::ranges::reverse(some);
+    const Result<Imported> in = import_meshes(some, {});
+    REQUIRE_MESSAGE(in.ok(), (in.ok() ? "" : in.failure().message));
+    const Mesh& mesh = in->mesh;
+    CHECK(check_mesh(mesh).ok());
+    const auto colors = std::ranges::find(mesh.layers, AttributeRole::Color, &AttributeLayer::role);
+    REQUIRE(colors != mesh.layers.end());
+    CHECK(std::ranges::count(mesh.layers, AttributeRole::Color, &AttributeLayer::role) == 1);
+    CHECK(colors->dimension == 4);
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const std::string& part = mesh.parts[index_of(mesh.part_of_triangle[t])];
+      const std::span<const float> color = colors->value(colors->of_corner[3 * t]);
+      const bool is_colored = part.starts_with("b.glb") || part.starts_with("c.ply");
+      CHECK(color[0] == doctest::Approx(is_colored ? 0.5 : 1).epsilon(0.01));
+      CHECK(color[3] == doctest::Approx(part == "c.ply" ? 0.5 : 1).epsilon(0.01));
+    }
+    for (const char* part : {"a.glb", "b.glb/left", "b.glb/right", "d.stl"}) {
+      CHECK(std::ranges::count(mesh.parts, part) == 1);
+    }
+    const std::string note =
+        is_turned ? "a.glb: says that y is up, files before it that z is; none is turned"
+                  : "e.city.json: says that z is up, files before it that y is; none is turned";
+    CHECK(std::ranges::any_of(in->report.notes,
+                              [&](const std::string& n) { return n.ends_with(note); }));
+  }
+  std::filesystem::remove_all(folder);
+}
+
 TEST_CASE("noise on corner normals goes when it is asked to") {
   // A box whose corner normals are off by up to half a degree, split as exporters do it.
   std::string obj;
