@@ -44,12 +44,7 @@ Result<Transform> local_transform(const Source& source, const Json& node,
   if (!numbers("translation", 3, t)) return bad("translation");
   if (!numbers("rotation", 4, q)) return bad("rotation");
   if (!numbers("scale", 3, s)) return bad("scale");
-  Transform result = rotation(q[0], q[1], q[2], q[3]);
-  result.x = result.x * s[0];
-  result.y = result.y * s[1];
-  result.z = result.z * s[2];
-  result.origin = {t[0], t[1], t[2]};
-  return result;
+  return transform_of_trs(t, q, s);
 }
 
 // The nodes to begin with, and the place that names them.
@@ -114,6 +109,15 @@ bool Transform::only_scales() const {
          z.x == 0 && z.y == 0;
 }
 
+Transform transform_of_trs(const double* translation, const double* q, const double* scale) {
+  Transform result = rotation(q[0], q[1], q[2], q[3]);
+  result.x = result.x * scale[0];
+  result.y = result.y * scale[1];
+  result.z = result.z * scale[2];
+  result.origin = {translation[0], translation[1], translation[2]};
+  return result;
+}
+
 Result<GltfScene> walk_scene(const Source& source, const Json& json) {
   GltfScene scene;
   const Json& nodes = at(json, "nodes");
@@ -133,30 +137,31 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
   struct Pending {
     std::size_t node = 0;
     Transform parent;
+    bool is_hidden = false;
   };
   std::vector<Pending> pending;  // a stack, so that deep graphs need no deep recursion
   std::vector<bool> reached(size_of(nodes), false);
   scene.to_world_of_node.resize(size_of(nodes));
   // Pushes node references in reverse, so that they come off in order.
   const auto push_all = [&](const auto& references, std::size_t count, const std::string& place,
-                            const Transform& parent) -> Status {
+                            const Transform& parent, bool is_hidden) -> Status {
     for (std::size_t i = count; i-- > 0;) {
       const auto index = as_index(references[i]);
       if (!index || *index >= reached.size()) {
         return fail_at_place(Error::BadValue, source, place_of(place, i), "no such node");
       }
-      pending.push_back({*index, parent});
+      pending.push_back({*index, parent, is_hidden});
     }
     return Done{};
   };
   const auto [roots, roots_place] = root_nodes(json);
-  if (Status s = push_all(roots, roots.size(), roots_place, {}); !s.ok()) return s.failure();
+  if (Status s = push_all(roots, roots.size(), roots_place, {}, false); !s.ok()) return s.failure();
   if (roots.empty()) {
     return fail_at_place(Error::NoTriangles, source, roots_place,
                          "no node to begin with: the scene is empty or every node is a child");
   }
 
-  std::size_t skinned = 0, instanced = 0;
+  std::size_t skinned = 0, hidden = 0;
   while (!pending.empty()) {
     const Pending current = pending.back();
     pending.pop_back();
@@ -171,7 +176,12 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
     if (!local.ok()) return local.failure();
     const Transform to_world = current.parent.after(*local);
     scene.to_world_of_node[current.node] = to_world;
-    if (!at(node, "mesh").is_null()) {
+    const Json& extensions = at(node, "extensions");
+    const Json& visible = at(at(extensions, "KHR_node_visibility"), "visible");
+    const bool is_hidden = current.is_hidden || (visible.is_boolean() && !visible.get<bool>());
+    if (is_hidden && !at(node, "mesh").is_null()) {
+      ++hidden;
+    } else if (!at(node, "mesh").is_null()) {
       const auto mesh = as_index(at(node, "mesh"));
       if (!mesh || *mesh >= size_of(meshes)) {
         return fail_at_place(Error::BadValue, source, place + ".mesh", "no such mesh");
@@ -181,10 +191,12 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
                                  weights_of(meshes[*mesh], node), as_index(at(node, "skin")),
                                  has_name(node) || has_name(meshes[*mesh])});
       if (scene.instances.back().skin) ++skinned;
-      if (!at(at(node, "extensions"), "EXT_mesh_gpu_instancing").is_null()) ++instanced;
+      if (at(extensions, "EXT_mesh_gpu_instancing").is_object()) {
+        scene.instances.back().instanced_node = current.node;
+      }
     }
     const Json& children = at(node, "children");
-    Status pushed = push_all(children, size_of(children), place + ".children", to_world);
+    Status pushed = push_all(children, size_of(children), place + ".children", to_world, is_hidden);
     if (!pushed.ok()) return pushed.failure();
   }
   if (skinned > 0) {
@@ -192,10 +204,9 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
         std::to_string(skinned) +
         " skinned meshes taken as their first joint moves them, without the others");
   }
-  if (instanced > 0) {
-    scene.notes.push_back(
-        std::to_string(instanced) +
-        " nodes with EXT_mesh_gpu_instancing taken once, without their instances");
+  if (hidden > 0) {
+    scene.notes.push_back(std::to_string(hidden) +
+                          " nodes that KHR_node_visibility hides left out");
   }
   return scene;
 }

@@ -38,6 +38,9 @@ Transform transform_of(const Number* m) {
   return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
 }
 
+// translation (3), rotation (4: a quaternion x, y, z, w), scale (3), the scale first (3.5.3).
+Transform transform_of_trs(const double* translation, const double* rotation, const double* scale);
+
 struct MeshInstance {
   std::size_t mesh = 0;
   Transform to_world;
@@ -45,6 +48,7 @@ struct MeshInstance {
   std::vector<double> weights;      // of morph targets: the node's, else the mesh's; none: at rest
   std::optional<std::size_t> skin;  // to_world is void, then (3.7.3.3)
   bool is_named = false;            // by the file
+  std::optional<std::size_t> instanced_node{};  // it has EXT_mesh_gpu_instancing
 };
 
 struct GltfScene {
@@ -53,7 +57,8 @@ struct GltfScene {
   std::vector<std::string> notes;
 };
 
-// The default scene, else the first, else every root node, else every mesh as it is. Fails on nodes
+// The default scene, else the first, else every root node, else every mesh as it is; without what
+// KHR_node_visibility hides. Fails on nodes
 // that are reached twice (a loop, or two parents; 3.5.2) and on references to nothing.
 Result<GltfScene> walk_scene(const Source& source, const Json& json);
 

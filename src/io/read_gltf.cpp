@@ -4,6 +4,7 @@
 #include "io/gltf_compression.h"
 #include "io/gltf_document.h"
 #include "io/gltf_images.h"
+#include "io/gltf_instancing.h"
 #include "io/gltf_materials.h"
 #include "io/gltf_scene.h"
 #include "io/text.h"
@@ -20,8 +21,8 @@ namespace crease {
 namespace {
 
 // Extensions that a file may require although nothing here depends on them: materials, textures
-// and lights change no triangle. KHR_mesh_quantization, CESIUM_RTC and the two compressions are
-// read.
+// and lights change no triangle. KHR_mesh_quantization, CESIUM_RTC, the two compressions, instances
+// and what is visible are read.
 bool is_harmless(const std::string& extension) {
   static constexpr std::array kPrefixes = {"KHR_materials_",
                                            "KHR_texture_",
@@ -33,6 +34,8 @@ bool is_harmless(const std::string& extension) {
                                            "CESIUM_RTC",
                                            "MSFT_lod",
                                            "EXT_mesh_features",
+                                           "EXT_mesh_gpu_instancing",
+                                           "KHR_node_visibility",
                                            "EXT_structural_metadata",
                                            "EXT_meshopt_compression",
                                            "KHR_draco_mesh_compression"};
@@ -45,9 +48,10 @@ Status check_required_extensions(const Source& source, const Json& json) {
     const std::string extension = as_text(required[i]);
     if (is_harmless(extension)) continue;
     const bool compressed = extension.find("compression") != std::string::npos;
-    return fail_at_place(Error::NotSupported, source, place_of("extensionsRequired", i),
-                         in_quotes(extension) + " is not supported" +
-                             (compressed ? "; write the file again without compression" : ""));
+    return fail_at_place(
+        Error::NotSupported, source, place_of("extensionsRequired", i),
+        in_quotes(extension) + " is not supported" +
+            (compressed ? "; EXT_meshopt_compression and KHR_draco_mesh_compression are" : ""));
   }
   return Done{};
 }
@@ -107,7 +111,9 @@ class MeshBuilder {
       const auto part = static_cast<PartId>(raw_.parts.size());
       const Transform to_world =
           instance.skin ? of_skin(*instance.skin, *scene) : instance.to_world;
-      instances_of_mesh[instance.mesh][instance.weights].push_back({part, to_world});
+      std::vector<Instance>& instances = instances_of_mesh[instance.mesh][instance.weights];
+      const Status placed = place(instance, part, to_world, instances);
+      if (!placed.ok()) return placed.failure();
       if (has_parts) raw_.parts.push_back(instance.name);
     }
     for (std::size_t m = 0; m < instances_of_mesh.size(); ++m) {
@@ -138,6 +144,27 @@ class MeshBuilder {
     PartId part{};
     Transform to_world;
   };
+
+  // Once, or as often as its node's EXT_mesh_gpu_instancing says.
+  Status place(const MeshInstance& instance, PartId part, const Transform& to_world,
+               std::vector<Instance>& instances) {
+    if (!instance.instanced_node) {
+      instances.push_back({part, to_world});
+      return Done{};
+    }
+    constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+    const Json& node = at(at(json_, "nodes"), *instance.instanced_node);
+    const std::string here =
+        place_of("nodes", *instance.instanced_node) + ".extensions." + kInstancing;
+    const auto transforms = read_instancing(source_, at(at(node, "extensions"), kInstancing),
+                                            reader_, most_values() - instanced_, here);
+    if (!transforms.ok()) return transforms.failure();
+    instanced_ += transforms->size();
+    for (const Transform& transform : *transforms) {
+      instances.push_back({part, to_world.after(transform)});
+    }
+    return Done{};
+  }
 
   // What moves the vertices of a skinned mesh, instead of its node: in the pose that it was bound
   // in all joints do so alike. The first stands for them. A skin that is broken moves nothing.
@@ -369,7 +396,7 @@ class MeshBuilder {
   RawMesh raw_;
   std::map<std::size_t, Transform> of_skin_;
   std::vector<std::uint32_t> material_of_triangle_;
-  std::size_t work_ = 0;
+  std::size_t work_ = 0, instanced_ = 0;
   std::size_t point_and_line_primitives_ = 0, morphed_primitives_ = 0, odd_runs_ = 0;
 };
 

@@ -143,12 +143,59 @@ TEST_CASE("glTF: the only node keeps its name, or its mesh's, there and back") {
   CHECK(back->mesh.parts == mesh.parts);
 }
 
-TEST_CASE("glTF: instances that are not taken are told") {
+TEST_CASE("glTF: EXT_mesh_gpu_instancing puts a mesh at many places") {
   GltfBuilder b = triangle_at_a_node();
-  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = 0;
-  b.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
-  CHECK(has_note(import_text(b.gltf(), "a.gltf").report,
-                 "1 nodes with EXT_mesh_gpu_instancing taken once"));
+  const Vec3d before = corner(import_text(b.gltf(), "a.gltf").mesh, 0, 1);
+  b.json["nodes"][0]["translation"] = {100, 0, 0};
+  nlohmann::json& extension = b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"];
+  extension["attributes"]["TRANSLATION"] = b.add<float>({0, 0, 0, 0, 5, 0, 0, 0, 7}, "VEC3");
+  // About z by 90 degrees the second, as normalized shorts.
+  extension["attributes"]["ROTATION"] =
+      b.add<std::int16_t>({0, 0, 0, 32767, 0, 0, 23170, 23170, 0, 0, 0, 32767}, "VEC4", true);
+  extension["attributes"]["SCALE"] = b.add<float>({1, 1, 1, 1, 1, 1, 2, 2, -2}, "VEC3");
+  b.json["extensionsUsed"] = b.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  const Imported in = import_text(b.gltf(), "a.gltf");
+  CHECK(in.report.notes.empty());
+  REQUIRE(in.mesh.triangle_count() == 3);
+  CHECK(corner(in.mesh, 0, 1) == before + Vec3d{100, 0, 0});
+  const Vec3d turned = corner(in.mesh, 1, 1) - Vec3d{100, 5, 0};
+  CHECK(turned[0] == doctest::Approx(-before[1]).epsilon(1e-4));
+  CHECK(turned[1] == doctest::Approx(before[0]).epsilon(1e-4));
+  // The third is mirrored: its winding turns over.
+  const Vec3d flipped = corner(in.mesh, 2, 2) - Vec3d{100, 0, 7};
+  CHECK(flipped == Vec3d{2 * before[0], 2 * before[1], -2 * before[2]});
+
+  extension["attributes"]["SCALE"] = b.add<float>({1, 1, 1}, "VEC3");
+  CHECK(refusal_of(b.gltf(), "a.gltf").ends_with("SCALE: not a value for every instance"));
+  extension["attributes"] = {{"_ID", 0}};
+  CHECK(refusal_of(b.gltf(), "a.gltf").find("how many instances") != std::string::npos);
+}
+
+TEST_CASE("glTF: instances are held against the size of the file") {
+  GltfBuilder b = triangle_at_a_node();
+  const std::size_t places =
+      b.add_accessor({{"componentType", 5126}, {"count", 200'000}, {"type", "VEC3"}});
+  for (int i = 0; i < 40; ++i) {
+    nlohmann::json& node = b.json["nodes"][i];
+    node["mesh"] = 0;
+    node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = places;
+  }
+  b.json.erase("scenes");
+  CHECK(refusal_of(b.gltf(), "a.gltf").find("beyond reason") != std::string::npos);
+}
+
+TEST_CASE("glTF: what KHR_node_visibility hides is left out, and said") {
+  GltfBuilder b = triangle_at_a_node();
+  b.json["nodes"] = {
+      {{"mesh", 0}, {"name", "seen"}},
+      {{"children", {2}}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}},
+      {{"mesh", 0}, {"name", "hidden"}, {"translation", {5, 0, 0}}}};
+  b.json["scenes"] = {{{"nodes", {0, 1}}}};
+  b.json["extensionsUsed"] = b.json["extensionsRequired"] = {"KHR_node_visibility"};
+  const Imported in = import_text(b.gltf(), "a.gltf");
+  CHECK(in.mesh.triangle_count() == 1);
+  CHECK(in.mesh.parts == std::vector<std::string>{"seen"});
+  CHECK(has_note(in.report, "1 nodes that KHR_node_visibility hides left out"));
 }
 
 TEST_CASE("glTF: a skinned mesh stands where its joints put it, not its node") {

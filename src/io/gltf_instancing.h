@@ -1,0 +1,20 @@
+// EXT_mesh_gpu_instancing: a node's mesh stands at many places.
+#pragma once
+
+#include "crease/result.h"
+#include "io/gltf_document.h"
+#include "io/gltf_scene.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace crease {
+
+// Where the instances stand, relative to the node: TRANSLATION, ROTATION and SCALE of the
+// extension, in doubles. At most `most`.
+Result<std::vector<Transform>> read_instancing(const Source& source, const Json& extension,
+                                               GltfReader& reader, std::size_t most,
+                                               const std::string& place);
+
+}  // namespace crease
