@@ -17,12 +17,24 @@ struct Centroid {
 // Where a cell is cut, by band: never the same place twice in a row.
 constexpr double kCut[] = {0.5, 0.38, 0.62, 0.44, 0.56};
 
+// A cell is cut across another axis than its longest one where that cuts fewer than this share of
+// the triangles: rods that lie in a layer below a dome are not sliced lengthwise because of the
+// dome. Counted among so many.
+constexpr double kFarFewer = 0.5;
+constexpr std::size_t kSample = 2048;
+
 // Cuts cells of centroids in two until they are small enough. A cell's centroids stay in the order
 // of their triangles.
 class Divider {
  public:
-  Divider(std::uint32_t patch_triangles, int band, std::size_t n)
-      : patch_triangles_(patch_triangles), cut_(kCut[band % 5]), scratch_(n), is_first_(n, 0) {}
+  Divider(std::span<const Vec3i> positions, std::span<const std::uint32_t> vertices_of_triangle,
+          std::uint32_t patch_triangles, int band, std::size_t n)
+      : positions_(positions),
+        vertices_of_triangle_(vertices_of_triangle),
+        patch_triangles_(patch_triangles),
+        cut_(kCut[band % 5]),
+        scratch_(n),
+        is_first_(n, 0) {}
 
   // `offset`: of the cell in the whole.
   void divide(std::span<Centroid> cell, std::size_t offset) {
@@ -31,9 +43,9 @@ class Divider {
       is_first_[offset] = 1;
       return;
     }
-    const Axis axis = longest_axis(cell);
     // Near the leaves an uneven cut only makes patches smaller than they need to be.
     const double share = n > 4 * patch_triangles_ ? cut_ : 0.5;
+    const Axis axis = axis_to_cut(cell, share);
     const std::size_t left = static_cast<std::size_t>(share * static_cast<double>(n));
     separate(cell, axis, left, offset);
     parallel_both([&] { divide(cell.first(left), offset); },
@@ -49,24 +61,58 @@ class Divider {
     std::int32_t low = 0, high = 0;
   };
 
-  static Axis longest_axis(std::span<const Centroid> cell) {
-    std::int32_t low[3], high[3];
-    for (int i = 0; i < 3; ++i) low[i] = high[i] = cell[0].sum[i];
+  // The longest, or the one that cuts far fewer triangles.
+  Axis axis_to_cut(std::span<const Centroid> cell, double share) const {
+    const std::array<Axis, 3> axes = axes_of(cell);
+    const auto extent = [](const Axis& axis) { return std::int64_t(axis.high) - axis.low; };
+    Axis best = axes[0];
+    for (const Axis& axis : axes) {
+      if (extent(axis) > extent(best)) best = axis;
+    }
+    const std::array<std::size_t, 3> cut = count_cut(cell, share);
+    const auto longest = static_cast<std::size_t>(best.index);
+    std::size_t fewest = cut[longest];
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (cut[i] >= fewest || double(cut[i]) >= kFarFewer * double(cut[longest])) continue;
+      fewest = cut[i];
+      best = axes[i];
+    }
+    return best;
+  }
+
+  static std::array<Axis, 3> axes_of(std::span<const Centroid> cell) {
+    std::array<Axis, 3> axes;
+    for (int i = 0; i < 3; ++i) axes[i] = {i, cell[0].sum[i], cell[0].sum[i]};
     for (const Centroid& c : cell) {
       for (int i = 0; i < 3; ++i) {
-        low[i] = std::min(low[i], c.sum[i]);
-        high[i] = std::max(high[i], c.sum[i]);
+        axes[i].low = std::min(axes[i].low, c.sum[i]);
+        axes[i].high = std::max(axes[i].high, c.sum[i]);
       }
     }
-    Axis longest;
-    std::int64_t best = -1;
+    return axes;
+  }
+
+  // Per axis how many of a sample of triangles lie on both sides of the cut, or right on it: which
+  // of these go left says their order alone.
+  std::array<std::size_t, 3> count_cut(std::span<const Centroid> cell, double share) const {
+    const std::size_t stride = std::max<std::size_t>(1, cell.size() / kSample);
+    std::array<std::size_t, 3> count{};
     for (int i = 0; i < 3; ++i) {
-      const std::int64_t extent = std::int64_t(high[i]) - low[i];
-      if (extent <= best) continue;
-      best = extent;
-      longest = {i, low[i], high[i]};
+      std::vector<std::int32_t> sorted;
+      for (std::size_t k = 0; k < cell.size(); k += stride) sorted.push_back(cell[k].sum[i]);
+      const auto middle =
+          sorted.begin() + static_cast<std::ptrdiff_t>(share * double(sorted.size()));
+      std::nth_element(sorted.begin(), middle, sorted.end());
+      for (std::size_t k = 0; k < cell.size(); k += stride) {
+        std::size_t below = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const std::uint32_t v = vertices_of_triangle_[3 * std::size_t(cell[k].triangle) + c];
+          below += std::int64_t(positions_[v][i] / 2) * 3 < *middle;
+        }
+        count[static_cast<std::size_t>(i)] += below % 3 != 0 || cell[k].sum[i] == *middle;
+      }
     }
-    return longest;
+    return count;
   }
 
   // Puts the `left` centroids that are lowest on the axis first, both sides in their old order. A
@@ -111,6 +157,8 @@ class Divider {
     std::copy(&scratch_[offset], to_right, to_left);
   }
 
+  std::span<const Vec3i> positions_;
+  std::span<const std::uint32_t> vertices_of_triangle_;
   std::size_t patch_triangles_;
   double cut_;
   std::vector<Centroid> scratch_;
@@ -145,7 +193,7 @@ Patches partition_triangles(std::span<const Vec3i> positions,
     }
   });
 
-  Divider divider(patch_triangles, band, n);
+  Divider divider(positions, vertices_of_triangle, patch_triangles, band, n);
   divider.divide(centroids, 0);
   for (std::size_t i = 0; i < n; ++i) {
     patches.triangles[i] = centroids[i].triangle;
