@@ -43,7 +43,13 @@ Result<std::vector<std::byte>> read_image(const std::filesystem::path& folder,
                                             bytes.failure().error == Error::BadValue);
   const std::size_t slash = path.rfind('/');
   if (is_elsewhere && slash != path.npos && slash + 1 < path.size()) {
+    const bool is_outside = bytes.failure().error == Error::BadValue;
     bytes = read_in_folder(folder, path.substr(slash + 1), kMaxImageBytes);
+    if (is_outside && !bytes.ok() && bytes.failure().error == Error::NotFound) {
+      return fail(Error::NotFound,
+                  in_quotes(name) + " is outside the model's folder, where nothing is read, and " +
+                      in_quotes(path.substr(slash + 1)) + " is not in it");
+    }
   }
   if (bytes.ok() && image_type(*bytes).empty()) {
     return fail(Error::NotSupported, in_quotes(name) + " is neither a PNG nor a JPEG");

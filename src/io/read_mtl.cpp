@@ -42,6 +42,11 @@ std::string texture_name(Line& line, TexturePlacement& placement) {
   return std::string(line.rest());
 }
 
+std::string_view without_comment(std::string_view name) {
+  name = name.substr(0, name.find(" #"));
+  return name.substr(0, name.find_last_not_of(" \t") + 1);
+}
+
 float share(double x) {
   return std::isfinite(x) ? static_cast<float>(std::fmin(std::fmax(x, 0), 1)) : 1;
 }
@@ -49,16 +54,20 @@ float share(double x) {
 }  // namespace
 
 void read_mtl(std::string_view text, const std::string& folder, std::span<Material> materials,
-              std::span<TexturePlacement> placement_of_material) {
+              std::span<TexturePlacement> placement_of_material, std::vector<bool>& is_known) {
   std::unordered_map<std::string_view, Material*> by_name;
   for (Material& m : materials) by_name.emplace(m.name, &m);
+  for (Material& m : materials) by_name.emplace(without_comment(m.name), &m);
   Material* current = nullptr;
   LineReader lines(text, true);
   for (Line line; lines.next(line);) {
     const std::string_view word = line.word();
     if (word == "newmtl") {
-      const auto found = by_name.find(line.rest());
+      const std::string_view name = line.rest();
+      auto found = by_name.find(name);
+      if (found == by_name.end()) found = by_name.find(without_comment(name));
       current = found == by_name.end() ? nullptr : found->second;
+      if (current) is_known[static_cast<std::size_t>(current - materials.data())] = true;
     } else if (current && word == "Kd") {
       double r, g, b;
       if (!line.number(r)) continue;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace crease {
 
@@ -19,8 +20,9 @@ struct TexturePlacement {
 // Fills in the base colour (Kd, d or Tr) and texture (map_Kd) of the materials that `text` names,
 // and how it lies; others stay as they are. `folder`: where the library lies, relative to the OBJ;
 // a texture's path gets it in front. Lines that make no sense are passed over: nothing depends on
-// them.
+// them. `is_known` becomes true for those that it names; where a name as a whole is not one, what
+// follows " #" is a comment.
 void read_mtl(std::string_view text, const std::string& folder, std::span<Material> materials,
-              std::span<TexturePlacement> placement_of_material);
+              std::span<TexturePlacement> placement_of_material, std::vector<bool>& is_known);
 
 }  // namespace crease

@@ -358,6 +358,9 @@ class ObjReader {
   void read_libraries() {
     if (raw_.materials.empty()) return;
     placement_of_material_.resize(raw_.materials.size());
+    for (const Material& material : raw_.materials) {
+      is_known_material_.push_back(material.name.empty());  // of faces that name none
+    }
     for (const std::string& named : libraries_) {
       if (!source_.folder || read_library(named)) continue;
       // Not one name with blanks in it, then: several without, if any of these is there.
@@ -366,6 +369,7 @@ class ObjReader {
       Line line{named.data(), named.data() + named.size(), 0};
       while (!line.done()) {
         const std::string name(line.word());
+        if (name.starts_with('#')) break;
         if (name != named && read_library(name)) {
           ++found;
         } else {
@@ -377,6 +381,17 @@ class ObjReader {
         raw_.report.notes.push_back("material library " + in_quotes(name) + " not found");
       }
     }
+    if (any_library_) note_unknown_materials();
+  }
+
+  // Where no library was read, all are, and each that is missing has a note of its own.
+  void note_unknown_materials() {
+    const auto count = std::ranges::count(is_known_material_, false);
+    if (count == 0) return;
+    const auto first = std::ranges::find(is_known_material_, false) - is_known_material_.begin();
+    const std::string& name = raw_.materials[static_cast<std::size_t>(first)].name;
+    raw_.report.notes.push_back(std::to_string(count) + " materials are in no library: white (" +
+                                in_quotes(name) + (count > 1 ? ", ...)" : ")"));
   }
 
   // False if it is not there. One from elsewhere is passed over without a word.
@@ -386,7 +401,9 @@ class ObjReader {
     std::ifstream file(*source_.folder / relative, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     if (text.empty()) return false;
-    read_mtl(text, relative.parent_path().generic_string(), raw_.materials, placement_of_material_);
+    read_mtl(text, relative.parent_path().generic_string(), raw_.materials, placement_of_material_,
+             is_known_material_);
+    any_library_ = true;
     return true;
   }
 
@@ -433,6 +450,8 @@ class ObjReader {
   std::unordered_map<std::string, std::uint32_t> material_of_name_, part_of_name_;
   std::vector<std::string> libraries_;
   std::vector<TexturePlacement> placement_of_material_;
+  std::vector<bool> is_known_material_;  // a library has it
+  bool any_library_ = false;             // was read
   std::map<std::string, std::size_t, std::less<>> ignored_;
 };
 

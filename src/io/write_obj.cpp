@@ -4,7 +4,12 @@
 #include "io/split_vertices.h"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
 
 namespace crease {
 
@@ -30,6 +35,37 @@ std::string in_one_line(std::string_view name, std::string_view if_empty) {
   // A backslash at the end would continue the line.
   while (!out.empty() && out.back() == '\\') out.back() = '_';
   return out;
+}
+
+// By which a reader tells materials apart: of equal ones the later get numbers.
+std::vector<std::string> names_of(const std::vector<Material>& materials) {
+  std::vector<std::string> names;
+  std::unordered_set<std::string> own, given;
+  for (const Material& material : materials) {
+    names.push_back(in_one_line(material.name, "default"));
+    own.insert(names.back());
+  }
+  for (std::string& name : names) {
+    const std::string wanted = name;
+    for (int i = 2; given.contains(name) || (name != wanted && own.contains(name)); ++i) {
+      name = wanted + "_" + std::to_string(i);
+    }
+    given.insert(name);
+  }
+  return names;
+}
+
+// The triangles part by part, and in each material by material: a reader makes an object of each
+// run.
+std::vector<std::size_t> in_runs(const Mesh& mesh) {
+  std::vector<std::size_t> order(mesh.triangle_count());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::ranges::stable_sort(order, {}, [&](std::size_t t) {
+    return std::pair(
+        mesh.part_of_triangle.empty() ? 0 : index_of(mesh.part_of_triangle[t]),
+        mesh.material_of_triangle.empty() ? 0 : index_of(mesh.material_of_triangle[t]));
+  });
+  return order;
 }
 
 }  // namespace
@@ -67,20 +103,24 @@ std::vector<std::byte> write_obj(const Mesh& mesh, std::string_view mtl_name) {
   if (texcoords) write_values(out, "vt", *texcoords);
   if (normals) write_values(out, "vn", *normals);
 
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+  const std::vector<std::string> material_names = names_of(mesh.materials);
+  std::optional<std::size_t> before;
+  for (const std::size_t t : in_runs(mesh)) {
     const auto changes = [&](const auto& of_triangle) {
-      return !of_triangle.empty() && (t == 0 || of_triangle[t] != of_triangle[t - 1]);
+      return !of_triangle.empty() && (!before || of_triangle[t] != of_triangle[*before]);
     };
-    if (changes(mesh.part_of_triangle)) {
+    const bool part_begins = changes(mesh.part_of_triangle);
+    if (part_begins) {
       out.text("o ");
       out.text(in_one_line(mesh.parts[index_of(mesh.part_of_triangle[t])], "unnamed"));
       out.text("\n");
     }
-    if (changes(mesh.material_of_triangle)) {
+    if (changes(mesh.material_of_triangle) || (part_begins && !mesh.material_of_triangle.empty())) {
       out.text("usemtl ");
-      out.text(in_one_line(mesh.materials[index_of(mesh.material_of_triangle[t])].name, "default"));
+      out.text(material_names[index_of(mesh.material_of_triangle[t])]);
       out.text("\n");
     }
+    before = t;
     out.text("f");
     for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
       out.text(" ");
@@ -99,9 +139,11 @@ std::vector<std::byte> write_obj(const Mesh& mesh, std::string_view mtl_name) {
 
 std::vector<std::byte> write_mtl(const Mesh& mesh, std::span<const std::string> image_files) {
   ByteSink out;
-  for (const Material& material : mesh.materials) {
+  const std::vector<std::string> names = names_of(mesh.materials);
+  for (std::size_t m = 0; m < mesh.materials.size(); ++m) {
+    const Material& material = mesh.materials[m];
     out.text("newmtl ");
-    out.text(in_one_line(material.name, "default"));
+    out.text(names[m]);
     out.text("\nKd");
     for (std::size_t i = 0; i < 3; ++i) {
       out.text(" ");

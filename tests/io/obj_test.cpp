@@ -169,7 +169,8 @@ TEST_CASE("one line may name several material libraries") {
   CHECK(both.mesh.materials[0].base_color == std::array<float, 4>{1, 0, 0, 1});
   CHECK(both.mesh.materials[1].base_color == std::array<float, 4>{0, 0, 1, 1});
   CHECK(import_with("a.mtl c.mtl").report.notes ==
-        std::vector<std::string>{"material library 'c.mtl' not found"});
+        std::vector<std::string>{"material library 'c.mtl' not found",
+                                 "1 materials are in no library: white ('blue')"});
   CHECK(import_with("c d.mtl").report.notes ==
         std::vector<std::string>{"material library 'c d.mtl' not found"});
   std::filesystem::remove_all(folder);
@@ -221,6 +222,64 @@ TEST_CASE("a position of city size keeps its millimetres") {
                         .mesh;
   CHECK(mesh.positions[0].x == 390123.001);
   CHECK(mesh.positions[2].y == 5820456.003);
+}
+
+TEST_CASE("materials that no library has are told, and comments are none of their names") {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "crease_obj_unknown_material_test";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.mtl") << "newmtl steel # from CAD\nKd 1 0 0\n"
+                                     "newmtl Material #25\nKd 0 1 0\nnewmtl glass\nKd 0 0 1\n";
+  std::ofstream(folder / "a.obj")
+      << "mtllib a.mtl # of the plant\n"
+      << kSquare
+      << "f 1 2 3\nusemtl steel\nf 1 2 3\nusemtl Material #25\nf 1 3 4\n"
+         "usemtl glass # panes\nf 2 3 4\nusemtl undefined\nf 1 2 4\n";
+  const Result<Imported> in = import_mesh(folder / "a.obj", {});
+  REQUIRE(in.ok());
+  const auto color_of = [&](std::size_t t) {
+    return in->mesh.materials[index_of(in->mesh.material_of_triangle[t])].base_color;
+  };
+  CHECK(color_of(0) == std::array<float, 4>{1, 1, 1, 1});
+  CHECK(color_of(1) == std::array<float, 4>{1, 0, 0, 1});
+  CHECK(color_of(2) == std::array<float, 4>{0, 1, 0, 1});
+  CHECK(color_of(3) == std::array<float, 4>{0, 0, 1, 1});
+  CHECK(color_of(4) == std::array<float, 4>{1, 1, 1, 1});
+  CHECK(std::ranges::count(in->report.notes,
+                           "1 materials are in no library: white ('undefined')") == 1);
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("parts and materials are written in one run each, and equal names are told apart") {
+  Mesh mesh = import_text(kSquare + "f 1 2 3\nf 1 3 4\nf 1 2 4\nf 2 3 4\n", "a.obj").mesh;
+  mesh.parts = {"one", "two"};
+  mesh.materials = {{.name = "M"}, {.name = "M"}, {.name = "M_2"}, {.name = "M"}};
+  for (std::uint32_t t = 0; t < 4; ++t) {
+    mesh.part_of_triangle.push_back(PartId{t % 2});
+    mesh.material_of_triangle.push_back(MaterialId{3 - t});
+    mesh.materials[t].base_color = {0.25f * float(t), 0, 0, 1};
+  }
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "crease_obj_runs_test";
+  std::filesystem::create_directories(folder);
+  REQUIRE(export_mesh(mesh, folder / "a.obj").ok());
+  std::ifstream file(folder / "a.obj");
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("o ") || line.starts_with("usemtl ")) lines.push_back(line);
+  }
+  CHECK(lines == std::vector<std::string>{"o one", "usemtl M_3", "usemtl M_4", "o two", "usemtl M",
+                                          "usemtl M_2"});
+  const Result<Imported> back = import_mesh(folder / "a.obj", {});
+  REQUIRE(back.ok());
+  CHECK(back->mesh.triangle_count() == 4);
+  std::vector<float> reds;
+  for (const MaterialId m : back->mesh.material_of_triangle) {
+    reds.push_back(back->mesh.materials[index_of(m)].base_color[0]);
+  }
+  std::ranges::sort(reds);
+  CHECK(reds == std::vector<float>{0, 0.25f, 0.5f, 0.75f});
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
