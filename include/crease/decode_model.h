@@ -7,7 +7,8 @@
 //   Result<DecodedModel> coarse = decode_model(*file, {.finest_band = 3});   // and reads no more
 //
 // From there on it is any mesh with a contraction sequence: build_progressive_arrays() makes levels
-// of it, build_hierarchy() cuts.
+// of it, build_hierarchy() cuts. The images of its textures are read by BlockFile::read_images(),
+// and belong into `images` of a level that is exported.
 //
 // What is exact: the mesh at the fine end of every block, corner for corner. Between the two ends
 // of a block the file says which vertices were contracted, and where they stood; in which order,

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 
 namespace crease {
 
@@ -39,6 +41,16 @@ void add_holes(const Mesh& mesh, std::vector<std::string>& words) {
   }
 }
 
+// A texture whose image the mesh does not have is a name and no picture.
+void add_images(const Mesh& mesh, std::vector<std::string>& words) {
+  std::set<std::string> missing;
+  for (const Material& material : mesh.materials) {
+    const std::string& name = material.base_color_texture;
+    if (!name.empty() && find_image(mesh.images, name) == nullptr) missing.insert(name);
+  }
+  if (!missing.empty()) words.push_back(counted("images that textures name", missing.size()));
+}
+
 bool has_alpha(const AttributeLayer& colors) {
   if (colors.dimension < 4) return false;
   for (std::size_t i = 3; i < colors.values.size(); i += colors.dimension) {
@@ -59,6 +71,13 @@ std::vector<std::string> left_out_of_obj(const Mesh& mesh) {
     }
   }
   add_holes(mesh, words);
+  add_images(mesh, words);
+  return words;
+}
+
+std::vector<std::string> left_out_of_glb(const Mesh& mesh) {
+  std::vector<std::string> words;
+  add_images(mesh, words);
   return words;
 }
 
@@ -106,6 +125,7 @@ std::vector<std::string> left_out(const Mesh& mesh, std::string_view ending) {
   if (ending == ".obj") return left_out_of_obj(mesh);
   if (ending == ".ply") return left_out_of_ply(mesh);
   if (ending == ".stl") return left_out_of_stl(mesh);
+  if (ending == ".glb") return left_out_of_glb(mesh);
   return {};
 }
 

@@ -386,6 +386,14 @@ class MeshBuilder {
          "primitives with morph targets taken as their weights are, at rest without");
     note(odd_runs_, "primitives whose index count is no multiple of three; the rest is ignored");
     note(size_of(at(json_, "animations")), "animations ignored");
+    note(size_of(at(json_, "cameras")), "cameras ignored");
+    const Json& extensions = at(json_, "extensions");
+    note(size_of(at(at(extensions, "KHR_lights_punctual"), "lights")), "lights ignored");
+    note(size_of(at(at(extensions, "KHR_materials_variants"), "variants")),
+         "variants of materials ignored: the ones that primitives name are taken");
+    note(size_of(at(at(extensions, "EXT_structural_metadata"), "propertyTables")),
+         "tables of EXT_structural_metadata ignored: feature ids are kept, what they stand for is "
+         "not");
   }
 
   const Source& source_;

@@ -198,6 +198,20 @@ TEST_CASE("glTF: what KHR_node_visibility hides is left out, and said") {
   CHECK(has_note(in.report, "1 nodes that KHR_node_visibility hides left out"));
 }
 
+TEST_CASE("glTF: what is not taken is told") {
+  GltfBuilder b = triangle_at_a_node();
+  b.json["cameras"] = {{{"type", "perspective"}}};
+  b.json["extensions"] = {
+      {"KHR_lights_punctual", {{"lights", {{{"type", "point"}}, {{"type", "spot"}}}}}},
+      {"KHR_materials_variants", {{"variants", {{{"name", "red"}}}}}},
+      {"EXT_structural_metadata", {{"propertyTables", {{{"class", "tree"}, {"count", 4}}}}}}};
+  const ImportReport report = import_text(b.gltf(), "a.gltf").report;
+  for (const char* note : {"1 cameras ignored", "2 lights ignored", "1 variants of materials",
+                           "1 tables of EXT_structural_metadata"}) {
+    CHECK(has_note(report, note));
+  }
+}
+
 TEST_CASE("glTF: a skinned mesh stands where its joints put it, not its node") {
   GltfBuilder b = triangle_at_a_node();
   b.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {100, 0, 0}}},
