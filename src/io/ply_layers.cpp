@@ -1,5 +1,7 @@
 #include "io/ply_layers.h"
 
+#include "io/ply_names.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -105,10 +107,40 @@ PlyTarget::Kind list_target(const PlyProperty& property, bool is_face,
   return PlyTarget::Kind::Ignored;
 }
 
+bool makes_sense(const PlyNamedLayer& named) {
+  switch (named.role) {
+    case AttributeRole::TexCoord:
+      return named.dimension == 2 && named.interpolation == Interpolation::Linear;
+    case AttributeRole::Color:
+      return named.dimension >= 3 && named.interpolation == Interpolation::Linear;
+    case AttributeRole::Normal:
+      return false;
+    case AttributeRole::Other:
+      break;
+  }
+  return named.interpolation != Interpolation::Direction || named.dimension == 3;
+}
+
+// What a comment names, if the element has all of it.
+void take_named(const PlyElement& element, const PlyNamedLayer& named, RawLayer::Per per,
+                PlyLayers& to) {
+  const std::optional<std::size_t> first = find_scalar(element, named.property);
+  if (!first || named.dimension > element.properties.size() - *first) return;
+  for (std::size_t p = *first; p < *first + named.dimension; ++p) {
+    const PlyProperty& property = element.properties[p];
+    if (property.is_list || to.targets[p].kind == PlyTarget::Kind::Layer) return;
+    if (per == RawLayer::Per::Vertex && is_axis(property.name)) return;
+  }
+  for (std::size_t c = 0; c < named.dimension; ++c) {
+    to.targets[*first + c] = {PlyTarget::Kind::Layer, to.layers.size(), c, 1};
+  }
+  to.add({named.name, named.role, named.interpolation, per, named.dimension, {}, {}}, true);
+}
+
 }  // namespace
 
 PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
-                      std::vector<std::string>& notes) {
+                      std::span<const std::string> comments, std::vector<std::string>& notes) {
   PlyLayers plan;
   plan.targets.resize(element.properties.size());
   const bool is_face = per == RawLayer::Per::Face;
@@ -124,6 +156,9 @@ PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
         break;
       }
     }
+  }
+  for (const PlyNamedLayer& named : layers_in(comments)) {
+    if (named.element == element.name && makes_sense(named)) take_named(element, named, per, plan);
   }
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
     const PlyProperty& property = element.properties[p];

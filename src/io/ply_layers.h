@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,12 +25,14 @@ struct PlyTarget {
 // The layers of one element, vertex or face, and where each property goes.
 struct PlyLayers {
   std::vector<RawLayer> layers;
+  std::vector<bool> is_told;       // of each, what it is: by a comment
   std::vector<Rounded> rounded;    // of each; what colours and normals lose is not told
   std::vector<PlyTarget> targets;  // one a property
   std::vector<float> row;          // values of all layers, one layer after another
   std::vector<std::size_t> begin;  // of each layer in `row`
 
-  void add(RawLayer layer) {
+  void add(RawLayer layer, bool told = false) {
+    is_told.push_back(told);
     begin.push_back(row.size());
     row.resize(row.size() + layer.dimension, 0.0f);
     layers.push_back(std::move(layer));
@@ -51,8 +54,9 @@ std::optional<std::size_t> find_scalar(const PlyElement& element, std::string_vi
 
 // By the names of its properties; `notes` says which lists have no place. Integers of faces are
 // categories, and whatever of vertices has a name that says so, until settle_categories().
+// Comments of ours go before names.
 PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
-                      std::vector<std::string>& notes);
+                      std::span<const std::string> comments, std::vector<std::string>& notes);
 
 // Of a layer of the vertices that is complete: numbers that are not whole, in floats or not, and of
 // which nearly every vertex has its own, an id of each, are no categories. Notes those that are.

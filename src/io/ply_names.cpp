@@ -12,7 +12,33 @@ namespace {
 
 constexpr std::string_view kMaterial = "material", kColor = "material_color",
                            kTexture = "material_texture", kTextureFile = "TextureFile",
-                           kPart = "part";
+                           kPart = "part", kLayer = "layer";
+
+constexpr std::array<std::pair<AttributeRole, std::string_view>, 3> kRoles{
+    {{AttributeRole::TexCoord, "texcoord"},
+     {AttributeRole::Color, "color"},
+     {AttributeRole::Other, "other"}}};
+constexpr std::array<std::pair<Interpolation, std::string_view>, 3> kInterpolations{
+    {{Interpolation::Direction, "direction"},
+     {Interpolation::Linear, "linear"},
+     {Interpolation::Categorical, "categorical"}}};
+
+template <typename Words, typename Value>
+std::string_view word_for(const Words& words, Value value) {
+  for (const auto& [known, word] : words) {
+    if (known == value) return word;
+  }
+  return {};
+}
+template <typename Words, typename Value>
+bool read_word(const Words& words, std::string_view word, Value& value) {
+  for (const auto& [known, name] : words) {
+    if (name != word) continue;
+    value = known;
+    return true;
+  }
+  return false;
+}
 
 // `text` in one line.
 void write_comment(ByteSink& out, std::string_view word, std::string_view text) {
@@ -66,6 +92,33 @@ Material* numbered(Line& line, std::vector<Material>& materials) {
 }
 
 }  // namespace
+
+void write_layer_comment(ByteSink& out, const PlyNamedLayer& layer) {
+  std::string text = layer.element + " " + layer.property + " " + std::to_string(layer.dimension);
+  for (const std::string_view word :
+       {word_for(kRoles, layer.role), word_for(kInterpolations, layer.interpolation)}) {
+    text += " ";
+    text += word;
+  }
+  write_comment(out, kLayer, text + " " + layer.name);
+}
+
+std::vector<PlyNamedLayer> layers_in(std::span<const std::string> comments) {
+  std::vector<PlyNamedLayer> layers;
+  for_each(comments, kLayer, [&](Line& line) {
+    PlyNamedLayer layer;
+    std::int64_t dimension = 0;
+    layer.element = line.word();
+    layer.property = line.word();
+    if (!line.integer(dimension) || dimension < 1 || dimension > 4) return;
+    layer.dimension = static_cast<std::uint32_t>(dimension);
+    if (!read_word(kRoles, line.word(), layer.role)) return;
+    if (!read_word(kInterpolations, line.word(), layer.interpolation)) return;
+    layer.name = line.rest();
+    layers.push_back(std::move(layer));
+  });
+  return layers;
+}
 
 PlyTextures::PlyTextures(std::span<const Material> materials) {
   for (const Material& material : materials) {

@@ -1,4 +1,5 @@
-// Materials and parts in a PLY, which has no place for them: an index a face, and comments.
+// What a PLY has no place for, in comments: materials and parts, with an index a face, and what
+// layers are that properties' names do not tell.
 //
 //   comment material 0 brick                      the name of each
 //   comment material_color 0 0.5 0.25 0.125 1     where it is not white; linear RGBA
@@ -8,6 +9,7 @@
 //   property int material_index                   of each face, and so part_index
 //   property int texnumber                        of each face: its TextureFile or -1, where they
 //                                                 differ, as MeshLab writes and reads
+//   comment layer vertex uv2_0 2 texcoord linear uv2   2 properties from uv2_0 on are that layer's
 #pragma once
 
 #include "crease/mesh.h"
@@ -33,6 +35,19 @@ struct PlyTextures {
   // One texture for all is found by its comment alone.
   bool need_numbers() const;
 };
+
+// The layer that some properties of an element are.
+struct PlyNamedLayer {
+  std::string element;   // "vertex" or "face"
+  std::string property;  // the first
+  std::uint32_t dimension = 1;
+  AttributeRole role = AttributeRole::Other;
+  Interpolation interpolation = Interpolation::Linear;
+  std::string name;
+};
+
+void write_layer_comment(ByteSink& out, const PlyNamedLayer& layer);
+std::vector<PlyNamedLayer> layers_in(std::span<const std::string> comments);
 
 void write_material_comments(ByteSink& out, std::span<const Material> materials,
                              const PlyTextures& textures);

@@ -137,7 +137,7 @@ class PlyReader {
   }
 
   bool read_vertices(const PlyElement& element) {
-    vertices_ = plan_layers(element, RawLayer::Per::Vertex, raw_.report.notes);
+    vertices_ = plan_layers(element, RawLayer::Per::Vertex, header_.comments, raw_.report.notes);
     for (std::string_view axis : {"x", "y", "z"}) {
       if (find_scalar(element, axis)) continue;
       return refuse(body_.refuse(Error::BadFormat, "vertices have no " + std::string(axis)));
@@ -177,7 +177,7 @@ class PlyReader {
   }
 
   bool read_faces(const PlyElement& element) {
-    faces_ = plan_layers(element, RawLayer::Per::Face, raw_.report.notes);
+    faces_ = plan_layers(element, RawLayer::Per::Face, header_.comments, raw_.report.notes);
     const bool has_indices = std::any_of(
         faces_.targets.begin(), faces_.targets.end(),
         [](const PlyTarget& target) { return target.kind == PlyTarget::Kind::Indices; });
@@ -294,9 +294,12 @@ class PlyReader {
     tell_rounded(vertices_, raw_.report);
     tell_rounded(faces_, raw_.report);
     // Vertices' normals and colours go before faces'. Faces that strips made have no values.
-    for (RawLayer& layer : vertices_.layers) {
-      scale_float_colors(layer);
-      settle_categories(layer, raw_.report.notes);
+    for (std::size_t l = 0; l < vertices_.layers.size(); ++l) {
+      RawLayer& layer = vertices_.layers[l];
+      if (!vertices_.is_told[l]) {
+        scale_float_colors(layer);
+        settle_categories(layer, raw_.report.notes);
+      }
       raw_.layers.push_back(std::move(layer));
     }
     const auto is_there = [&](AttributeRole role) {

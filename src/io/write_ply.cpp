@@ -20,6 +20,7 @@ namespace {
 
 struct PlyLayer {
   const AttributeLayer* layer = nullptr;
+  bool is_told = true;                  // by its properties' names
   bool as_bytes = false;                // colours that came from bytes go back to bytes
   bool as_integers = false;             // categories
   std::vector<std::string> properties;  // one a component
@@ -47,7 +48,7 @@ std::string numbered(std::string name, std::size_t k) {
 }
 
 PlyLayer plan_layer(const AttributeLayer& layer) {
-  PlyLayer plan{&layer, false, false, {}};
+  PlyLayer plan{&layer, layer.role != AttributeRole::Other, false, false, {}};
   switch (layer.role) {
     case AttributeRole::Normal:
       plan.properties = {"nx", "ny", "nz"};
@@ -121,6 +122,19 @@ void make_unique(PlyLayer& plan, bool is_meant, std::set<std::string>& taken) {
   }
 }
 
+void write_layer_comments(ByteSink& out, const char* element, const std::vector<PlyLayer>& plans) {
+  for (const PlyLayer& plan : plans) {
+    if (plan.is_told) continue;
+    const AttributeLayer& layer = *plan.layer;
+    write_layer_comment(out, {.element = element,
+                              .property = plan.properties[0],
+                              .dimension = layer.dimension,
+                              .role = layer.role,
+                              .interpolation = layer.interpolation,
+                              .name = layer.name});
+  }
+}
+
 }  // namespace
 
 std::vector<std::byte> write_ply(const Mesh& mesh) {
@@ -137,6 +151,7 @@ std::vector<std::byte> write_ply(const Mesh& mesh) {
         plan.properties[k] = numbered(word_of(layer.name), k);
       }
       plan.as_bytes = false;
+      plan.is_told = false;
     }
     make_unique(plan, layer.role != AttributeRole::Other && !is_second, taken);
     if (!is_face) splitting.push_back(&layer);
@@ -153,6 +168,8 @@ std::vector<std::byte> write_ply(const Mesh& mesh) {
   out.text("ply\nformat binary_little_endian 1.0\ncomment written by crease\n");
   if (has_materials) write_material_comments(out, mesh.materials, textures);
   if (has_parts) write_part_comments(out, mesh.parts);
+  write_layer_comments(out, "vertex", of_vertex);
+  write_layer_comments(out, "face", of_face);
   out.text("element vertex " + std::to_string(split.count()) + "\n");
   out.text("property double x\nproperty double y\nproperty double z\n");
   for (const PlyLayer& plan : of_vertex) write_properties(out, plan);

@@ -158,7 +158,72 @@ TEST_CASE("properties that share a name stay apart, read and written") {
   CHECK(back->mesh.positions == mesh.positions);
   std::vector<std::string> names;
   for (const AttributeLayer& layer : back->mesh.layers) names.push_back(layer.name);
-  CHECK(names == std::vector<std::string>{"normal", "x_2", "x_3", "nx_2", "heat", "heat_2"});
+  CHECK(names == std::vector<std::string>{"normal", "x", "x", "nx", "heat", "heat"});
+}
+
+TEST_CASE("layers that properties do not tell come back by our comments") {
+  Mesh mesh = hard_box(2);
+  const auto add = [&](AttributeLayer layer, std::uint32_t dimension, bool per_triangle) {
+    layer.dimension = dimension;
+    for (std::uint32_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
+      const VertexId v = mesh.triangles[corner / 3][corner % 3];
+      const std::uint32_t of = per_triangle ? corner / 3 : static_cast<std::uint32_t>(v);
+      layer.of_corner.push_back(AttributeId{of});
+      while (layer.values.size() < dimension * std::size_t(of + 1)) {
+        const std::size_t i = layer.values.size();
+        const bool is_first = i % dimension == 0;
+        layer.values.push_back(layer.interpolation == Interpolation::Direction ? float(is_first)
+                               : layer.interpolation == Interpolation::Categorical
+                                   ? float(i)
+                                   : 0.125f * float(i % 8));
+      }
+    }
+    mesh.layers.push_back(std::move(layer));
+  };
+  using enum Interpolation;
+  add({"uv", AttributeRole::TexCoord, Linear, 2, {}, {}}, 2, false);
+  add({"uv2", AttributeRole::TexCoord, Linear, 2, {}, {}}, 2, false);
+  add({"color", AttributeRole::Color, Linear, 3, {}, {}}, 3, false);
+  add({"second colour", AttributeRole::Color, Linear, 4, {}, {}}, 4, false);
+  add({"_BATCHID", AttributeRole::Other, Categorical, 1, {}, {}}, 1, false);  // one a vertex
+  add({"tangent", AttributeRole::Other, Direction, 3, {}, {}}, 3, false);
+  add({"strain of faces", AttributeRole::Other, Categorical, 1, {}, {}}, 1, true);
+  const auto written = export_bytes(mesh, ".ply");
+  REQUIRE(written.ok());
+  const auto back = import_bytes(*written, "back.ply", {});
+  REQUIRE(back.ok());
+  REQUIRE(back->mesh.layers.size() == mesh.layers.size());
+  for (const AttributeLayer& layer : mesh.layers) {
+    CAPTURE(layer.name);
+    const AttributeLayer* got = layer_named(back->mesh, layer.name.c_str());
+    REQUIRE(got);
+    CHECK(got->role == layer.role);
+    CHECK(got->interpolation == layer.interpolation);
+    CHECK(got->dimension == layer.dimension);
+    for (std::size_t corner = 0; corner < layer.of_corner.size(); ++corner) {
+      CHECK(std::ranges::equal(got->value(got->of_corner[corner]),
+                               layer.value(layer.of_corner[corner])));
+    }
+  }
+}
+
+TEST_CASE("a comment that names what is not there, or cannot be, is passed over") {
+  const std::string rows = "0 0 0 7 1 2\n1 0 0 8 1 2\n0 1 0 9 1 2\n3 0 1 2\n";
+  for (const char* comment :
+       {"vertex x 3 other linear place", "vertex heat 4 other linear wide",
+        "vertex none 1 other linear n", "face heat 1 other linear n",
+        "vertex heat 0 other linear n", "vertex heat 2 color linear n",
+        "vertex heat 2 other direction n", "vertex heat 1 normal linear n", "vertex heat", ""}) {
+    CAPTURE(comment);
+    const std::string text = header(
+        std::string("property float heat\nproperty float b\nproperty float c\ncomment layer ") +
+            comment + "\n",
+        "");
+    const Mesh mesh = import_text(text + rows, "a.ply").mesh;
+    CHECK(mesh.positions.size() == 3);
+    REQUIRE(layer_named(mesh, "heat"));
+    CHECK(layer_named(mesh, "heat")->dimension == 1);
+  }
 }
 
 TEST_CASE("texture coordinates under every usual name") {
