@@ -64,6 +64,9 @@ struct Material {
   // The surface has holes where the alpha of its texture is below this (MASK of glTF); 0: none.
   float alpha_cutoff = 0;
   bool double_sided = false;  // a hint for who culls what faces away; crease draws both sides
+  // What is behind shows through where the texture's alpha or the colours' is below 1 (BLEND of
+  // glTF). A hint: crease draws it opaque. Where the base colour's is, that says so by itself.
+  bool is_blended = false;
   bool operator==(const Material&) const = default;
 };
 

@@ -12,9 +12,11 @@ namespace crease::format {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'C', 'R', 'E', 'A', 'S', 'E', '\n'};
 // Version 7 is version 6 with images; version 8 has materials with holes or two sides, and perhaps
-// images. A file is of the least version that has all it needs.
+// images; version 9 is version 8 with materials that are blended. A file is of the least version
+// that has all it needs.
 inline constexpr std::uint16_t kContainerVersion = 6, kVersionWithImages = 7,
-                               kVersionWithSurfaces = 8;
+                               kVersionWithSurfaces = 8, kVersionWithBlending = 9,
+                               kNewestVersion = kVersionWithBlending;
 // Of AttributeCoding::Lattice. Values of the code that the enumeration has are coded as no program
 // reads any more.
 inline constexpr std::uint8_t kLatticeCode = 4;
@@ -31,9 +33,9 @@ inline constexpr std::uint8_t kMaxGridBits = 31;
 inline constexpr double kMostStepsToOrigin = 1125899906842624;  // 2^50
 
 // Names.
-inline constexpr std::uint32_t kMinMaterialBytes = 24;  // beside the next ones
-inline constexpr std::uint8_t kDoubleSided = 1;         // flags of a material
-inline constexpr std::uint32_t kImageEntryBytes = 20;   // beside the name's bytes
+inline constexpr std::uint32_t kMinMaterialBytes = 24;         // beside the next ones
+inline constexpr std::uint8_t kDoubleSided = 1, kBlended = 2;  // flags of a material
+inline constexpr std::uint32_t kImageEntryBytes = 20;          // beside the name's bytes
 
 // A page of the directory.
 inline constexpr std::uint32_t kMaxPageBytes = 4u << 20;

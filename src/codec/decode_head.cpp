@@ -102,7 +102,7 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head, boo
   if (has_images) {
     head.images.bytes = in.u64();
     const bool has_none = head.image_list.range.bytes == 0 && head.images.bytes == 0;
-    const bool may_have_none = head.version == format::kVersionWithSurfaces;
+    const bool may_have_none = head.version >= format::kVersionWithSurfaces;
     if (has_none ? !may_have_none : head.image_list.range.bytes == 0 || head.images.bytes == 0) {
       return bad_head("a list of images without images, or none where there must be one");
     }
@@ -213,8 +213,11 @@ Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes,
     if (version >= format::kVersionWithSurfaces) {
       material.alpha_cutoff = in.f32();
       const std::uint8_t flags = in.u8();
-      if (flags > format::kDoubleSided) return bad("a reserved flag");
-      material.double_sided = flags == format::kDoubleSided;
+      const bool may_blend = version >= format::kVersionWithBlending;
+      const int known = format::kDoubleSided | (may_blend ? format::kBlended : 0);
+      if ((flags & ~known) != 0) return bad("a reserved flag");
+      material.double_sided = (flags & format::kDoubleSided) != 0;
+      material.is_blended = (flags & format::kBlended) != 0;
     }
     if (std::string wrong = broken_rule(material); !wrong.empty()) return bad(wrong);
     materials.push_back(std::move(material));

@@ -23,22 +23,28 @@ void encode_reserved(ByteWriter& out, int count) {
   for (int i = 0; i < count; ++i) out.u8(0);
 }
 
-bool has_surfaces(const std::vector<Material>& materials) {
-  return std::ranges::any_of(
-      materials, [](const Material& m) { return m.alpha_cutoff > 0 || m.double_sided; });
+std::uint16_t version_of(const std::vector<Material>& materials, bool has_images) {
+  std::uint16_t version = has_images ? format::kVersionWithImages : format::kContainerVersion;
+  for (const Material& m : materials) {
+    if (m.alpha_cutoff > 0 || m.double_sided)
+      version = std::max(version, format::kVersionWithSurfaces);
+    if (m.is_blended) version = format::kVersionWithBlending;
+  }
+  return version;
 }
 
-std::vector<std::byte> encode_materials(const std::vector<Material>& materials) {
-  const bool surfaces = has_surfaces(materials);
+std::vector<std::byte> encode_materials(const std::vector<Material>& materials,
+                                        std::uint16_t version) {
   ByteWriter out;
   if (!materials.empty()) out.u32(static_cast<std::uint32_t>(materials.size()));
   for (const Material& material : materials) {
     out.text(material.name);
     out.f32s(material.base_color);
     out.text(material.base_color_texture);
-    if (!surfaces) continue;
+    if (version < format::kVersionWithSurfaces) continue;
     out.f32(material.alpha_cutoff);
-    out.u8(material.double_sided ? format::kDoubleSided : 0);
+    out.u8(static_cast<std::uint8_t>((material.double_sided ? format::kDoubleSided : 0) |
+                                     (material.is_blended ? format::kBlended : 0)));
   }
   return out.take();
 }
@@ -125,8 +131,10 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   ByteWriter lists;
   encode_layers_and_bands(lists, facts);
   const std::uint32_t page_count = format::page_count(writer.block_count_);
+  writer.version_ = version_of(content.materials, !content.images.empty());
+  const bool tells_images = writer.version_ >= format::kVersionWithImages;
   const std::uint64_t head_bytes =
-      format::kFixedHeadBytes + (content.images.empty() ? 0 : format::kImageHeadBytes) +
+      format::kFixedHeadBytes + (tells_images ? format::kImageHeadBytes : 0) +
       lists.bytes().size() + std::uint64_t(page_count) * format::kPageReferenceBytes;
   if (head_bytes > format::kMaxHeadBytes) {
     return fail(Error::OverLimit, "layers, bands and pages take " + std::to_string(head_bytes) +
@@ -148,16 +156,12 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   head.u8(static_cast<std::uint8_t>(facts.up));
   encode_reserved(head, 2);
   head.u32(static_cast<std::uint32_t>(content.parts.size()));
-  const std::vector<std::byte> materials = encode_materials(content.materials);
+  const std::vector<std::byte> materials = encode_materials(content.materials, writer.version_);
   writer.parts_ = encode_parts(content.parts);
   using Section = const std::vector<std::byte>*;
   writer.images_ = content.images;
   writer.image_list_ = encode_image_list(content.images);
   std::vector<Section> sections = {&materials, &writer.parts_, &content.tables};
-  writer.version_ = has_surfaces(content.materials) ? format::kVersionWithSurfaces
-                    : content.images.empty()        ? format::kContainerVersion
-                                                    : format::kVersionWithImages;
-  const bool tells_images = writer.version_ >= format::kVersionWithImages;
   if (tells_images) sections.push_back(&writer.image_list_);
   for (const Section section : sections) {
     head.u64(section->size());

@@ -21,10 +21,10 @@ Result<std::uint16_t> decode_version(std::span<const std::byte> start) {
   if (in.truncated()) {
     return fail(Error::Truncated, std::string("it ends within the header") + kBuildAgain);
   }
-  if (version > format::kVersionWithSurfaces) {
+  if (version > format::kNewestVersion) {
     return fail(Error::VersionTooNew, "version " + std::to_string(version) +
                                           " is newer than this program, which reads up to " +
-                                          std::to_string(format::kVersionWithSurfaces));
+                                          std::to_string(format::kNewestVersion));
   }
   if (version == 0 || flags != 0) return fail(Error::BadFormat, "version or flags at byte 8");
   return version;

@@ -58,7 +58,7 @@ nlohmann::ordered_json GlbMaterials::material_json(const Material& material) con
   if (material.alpha_cutoff > 0) {
     entry["alphaMode"] = "MASK";
     entry["alphaCutoff"] = material.alpha_cutoff;
-  } else if (color[3] < 1) {
+  } else if (color[3] < 1 || material.is_blended) {
     entry["alphaMode"] = "BLEND";
   }
   if (material.double_sided) entry["doubleSided"] = true;

@@ -69,7 +69,7 @@ void count_texture_losses(const Json& json, const Json& texture_info, Losses& lo
   losses.add("magFilter NEAREST", as_index(at(entry, "magFilter")) == kNearest);
 }
 
-void count_losses(const Json& json, const Json& entry, const Material& material, Losses& losses) {
+void count_losses(const Json& json, const Json& entry, Losses& losses) {
   const Json& extensions = at(entry, "extensions");
   const Json& model = at(entry, "pbrMetallicRoughness");
   const bool has_other_model = has(extensions, "KHR_materials_unlit") ||
@@ -78,10 +78,6 @@ void count_losses(const Json& json, const Json& entry, const Material& material,
   losses.add("normalTexture", has(entry, "normalTexture"));
   losses.add("occlusionTexture", has(entry, "occlusionTexture"));
   losses.add("emission", !is_black(at(entry, "emissiveFactor")));
-  const std::string alpha = as_text(at(entry, "alphaMode"));
-  // That of the factor stays, and says by itself that it blends.
-  losses.add("the alpha of their textures", alpha == "BLEND" && material.base_color[3] >= 1 &&
-                                                !base_color_texture(entry).is_null());
   for (auto it = extensions.begin(); extensions.is_object() && it != extensions.end(); ++it) {
     losses.add(in_quotes(it.key()), true);
   }
@@ -118,6 +114,8 @@ Material read_material(const Json& entry, std::size_t index, GltfImages& images)
   }
   // 3.9.4: else alpha says nothing, or where there are holes.
   if (alpha_mode != "BLEND") material.base_color[3] = 1;
+  // Less than 1 says by itself that it blends.
+  material.is_blended = alpha_mode == "BLEND" && material.base_color[3] >= 1;
   material.base_color_texture = images.take(base_color_texture(entry));
   if (material.base_color_texture.empty()) {  // where write_glb() puts it
     material.base_color_texture = as_text(at(at(entry, "extras"), "base_color_texture"));
@@ -133,7 +131,7 @@ GltfMaterials read_gltf_materials(const Json& json, GltfImages& images) {
   const Json& entries = at(json, "materials");
   for (std::size_t i = 0; i < size_of(entries); ++i) {
     result.materials.push_back(read_material(entries[i], i, images));
-    count_losses(json, entries[i], result.materials.back(), losses);
+    count_losses(json, entries[i], losses);
   }
   result.notes = losses.notes();
   return result;

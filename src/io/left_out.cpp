@@ -31,13 +31,17 @@ std::string counted(const char* what, std::size_t count) {
   return std::string(what) + " (" + std::to_string(count) + ")";
 }
 
-// Where other formats say so, they say it in too many ways to be understood.
-void add_holes(const Mesh& mesh, std::vector<std::string>& words) {
+// What alpha means: where other formats say so, they say it in too many ways to be understood.
+void add_alpha(const Mesh& mesh, std::vector<std::string>& words) {
   const auto count = std::ranges::count_if(
       mesh.materials, [](const Material& material) { return material.alpha_cutoff > 0; });
   if (count > 0) {
     words.push_back(
         counted("holes of materials by their textures' alpha", static_cast<std::size_t>(count)));
+  }
+  const auto blended = std::ranges::count_if(mesh.materials, &Material::is_blended);
+  if (blended > 0) {
+    words.push_back(counted("blending of materials", static_cast<std::size_t>(blended)));
   }
 }
 
@@ -70,7 +74,7 @@ std::vector<std::string> left_out_of_obj(const Mesh& mesh) {
       words.push_back("alpha of " + in_words(layer));
     }
   }
-  add_holes(mesh, words);
+  add_alpha(mesh, words);
   add_images(mesh, words);
   return words;
 }
@@ -86,9 +90,9 @@ std::vector<std::string> left_out_of_ply(const Mesh& mesh) {
       static_cast<std::size_t>(std::ranges::count_if(mesh.materials, [](const Material& material) {
         return !material.base_color_texture.empty();
       }));
-  if (count == 0) return {};
-  std::vector<std::string> words = {"the images that textures name"};
-  add_holes(mesh, words);
+  std::vector<std::string> words;
+  if (count > 0) words.push_back("the images that textures name");
+  add_alpha(mesh, words);
   return words;
 }
 

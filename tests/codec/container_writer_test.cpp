@@ -209,7 +209,8 @@ TEST_CASE("a sphere that is rounded up has all of what it was within it") {
 }
 
 TEST_CASE("what a material says beyond its colour is looked at when it is read") {
-  const auto read = [](float cutoff, std::uint8_t flags) {
+  const auto read = [](float cutoff, std::uint8_t flags,
+                       std::uint16_t version = format::kVersionWithSurfaces) {
     ByteWriter out;
     out.u32(1);
     out.text("leaf");
@@ -217,14 +218,38 @@ TEST_CASE("what a material says beyond its colour is looked at when it is read")
     out.text("");
     out.f32(cutoff);
     out.u8(flags);
-    return decode_materials(out.take(), format::kVersionWithSurfaces);
+    return decode_materials(out.take(), version);
   };
   REQUIRE(read(0.5f, 1).ok());
   CHECK(read(0.5f, 1)->front().alpha_cutoff == 0.5f);
   CHECK(read(0.5f, 1)->front().double_sided);
   CHECK_FALSE(read(0.5f, 0)->front().double_sided);
   CHECK(read(0.5f, 2).failure().message == "materials: a reserved flag");
+  CHECK(read(0, 2, format::kVersionWithBlending)->front().is_blended);
+  CHECK(read(0, 3, format::kVersionWithBlending)->front().double_sided);
+  CHECK_FALSE(read(0, 1, format::kVersionWithBlending)->front().is_blended);
+  CHECK(read(0, 4, format::kVersionWithBlending).failure().message == "materials: a reserved flag");
   CHECK(read(-0.5f, 0).failure().message == "materials: a cutoff of alpha is no number from 0 on");
+}
+
+TEST_CASE("whatever of images, holes, sides and blending there is, the file is read") {
+  for (unsigned has = 0; has < 16; ++has) {
+    CAPTURE(has);
+    WrittenFile written = random_file(1, 6, 24);
+    if (has & 1u) written.content.images = some_images();
+    std::vector<Material>& materials = written.content.materials;
+    if (has & 2u) materials[0].alpha_cutoff = 0.25f;
+    if (has & 4u) materials[1].double_sided = true;
+    if (has & 8u) materials[1].is_blended = true;
+    const std::vector<std::byte> bytes = bytes_of(written);
+    const int version = has & 8u ? 9 : has & 6u ? 8 : has & 1u ? 7 : 6;
+    CHECK(bytes[8] == std::byte(version));
+    const Result<BlockFile> file = BlockFile::open(memory_source(bytes));
+    REQUIRE_MESSAGE(file.ok(), (file.ok() ? "" : file.failure().message));
+    CHECK(file->validate().empty());
+    CHECK(*file->read_materials() == materials);
+    CHECK(file->read_images()->size() == written.content.images.size());
+  }
 }
 
 TEST_CASE("older layouts and newer versions are told apart") {
@@ -236,7 +261,7 @@ TEST_CASE("older layouts and newer versions are told apart") {
     CHECK(refused.error == Error::NotSupported);
     CHECK(refused.message.ends_with("build the file again"));
   }
-  bytes[8] = std::byte(9);
+  bytes[8] = std::byte(10);
   CHECK(BlockFile::open(memory_source(bytes)).failure().error == Error::VersionTooNew);
 }
 

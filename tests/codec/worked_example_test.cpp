@@ -117,9 +117,12 @@ TEST_CASE("the golden files are read, and written to the byte") {
   surfaces.content.images = {some_image("brick.png", 40)};
   surfaces.content.materials[0].alpha_cutoff = 0.25f;
   surfaces.content.materials[1].double_sided = true;
+  WrittenFile blended = without;  // and so without images, of which its head speaks all the same
+  blended.content.materials[1].is_blended = true;
+  blended.content.materials[1].double_sided = true;
   for (const auto& [golden, written] :
        {std::pair("version_6.crease", &without), std::pair("version_7.crease", &with),
-        std::pair("version_8.crease", &surfaces)}) {
+        std::pair("version_8.crease", &surfaces), std::pair("version_9.crease", &blended)}) {
     const std::string name = golden;
     CAPTURE(name);
     const WrittenFile file = golden_file(golden, *written);

@@ -178,8 +178,7 @@ TEST_CASE("glTF: what materials say beyond a base colour is told, kind by kind")
   CHECK(notes_of({{{"pbrMetallicRoughness", {{"baseColorTexture", texture}}},
                    {"alphaMode", "BLEND"},
                    {"extensions", {{"KHR_materials_unlit", GltfBuilder::Json::object()}}}}}) ==
-        Notes{"1 materials lose the alpha of their textures",
-              "1 materials lose 'KHR_materials_unlit'",
+        Notes{"1 materials lose 'KHR_materials_unlit'",
               "1 materials lose wrapS or wrapT, which become REPEAT",
               "1 materials lose magFilter NEAREST"});
 }
@@ -191,7 +190,12 @@ TEST_CASE("glTF: alpha counts where it blends") {
     b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.25}}}}}};
     if (std::string(mode) != "OPAQUE") b.json["materials"][0]["alphaMode"] = mode;
     CHECK(import_text(b.gltf(), "m.gltf").mesh.materials[0].base_color[3] == alpha);
+    CHECK_FALSE(import_text(b.gltf(), "m.gltf").mesh.materials[0].is_blended);  // alpha says it
   }
+  // That of textures and colours has nothing else to say it.
+  GltfBuilder b = one_triangle();
+  b.json["materials"] = {{{"alphaMode", "BLEND"}}};
+  CHECK(import_text(b.gltf(), "m.gltf").mesh.materials[0].is_blended);
 }
 
 TEST_CASE("glTF: holes and two sides are kept, the factor's alpha within the cutoff") {

@@ -306,6 +306,12 @@ TEST_CASE("a GLB keeps where materials have holes and two sides, others say that
     const std::vector<std::string> lost = export_report(mesh, ending).left_out;
     CHECK(std::ranges::count(lost, holes) == 1);
   }
+  mesh.materials[1].is_blended = true;
+  CHECK(back(mesh, ".glb").mesh.materials == mesh.materials);
+  for (const char* ending : {".obj", ".ply"}) {
+    const std::vector<std::string> lost = export_report(mesh, ending).left_out;
+    CHECK(std::ranges::count(lost, "blending of materials (1)") == 1);
+  }
 }
 
 TEST_CASE("a file appears with its material library, or not at all") {

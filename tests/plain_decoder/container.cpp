@@ -109,7 +109,7 @@ Head read_head(const Bytes& file) {
   Reader start(file);
   for (const std::uint8_t byte : kMagic) demand(start.u8() == byte, "not a file of this kind");
   const std::uint16_t version = start.u16();
-  demand(version >= 6 && version <= 8, "neither version 6, 7 nor 8");
+  demand(version >= 6 && version <= 9, "neither version 6, 7, 8 nor 9");
   start.u16();  // flags; below
   Head head;
   head.version = version;
@@ -148,7 +148,7 @@ Head read_head(const Bytes& file) {
     head.image_list = read_part(in);
     head.image_bytes = in.u64();
     demand((head.image_list.bytes > 0) == (head.image_bytes > 0), "a list without images");
-    demand(version == 8 || head.image_bytes > 0, "version 7 without images");
+    demand(version >= 8 || head.image_bytes > 0, "version 7 without images");
   }
   for (int l = 0; l < layers; ++l) head.layers.push_back(read_layer(in));
   if (bands > 0) head.bands = read_bands(in.bytes(in.u32()), bands, head.triangles);
@@ -194,12 +194,13 @@ std::vector<Material> read_materials(const Bytes& bytes, int version) {
       demand(std::isfinite(c), "a colour that is not finite");
     }
     material.texture = in.text();
-    if (version == 8) {
+    if (version >= 8) {
       material.cutoff = in.f32();
       demand(std::isfinite(material.cutoff) && material.cutoff >= 0, "a cutoff");
       const int flags = in.u8();
-      demand(flags <= 1, "a reserved flag");
-      material.double_sided = flags == 1;
+      demand(flags <= (version == 9 ? 3 : 1), "a reserved flag");
+      material.double_sided = flags % 2 == 1;
+      material.blended = flags >= 2;
     }
     materials.push_back(material);
   }

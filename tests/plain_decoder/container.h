@@ -57,7 +57,7 @@ struct Material {
   std::array<float, 4> colour{};
   std::string texture;
   float cutoff = 0;
-  bool double_sided = false;
+  bool double_sided = false, blended = false;
 };
 
 struct Lattice {

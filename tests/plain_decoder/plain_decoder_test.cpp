@@ -94,6 +94,7 @@ void check_facts(const BlockFile& file, const CodecModel& codec_model,
     CHECK(container.materials[i].texture == materials[i].base_color_texture);
     CHECK(container.materials[i].cutoff == materials[i].alpha_cutoff);
     CHECK(container.materials[i].double_sided == materials[i].double_sided);
+    CHECK(container.materials[i].blended == materials[i].is_blended);
   }
   CHECK(container.part_names == *file.read_parts());
   const std::vector<ImageFile> images = *file.read_images();
@@ -305,7 +306,8 @@ TEST_CASE("the plain decoder finds what the codec does, at vertices of many tria
 TEST_CASE("the plain decoder reads the golden files") {
   CHECK(check_file(file_bytes(golden("model_6.crease"))) == 2);
   // Its payloads are the letters "base" and "split".
-  for (const char* name : {"version_6.crease", "version_7.crease", "version_8.crease"}) {
+  for (const char* name :
+       {"version_6.crease", "version_7.crease", "version_8.crease", "version_9.crease"}) {
     const plain::Bytes example = file_bytes(golden(name));
     const plain::Container container = plain::read_container(example);
     REQUIRE(!container.entries.empty());
