@@ -21,8 +21,9 @@ struct Patches {
   }
 };
 
-// A k-d tree over centroids, cut at `band`-dependent fractions so that the borders of two bands in
-// a row lie elsewhere. Depends on the input alone. Time O(n log(n / patch_triangles)), parallel.
+// A k-d tree over centroids, cut across the longest axis or one that cuts far fewer triangles, at
+// `band`-dependent fractions so that the borders of two bands in a row lie elsewhere. Depends on
+// the input alone. Time O(n log(n / patch_triangles)), parallel.
 Patches partition_triangles(std::span<const Vec3i> positions,
                             std::span<const std::uint32_t> vertices_of_triangle,  // 3 a triangle
                             std::vector<std::uint32_t> triangles, std::uint32_t patch_triangles,
