@@ -1,6 +1,7 @@
 #include "io/gltf_attributes.h"
 
 #include "base/srgb.h"
+#include "io/layer_fill.h"
 
 #include <algorithm>
 #include <utility>
@@ -42,17 +43,6 @@ RawLayer make_layer(const std::string& semantic, std::size_t dimension, bool int
   return layer;
 }
 
-// More components a value; the new ones are `fill`.
-void widen(RawLayer& layer, std::size_t dimension, float fill) {
-  const std::size_t old = layer.dimension, count = layer.value_count();
-  std::vector<float> wide(count * dimension, fill);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::copy_n(&layer.values[i * old], old, &wide[i * dimension]);
-  }
-  layer.values = std::move(wide);
-  layer.dimension = static_cast<std::uint32_t>(dimension);
-}
-
 // The set that a texture is painted by is set 0, if the primitive has it.
 std::string swapped(const std::string& semantic, const Json& attributes, const TextureUse& use) {
   const std::string painted = "TEXCOORD_" + std::to_string(use.set);
@@ -70,10 +60,6 @@ void transform(GltfReader::Floats& uv, const TextureUse& use) {
   }
 }
 
-float fill_of(const RawLayer& layer) {
-  return layer.role == AttributeRole::Color ? 1.0f : 0.0f;
-}
-
 }  // namespace
 
 GltfLayers::Layer* GltfLayers::layer_of(const std::string& semantic, std::size_t dimension,
@@ -82,7 +68,7 @@ GltfLayers::Layer* GltfLayers::layer_of(const std::string& semantic, std::size_t
   if (found != layers_.end()) {
     if (found->raw.dimension < dimension) {
       total_dimension_ += dimension - found->raw.dimension;
-      widen(found->raw, dimension, fill_of(found->raw));
+      widen(found->raw, static_cast<std::uint32_t>(dimension));
     }
     return &*found;
   }
@@ -97,7 +83,7 @@ GltfLayers::Layer* GltfLayers::layer_of(const std::string& semantic, std::size_t
 
 void GltfLayers::append_missing(Layer& layer, std::size_t count) {
   const std::size_t begin = layer.raw.value_count();
-  layer.raw.values.resize((begin + count) * layer.raw.dimension, fill_of(layer.raw));
+  layer.raw.values.resize((begin + count) * layer.raw.dimension, fill_of(layer.raw.role));
   if (layer.raw.role != AttributeRole::Color) layer.missing.emplace_back(begin, begin + count);
 }
 
@@ -108,7 +94,7 @@ void GltfLayers::append(Layer& layer, const GltfReader::Floats& floats,
   layer.rounded.add(floats.rounded);
   for (const Transform& transform : transforms) {
     const std::size_t begin = out.size();
-    out.resize(begin + count * dimension, fill_of(layer.raw));
+    out.resize(begin + count * dimension, fill_of(layer.raw.role));
     for (std::size_t i = 0; i < count; ++i) {
       std::copy_n(&floats.values[i * floats.components], floats.components,
                   &out[begin + i * dimension]);

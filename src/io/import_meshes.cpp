@@ -2,6 +2,7 @@
 #include "crease/import.h"
 
 #include "io/images.h"
+#include "io/layer_fill.h"
 #include "mesh/clean.h"
 #include "mesh/guess_up.h"
 #include "mesh/weld.h"
@@ -22,23 +23,9 @@ bool is_same_layer(const AttributeLayer& a, const AttributeLayer& b) {
          (a.dimension == b.dimension || a.role == AttributeRole::Color);
 }
 
-// What a corner has that lacks the layer, and a colour that lacks alpha: white, opaque.
-float fill_of(const AttributeLayer& layer) {
-  return layer.role == AttributeRole::Color ? 1.0f : 0.0f;
-}
-
-void widen(AttributeLayer& layer, std::uint32_t dimension) {
-  std::vector<float> values(layer.value_count() * dimension, fill_of(layer));
-  for (std::size_t i = 0; i < layer.value_count(); ++i) {
-    std::copy_n(&layer.values[i * layer.dimension], layer.dimension, &values[i * dimension]);
-  }
-  layer.values = std::move(values);
-  layer.dimension = dimension;
-}
-
 AttributeId add_fill(AttributeLayer& layer) {
   const AttributeId fill{static_cast<std::uint32_t>(layer.value_count())};
-  layer.values.resize(layer.values.size() + layer.dimension, fill_of(layer));
+  layer.values.resize(layer.values.size() + layer.dimension, fill_of(layer.role));
   return fill;
 }
 
