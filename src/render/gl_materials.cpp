@@ -30,6 +30,14 @@ void set_layer(const GlTexture& texture, int layer, const Image& image) {
                   GL_UNSIGNED_BYTE, image.rgba.data());
 }
 
+// The least that a material covers without its texture: one sample of a pixel (gl_target.h). Files
+// say 0 of glass, and of everything where they mean its opposite; neither should be gone.
+constexpr float kLeastCover = 0.25f;
+
+bool is_translucent(const Material& material) {
+  return material.is_blended || material.base_color[3] < 1;
+}
+
 }  // namespace
 
 TextureLimits texture_limits(const GlLimits& gl) {
@@ -59,13 +67,17 @@ void GlMaterials::fill(std::span<const Material> materials, const Textures& text
     glGenerateMipmap(GL_TEXTURE_2D_ARRAY);
   }
   has_colors_of_names_ = have_names_only(materials);
+  has_translucent_ = std::ranges::any_of(materials, is_translucent);
   std::vector<std::array<float, 4>> texels;
   const std::vector<std::array<float, 4>> colors = material_colors(materials);
   for (std::size_t m = 0; m < colors.size(); ++m) {
     const TexturePlace place =
         m < textures.place_of_material.size() ? textures.place_of_material[m] : TexturePlace{};
-    texels.push_back(colors[m]);
-    texels.push_back({float(place.array), float(place.layer), materials[m].alpha_cutoff, 0});
+    const Material& material = materials[m];
+    const auto& [red, green, blue, alpha] = colors[m];
+    texels.push_back({red, green, blue, std::max(alpha, kLeastCover)});
+    texels.push_back({float(place.array), float(place.layer), material.alpha_cutoff,
+                      is_translucent(material) ? 1.0f : 0.0f});
   }
   texels_ = upload(std::span<const std::array<float, 4>>(texels), GL_RGBA32F);
 }

@@ -24,9 +24,11 @@ class GlMaterials {
   void fill(std::span<const Material> materials, const Textures& textures = {});
   bool is_filled() const { return is_filled_; }
 
-  // Two texels a material: its base colour; array and layer of its texture, and its cutoff.
+  // Two texels a material: its base colour and how much it covers; array and layer of its texture,
+  // its cutoff, and whether the texture's alpha is how much it covers, too.
   const GlArray& texels() const { return texels_; }
   bool has_textures() const { return texture_bytes_ > 0; }
+  bool has_translucent() const { return has_translucent_; }
   // The base colours are ours, by names, for what has no colours of its own.
   bool has_colors_of_names() const { return has_colors_of_names_; }
   // Binds the arrays to as many units from `first_unit` on.
@@ -37,7 +39,7 @@ class GlMaterials {
   GlArray texels_;
   std::array<GlTexture, kTextureArrays> arrays_;
   std::size_t texture_bytes_ = 0;
-  bool has_colors_of_names_ = false;
+  bool has_colors_of_names_ = false, has_translucent_ = false;
   bool is_filled_ = false;
 };
 

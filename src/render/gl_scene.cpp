@@ -45,6 +45,28 @@ void add_attribute(GLuint location, const GlArray& array, int components) {
   glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, 0, nullptr);
 }
 
+// While it lives, what is drawn covers as many of a pixel's samples as its alpha says: that needs
+// no order and no blending.
+class AlphaToCoverage {
+ public:
+  explicit AlphaToCoverage(bool is_on) : is_on_(is_on) {
+    if (is_on_) each(glEnable);
+  }
+  ~AlphaToCoverage() {
+    if (is_on_) each(glDisable);
+  }
+  AlphaToCoverage(const AlphaToCoverage&) = delete;
+  AlphaToCoverage& operator=(const AlphaToCoverage&) = delete;
+
+ private:
+  template <typename Switch>
+  static void each(Switch turn) {
+    turn(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    turn(GL_SAMPLE_ALPHA_TO_ONE);  // the picture's alpha is how much of a pixel is covered
+  }
+  bool is_on_;
+};
+
 }  // namespace
 
 GlScene::GlScene(const DrawList& list, std::span<const float> scalars, GlMaterialsPtr materials,
@@ -219,6 +241,7 @@ Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind
   }
   bind_texels(scalars_, unit::Scalars);
 
+  const AlphaToCoverage translucent(key.has_materials() && materials_->has_translucent());
   const GLsizei corner_count = GLsizei(3 * range.count);
   if (key.pulled) {
     glBindVertexArray(no_attributes_.id());

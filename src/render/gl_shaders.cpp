@@ -51,13 +51,14 @@ layout(location = 2) in float a_scalar;
 #endif
 
 #if MATERIALS && PULLED
-flat out vec3 v_material;
+flat out vec4 v_material;
 uniform usamplerBuffer materials;
 uniform samplerBuffer material_colors;  // two texels a material, see gl_materials.h
 #endif
 #if TEXTURES
 flat out ivec2 v_texture;  // array and layer
 flat out float v_cutoff;   // holes are where its alpha is below
+flat out float v_blended;  // 1: its alpha is how much covers; 0: does not count
 centroid out vec2 v_texcoord;
 uniform samplerBuffer corner_texcoords;
 #endif
@@ -94,12 +95,13 @@ void main() {
 
 #if MATERIALS && PULLED
   int material = 2 * int(texelFetch(materials, gl_VertexID / 3).r);
-  v_material = texelFetch(material_colors, material).rgb;
+  v_material = texelFetch(material_colors, material);
 #endif
 #if TEXTURES
-  vec3 texture_of_material = texelFetch(material_colors, material + 1).xyz;
+  vec4 texture_of_material = texelFetch(material_colors, material + 1);
   v_texture = ivec2(texture_of_material.xy);
   v_cutoff = texture_of_material.z;
+  v_blended = texture_of_material.w;
   vec2 texcoord = texelFetch(corner_texcoords, gl_VertexID).xy;
   v_texcoord = vec2(texcoord.x, 1 - texcoord.y);  // an image's first row is its top
 #endif
@@ -144,7 +146,7 @@ centroid in float v_scalar;
 uniform float scalar_scale;
 #endif
 #if MATERIALS && PULLED
-flat in vec3 v_material;
+flat in vec4 v_material;
 #elif MATERIALS
 uniform usamplerBuffer materials;
 uniform samplerBuffer material_colors;
@@ -153,6 +155,7 @@ uniform samplerBuffer material_colors;
 #if TEXTURES
 flat in ivec2 v_texture;
 flat in float v_cutoff;
+flat in float v_blended;
 centroid in vec2 v_texcoord;
 uniform sampler2DArray textures_0, textures_1, textures_2, textures_3;
 
@@ -183,27 +186,28 @@ float line_cover() {
 }
 #endif
 
-vec3 surface_color() {
+// And how much of what is behind it covers.
+vec4 surface_color() {
 #if SCALARS
-  return color_on_scale(clamp(v_scalar * scalar_scale, 0, 1));
+  return vec4(color_on_scale(clamp(v_scalar * scalar_scale, 0, 1)), 1);
 #elif ALBEDO == UNIFORM
-  return albedo;
+  return vec4(albedo, 1);
 #else
-  vec3 c = vec3(1);
+  vec4 c = vec4(1);
 #if MATERIALS && PULLED
   c = v_material;
 #elif MATERIALS
   int material = int(texelFetch(materials, first_triangle + gl_PrimitiveID).r);
-  c = texelFetch(material_colors, 2 * material).rgb;
+  c = texelFetch(material_colors, 2 * material);
 #endif
 #if TEXTURES
   vec4 of_texture = texture_color();
   if (of_texture.a < v_cutoff) discard;
-  c *= of_texture.rgb;
+  c *= vec4(of_texture.rgb, mix(1, of_texture.a, v_blended));
 #endif
 #if ALBEDO == CORNERS
-  c *= mix(v_color / 12.92, pow((v_color + 0.055) / 1.055, vec3(2.4)),
-           greaterThan(v_color, vec3(0.04045)));  // sRGB
+  c.rgb *= mix(v_color / 12.92, pow((v_color + 0.055) / 1.055, vec3(2.4)),
+               greaterThan(v_color, vec3(0.04045)));  // sRGB
 #endif
   return c;
 #endif
@@ -222,7 +226,7 @@ void main() {
   float seen_side = -dot(plane, v_from_eye);
   if (dot(n, plane) * seen_side < 0) n = -n;
 
-  vec3 base = surface_color();
+  vec4 base = surface_color();
   vec3 ambient = mix(vec3(0.110, 0.100, 0.092), vec3(0.290, 0.312, 0.345), 0.5 + 0.5 * dot(n, up));
   // Wrapped round the surface, so that no terminator cuts a dome in two.
   float key = pow(0.5 + 0.5 * dot(n, key_light), 2.3);
@@ -233,14 +237,16 @@ void main() {
 #endif
   vec3 half_way = normalize(key_light + head_light);
   float shine = pow(max(dot(n, half_way), 0), 48);
-  vec3 light = base * lights + vec3(0.03 * shine);
+  vec3 light = base.rgb * lights + vec3(0.03 * shine);
   // White walls in full light bend towards white and do not clip.
   vec3 above = max(light - 0.75, vec3(0));
   light = min(light, vec3(0.75)) + 0.25 * (1 - exp(-4 * above));
 #if WIREFRAME
-  light = mix(light, vec3(0.012, 0.016, 0.024), 0.85 * line_cover());
+  float line = line_cover();
+  light = mix(light, vec3(0.012, 0.016, 0.024), 0.85 * line);
+  base.a = max(base.a, line);
 #endif
-  color = vec4(light, 1);
+  color = vec4(light, base.a);  // as many samples as that (GlScene::draw_part), whose alpha is then 1
 }
 )";
 
@@ -263,14 +269,13 @@ std::string preamble(const ProgramKey& key) {
   const auto define = [](const char* name, int value) {
     return std::string("#define ") + name + " " + std::to_string(value) + "\n";
   };
-  const bool materials = key.materials || key.albedo == AlbedoSource::Materials;
   return "#version 330 core\n" + define("VERTEX", int(NormalSource::PerVertex)) +
          define("TRIANGLE", int(NormalSource::PerTriangle)) +
          define("CORNER", int(NormalSource::PerCorner)) +
          define("UNIFORM", int(AlbedoSource::Uniform)) +
          define("CORNERS", int(AlbedoSource::Corners)) + define("SCALARS", key.has_scalars()) +
          define("NORMALS", int(key.normals)) + define("ALBEDO", int(key.albedo)) +
-         define("MATERIALS", materials) + define("TEXTURES", key.textures) +
+         define("MATERIALS", key.has_materials()) + define("TEXTURES", key.textures) +
          define("WIREFRAME", key.wireframe) + define("PULLED", key.pulled);
 }
 

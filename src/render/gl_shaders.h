@@ -37,6 +37,7 @@ struct ProgramKey {
   bool has_scalars() const {
     return albedo == AlbedoSource::Errors || albedo == AlbedoSource::Levels;
   }
+  bool has_materials() const { return materials || albedo == AlbedoSource::Materials; }
   auto operator<=>(const ProgramKey&) const = default;
 };
 

@@ -172,6 +172,38 @@ TEST_CASE("where the alpha of a texture is below the cutoff there is a hole") {
   CHECK(std::abs(int(hole[0]) - int(hole[2])) < 24);  // the background, which is nearly grey
 }
 
+TEST_CASE("what is blended covers as much of a pixel as its alpha says, without an order") {
+  Mesh mesh = painted_sheet(4);
+  mesh.images.clear();
+  mesh.materials = {{"glass", {0.2f, 0.4f, 1, 1}, ""}};
+  RenderOptions options = from_above();
+  const auto with_alpha = [&](float alpha) {
+    mesh.materials[0].base_color[3] = alpha;
+    return at(draw(MeshDrawArrays(mesh).draw_list(), options), options, 0.4, 0.4);
+  };
+  const Pixel opaque = with_alpha(1), half = with_alpha(0.5f), clear = with_alpha(0);
+  const auto between = [&](const Pixel& p) { return int(p[2]) - int(p[0]); };  // how blue
+  CHECK(between(opaque) > 100);
+  CHECK(between(half) < between(opaque) - 20);
+  CHECK(between(clear) < between(half) - 20);
+  CHECK(between(clear) > 12);  // what a file calls clear is seen all the same
+}
+
+TEST_CASE("a texture's alpha counts where its material is blended, and nowhere else") {
+  Mesh mesh = painted_sheet(4);
+  Image faint = *decode_image(*mesh.images[0].bytes);
+  for (std::size_t i = 3; i < faint.rgba.size(); i += 4) faint.rgba[i] = 0;
+  mesh.images[0] = image_file(mesh.images[0].name, *encode_png(faint));
+  const RenderOptions options = from_above();
+  const auto middle = [&](bool is_blended) {
+    mesh.materials[0].is_blended = is_blended;
+    return at(draw(MeshDrawArrays(mesh).draw_list(), options), options, 0.4, 0.4);
+  };
+  const Pixel nothing = middle(true);
+  CHECK(std::abs(int(nothing[0]) - int(nothing[2])) < 24);  // the background
+  CHECK(middle(false) != nothing);
+}
+
 TEST_CASE("textures repeat, and triangles of other materials have their own") {
   Mesh mesh = painted_sheet(12);
   for (float& x : mesh.layers[1].values) x = 3 * x - 1;  // the middle is the image once
