@@ -44,7 +44,8 @@ struct Built {
 };
 
 // `mesh` must hold check_mesh(), and the bits be in their ranges. Fails with Invalid where it has
-// no normals, when check_precision() does and when interrupted.
+// no normals, when check_precision() does and when interrupted. The file was opened and all its
+// checksums were looked at; its blocks were not decoded (crease validate does).
 Result<Built> build_model(Mesh mesh, const BuildOptions& options);
 
 }  // namespace crease

@@ -1,15 +1,29 @@
+#include "crease/block_file.h"
 #include "crease/build.h"
-
+#include "crease/byte_source.h"
 #include "parallel/parallel.h"
 #include "pipeline/encode_model.h"
 #include "pipeline/join_equal_values.h"
 #include "pipeline/snap_attributes.h"
 
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace crease {
 
 namespace {
+
+// What was written is what a reader takes, so that no build ends well with a file that nothing
+// opens. Blocks are not decoded: that takes far longer, and crease validate does it.
+Status check_readable(std::span<const std::byte> bytes) {
+  const Result<BlockFile> file = BlockFile::open(memory_source(bytes, "the file that was built"));
+  if (!file.ok()) return file.failure();
+  const std::vector<std::string> wrong = file->validate();
+  if (!wrong.empty()) return fail(Error::Invalid, wrong.front());
+  return Done{};
+}
 
 bool goes_on(const BuildOptions& options, const char* stage, double done) {
   return !options.simplify.progress || options.simplify.progress(stage, done);
@@ -42,6 +56,9 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
   if (!encoded.ok()) return encoded.failure();
   built.blocks = encoded->blocks;
   built.file_bytes = sink.take();
+  if (const Status readable = check_readable(built.file_bytes); !readable.ok()) {
+    return readable.failure();
+  }
   if (!goes_on(options, "encode", 1)) return interrupted;
   return built;
 }
