@@ -190,11 +190,11 @@ TEST_CASE("harmed blocks decode to an error or to a block within the limits") {
       CHECK(!codec::decode_block(good, std::uint32_t(block), coding, limits, start).ok());
     }
     std::size_t refused = 0;
-    for (std::size_t length = 0; length < good.size(); ++length) {
+    for (std::size_t length = 0; length < good.size(); length += kHarmStep) {
       refused += !decode(block, std::span(good).first(length), start);
     }
-    if (good.size() > 100) CHECK(refused > good.size() / 2);
-    for (std::size_t bit = 0; bit < 8 * good.size(); bit += kSanitized ? 3 : 1) {
+    if (good.size() > 100) CHECK(refused > good.size() / kHarmStep / 2);
+    for (std::size_t bit = 0; bit < 8 * good.size(); bit += kHarmStep) {
       std::vector<std::byte> bad = good;
       bad[bit / 8] ^= std::byte(1u << bit % 8);
       decode(block, bad, start);

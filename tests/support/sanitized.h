@@ -4,6 +4,8 @@
 
 #include "base/sanitizer.h"
 
+#include <cstddef>
+
 namespace crease {
 
 #if defined(CREASE_ADDRESS_SANITIZER) || defined(CREASE_THREAD_SANITIZER)
@@ -11,5 +13,9 @@ inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
 #endif
+
+// Of all bits or lengths of a file every how many are harmed. Coprime to 8, so that each place in a
+// byte has its turn; the fuzzers harm the rest.
+inline constexpr std::size_t kHarmStep = kSanitized ? 11 : 1;
 
 }  // namespace crease
