@@ -120,7 +120,7 @@ function(crease_test name)
                  LIBRARIES crease_test_support ${ARG_LIBRARIES})
   # To compile doctest, RapidCheck and nlohmann-json takes longer than to run the tests; what they
   # test is as optimized and as watched as ever, but for functions of headers.
-  set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 7)
+  set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
   target_compile_definitions(test_${name} PRIVATE DOCTEST_CONFIG_SUPER_FAST_ASSERTS)
   target_compile_options(test_${name} PRIVATE
     $<$<CONFIG:Release>:-O1> $<$<CONFIG:Sanitize>:-O0 -fno-sanitize=undefined>)

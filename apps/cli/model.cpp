@@ -28,6 +28,12 @@ void add_import_options(CLI::App& command, ReadOptions& options) {
       ->type_name("DEGREES")
       ->check(number_from(0.0, 180.0))
       ->capture_default_str();
+  command
+      .add_option("--textures", options.texture_folder,
+                  "where images are looked for that are not in the model's own folder, by the last "
+                  "part of their path; nothing is read outside of the two")
+      ->type_name("DIR")
+      ->check(CLI::ExistingDirectory);
 }
 
 void add_build_options(CLI::App& command, ReadOptions& options) {
@@ -106,6 +112,7 @@ Result<ImportOptions> import_options(const ReadOptions& options, const Common& c
   ImportOptions import;
   import.normals = *normals;
   import.same_normal_deg = options.same_normal_deg;
+  if (!options.texture_folder.empty()) import.texture_folder = options.texture_folder;
   if (!options.precision.empty()) {
     Result<Precision> precision = parse_precision(options.precision);
     if (!precision.ok()) return precision.failure();
@@ -262,8 +269,9 @@ Result<std::vector<ImageFile>> ModelFile::images(std::span<const Material> mater
   const std::string& name = blocks_.source().name();
   Result<std::vector<ImageFile>> images = blocks_.read_images();
   if (!images.ok() || was_built() || is_http_url(name)) return images;
-  const std::filesystem::path folder = std::filesystem::path(name).parent_path();
-  for (const std::string& note : find_images(folder, materials, *images)) {
+  std::vector<std::filesystem::path> folders{std::filesystem::path(name).parent_path()};
+  if (!texture_folder_.empty()) folders.push_back(texture_folder_);
+  for (const std::string& note : find_images(folders, materials, *images)) {
     log(*common_, name + ": " + note);
   }
   return images;
@@ -291,7 +299,9 @@ Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOption
   if (is_crease_file(path)) {
     Result<BlockFile> file = open_crease_or_url(path);
     if (!file.ok()) return file.failure();
-    return ModelFile(*std::move(file), {}, common);
+    ModelFile model(*std::move(file), {}, common);
+    model.texture_folder_ = options.texture_folder;
+    return model;
   }
   Result<BuildOptions> build = build_options(options, common);
   if (!build.ok()) return build.failure();

@@ -26,13 +26,14 @@ namespace crease::cli {
 struct ReadOptions {
   std::string normals = "keep";
   double same_normal_deg = 0;
-  std::string precision;  // empty: the library's default
+  std::string texture_folder;  // empty: none besides the model's own
+  std::string precision;       // empty: the library's default
   std::string placement = "optimal";
   std::string normal_coding = "octahedral";
   std::string normal_bits, texcoord_bits, color_bits;  // empty: the library's default
 };
 
-// --normals and --same-normal, for commands that read meshes.
+// --normals, --same-normal and --textures, for commands that read meshes.
 void add_import_options(CLI::App& command, ReadOptions& options);
 // Those, --precision, --placement and the attributes' bits, for commands that build.
 void add_build_options(CLI::App& command, ReadOptions& options);
@@ -91,6 +92,7 @@ class ModelFile {
 
   std::vector<std::byte> built_;  // what blocks_ reads, or empty
   std::optional<ImportReport> imported_;
+  std::string texture_folder_;
   BlockFile blocks_;
   std::uint64_t read_to_open_;   // of the source
   std::uint64_t bytes_to_open_;  // as they are told

@@ -44,6 +44,8 @@ struct ImportOptions {
   // normals are made. None: than 2^-22 of the longest side, so that seams and poles close which a
   // sine has not closed.
   std::optional<Precision> precision{};
+  // Where images are looked for that the model's own folder lacks, by the last part of their path.
+  std::optional<std::filesystem::path> texture_folder{};
   ProgressCallback progress{};
 };
 
@@ -94,12 +96,13 @@ Result<Imported> import_bytes(std::span<const std::byte> bytes, std::string_view
 Result<Imported> import_meshes(std::span<const std::filesystem::path> paths,
                                const ImportOptions& options);
 
-// Adds to `images` the files in `folder` that materials name as their textures and it lacks, and
-// returns a note for each that is not there. A name is a path that does not lead out of the folder;
-// what is not where it says is looked for in the folder itself. PNG and JPEG, 256 MiB each and 4096
-// of them at most.
+// Adds to `images` the files that materials name as their textures and it lacks, out of the first
+// of `folders` that has them, and returns a note for each that is in none. A name is a path that
+// does not lead out of a folder; what is not where it says is looked for in the folder itself. In
+// another case it is found where nothing has its own, as Windows would. PNG and JPEG, 256 MiB each
+// and 4096 of them at most. What a note says of `folders` is of the first, the model's own.
 // import_mesh() does so; this is for images that a build did not find.
-std::vector<std::string> find_images(const std::filesystem::path& folder,
+std::vector<std::string> find_images(std::span<const std::filesystem::path> folders,
                                      std::span<const Material> materials,
                                      std::vector<ImageFile>& images);
 

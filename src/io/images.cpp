@@ -48,7 +48,7 @@ Result<std::vector<std::byte>> read_image(const std::filesystem::path& folder,
     if (is_outside && !bytes.ok() && bytes.failure().error == Error::NotFound) {
       return fail(Error::NotFound,
                   in_quotes(name) + " is outside the model's folder, where nothing is read, and " +
-                      in_quotes(path.substr(slash + 1)) + " is not in it");
+                      in_quotes(path.substr(slash + 1)) + " is not in it (--textures DIR)");
     }
   }
   if (bytes.ok() && image_type(*bytes).empty()) {
@@ -107,7 +107,7 @@ void append_images(std::span<const ImageFile> from, std::span<Material> material
   }
 }
 
-std::vector<std::string> find_images(const std::filesystem::path& folder,
+std::vector<std::string> find_images(std::span<const std::filesystem::path> folders,
                                      std::span<const Material> materials,
                                      std::vector<ImageFile>& images) {
   std::vector<std::string> notes, missing;
@@ -119,7 +119,12 @@ std::vector<std::string> find_images(const std::filesystem::path& folder,
       notes.push_back("textures left out: more than " + std::to_string(kMaxImages) + " images");
       break;
     }
-    Result<std::vector<std::byte>> bytes = read_image(folder, name);
+    Result<std::vector<std::byte>> bytes = read_image(folders.front(), name);
+    for (const std::filesystem::path& folder : folders.subspan(1)) {
+      if (bytes.ok()) break;
+      Result<std::vector<std::byte>> other = read_image(folder, name);
+      if (other.ok()) bytes = std::move(other);
+    }
     if (bytes.ok()) {
       images.push_back({name, std::make_shared<const std::vector<std::byte>>(*std::move(bytes))});
     } else {

@@ -122,7 +122,9 @@ Result<RawMesh> read_raw(std::span<const std::byte> bytes, const std::string& na
   }
   Result<RawMesh> raw = read(source);
   if (!raw.ok() || folder == nullptr) return raw;
-  for (std::string& note : find_images(*folder, raw->materials, raw->images)) {
+  std::vector<std::filesystem::path> folders{*folder};
+  if (options.texture_folder) folders.push_back(*options.texture_folder);
+  for (std::string& note : find_images(folders, raw->materials, raw->images)) {
     raw->report.notes.push_back(std::move(note));
   }
   return raw;

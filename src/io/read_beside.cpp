@@ -9,6 +9,38 @@
 
 namespace crease {
 
+namespace {
+
+bool is_same_but_for_case(const std::string& a, const std::string& b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+  return std::ranges::equal(a, b, {}, lower, lower);
+}
+
+// `relative` as folders have it, where none has it as written: the first by name of those that
+// differ by case alone. Files of other systems say "Wood.JPG" of wood.jpg.
+std::filesystem::path in_their_case(const std::filesystem::path& root,
+                                    const std::filesystem::path& relative) {
+  namespace fs = std::filesystem;
+  fs::path path = root;
+  for (const fs::path& part : relative) {
+    std::error_code error;
+    fs::path found = path / part;
+    if (!fs::exists(found, error)) {
+      std::string best;
+      for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
+        const std::string name = entry.path().filename().string();
+        if (is_same_but_for_case(name, part.string()) && (best.empty() || name < best)) best = name;
+      }
+      if (best.empty()) return root / relative;
+      found = path / best;
+    }
+    path = found;
+  }
+  return path;
+}
+
+}  // namespace
+
 Result<std::vector<std::byte>> read_in_folder(const std::filesystem::path& folder,
                                               const std::string& name, std::size_t max_bytes) {
   namespace fs = std::filesystem;
@@ -27,7 +59,7 @@ Result<std::vector<std::byte>> read_in_folder(const std::filesystem::path& folde
   std::error_code error;
   const fs::path root = fs::canonical(folder.empty() ? "." : folder, error);
   if (error) return fail(Error::NotFound, "no folder to look in");
-  const fs::path path = fs::canonical(root / relative, error);
+  const fs::path path = fs::canonical(in_their_case(root, relative), error);
   if (error) return missing();
   const auto [in_root, in_path] = std::ranges::mismatch(root, path);
   if (in_root != root.end()) return outside();

@@ -15,7 +15,8 @@ namespace {
 std::vector<std::string> find_beside(const ModelSource& model, const std::vector<Material>& names,
                                      std::vector<ImageFile>& images) {
   if (model.built || is_http_url(model.source)) return {};  // a build has looked there
-  return find_images(std::filesystem::path(model.source).parent_path(), names, images);
+  const std::filesystem::path folder = std::filesystem::path(model.source).parent_path();
+  return find_images({&folder, 1}, names, images);
 }
 
 }  // namespace

@@ -223,10 +223,54 @@ TEST_CASE("what was not found at first is found in another folder later") {
                                            {"d", {1, 1, 1, 1}, ""}};
   folder.write("wood.png", png("wood"));
   std::vector<ImageFile> images;
-  const std::vector<std::string> notes = find_images(folder.path, materials, images);
+  const std::vector<std::string> notes = find_images({&folder.path, 1}, materials, images);
   CHECK(notes == std::vector<std::string>{"texture left out: no file 'gone.png'"});
   REQUIRE(images.size() == 1);
   CHECK(images[0].name == "tex/wood.png");
+
+  const Folder other;
+  other.write("gone.png", png("gone"));
+  other.write("wood.png", png("another"));
+  const std::filesystem::path both[] = {folder.path, other.path};
+  images.clear();
+  CHECK(find_images(both, materials, images).empty());
+  REQUIRE(images.size() == 2);
+  CHECK(text_of(images[0]) == png("wood"));
+  CHECK(text_of(images[1]) == png("gone"));
+}
+
+TEST_CASE("an image whose name differs by case is found where none has its own") {
+  const Folder folder;
+  folder.write("Tex/WOOD.png", png("large"));
+  folder.write("Tex/Wood.PNG", png("both"));
+  std::vector<ImageFile> images;
+  const auto found_as = [&](const std::string& name) {
+    images.clear();
+    find_images({&folder.path, 1}, std::vector<Material>{{"a", {1, 1, 1, 1}, name}}, images);
+    return images.empty() ? "" : text_of(images[0]);
+  };
+  CHECK(found_as("Tex/Wood.PNG") == png("both"));
+  CHECK(found_as("tex/wood.png") == png("large"));
+  CHECK(found_as("TEX\\wOOD.pNG") == png("large"));
+  CHECK(found_as("tex/wool.png").empty());
+}
+
+TEST_CASE("a model's textures may be in a folder of their own") {
+  const Folder folder, other;
+  folder.write("quad.obj", kQuad);
+  folder.write("quad.mtl", "newmtl wood\nmap_Kd ../tex/wood.png\n");
+  other.write("wood.png", png("wood"));
+  const Result<Imported> without = import_mesh(folder.path / "quad.obj", {});
+  REQUIRE(without.ok());
+  CHECK(without->mesh.images.empty());
+  CHECK(has_note(*without, "outside the model's folder"));
+  ImportOptions options;
+  options.texture_folder = other.path;
+  const Result<Imported> with = import_mesh(folder.path / "quad.obj", options);
+  REQUIRE(with.ok());
+  REQUIRE(with->mesh.images.size() == 1);
+  CHECK(text_of(with->mesh.images[0]) == png("wood"));
+  CHECK(!has_note(*with, "texture left out"));
 }
 
 Mesh painted_quad() {
