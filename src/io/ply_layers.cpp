@@ -51,6 +51,12 @@ double color_scale(PlyType type) {
   return type == PlyType::Int16 || type == PlyType::Uint16 ? 1.0 / 65535 : 1.0 / 255;
 }
 
+// Integers without signs have 0 in their middle. How long a normal is does not matter.
+double normal_zero(PlyType type) {
+  if (type == PlyType::Uint8) return 127.5;
+  return type == PlyType::Uint16 ? 32767.5 : 0;
+}
+
 // Gives the properties of `group` to a layer made by `make(dimension)`, if the element has them.
 template <typename Make>
 bool take_group(const PlyElement& element, const NamedGroup& group, PlyLayers& to, Make make) {
@@ -62,10 +68,12 @@ bool take_group(const PlyElement& element, const NamedGroup& group, PlyLayers& t
   }
   if (found.size() < group.least) return false;
   RawLayer layer = make(static_cast<std::uint32_t>(found.size()));
-  const bool is_color = layer.role == AttributeRole::Color;
   for (std::size_t c = 0; c < found.size(); ++c) {
-    const double scale = is_color ? color_scale(element.properties[found[c]].type) : 1;
-    to.targets[found[c]] = {PlyTarget::Kind::Layer, to.layers.size(), c, scale};
+    const PlyType type = element.properties[found[c]].type;
+    PlyTarget& target = to.targets[found[c]];
+    target = {PlyTarget::Kind::Layer, to.layers.size(), c};
+    if (layer.role == AttributeRole::Color) target.scale = color_scale(type);
+    if (layer.role == AttributeRole::Normal) target.zero = normal_zero(type);
   }
   to.add(std::move(layer));
   return true;
@@ -132,7 +140,7 @@ void take_named(const PlyElement& element, const PlyNamedLayer& named, RawLayer:
     if (per == RawLayer::Per::Vertex && is_axis(property.name)) return;
   }
   for (std::size_t c = 0; c < named.dimension; ++c) {
-    to.targets[*first + c] = {PlyTarget::Kind::Layer, to.layers.size(), c, 1};
+    to.targets[*first + c] = {PlyTarget::Kind::Layer, to.layers.size(), c};
   }
   to.add({named.name, named.role, named.interpolation, per, named.dimension, {}, {}}, true);
 }

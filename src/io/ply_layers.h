@@ -14,12 +14,13 @@
 
 namespace crease {
 
-// What a property is for. Layer: component `component` of layers_[layer], times `scale`.
+// What a property is for. Layer: component `component` of layers[layer], less `zero`, times
+// `scale`.
 struct PlyTarget {
   enum class Kind { Position, Layer, Indices, CornerTexCoords, Ignored };
   Kind kind = Kind::Ignored;
   std::size_t layer = 0, component = 0;
-  double scale = 1;
+  double scale = 1, zero = 0;
 };
 
 // The layers of one element, vertex or face, and where each property goes.
@@ -39,7 +40,8 @@ struct PlyLayers {
     rounded.emplace_back();
   }
   void set(const PlyTarget& target, double x) {
-    row[begin[target.layer] + target.component] = rounded[target.layer].to_float(x * target.scale);
+    row[begin[target.layer] + target.component] =
+        rounded[target.layer].to_float((x - target.zero) * target.scale);
   }
   void keep_row() {
     for (std::size_t l = 0; l < layers.size(); ++l) {

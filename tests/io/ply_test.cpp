@@ -270,6 +270,28 @@ TEST_CASE("normals of faces are used where vertices have none") {
   CHECK(value_at(*mesh.normals(), 1) == std::vector<float>{0, 0.6f, 0.8f});
 }
 
+TEST_CASE("normals in bytes, with signs and without") {
+  const auto normal_of = [](const std::string& type, const std::string& values) {
+    const std::string properties =
+        "property " + type + " nx\nproperty " + type + " ny\nproperty " + type + " nz\n";
+    const Mesh mesh =
+        import_text(header("", properties) + kThreePoints + "3 0 1 2 " + values + "\n", "a.ply")
+            .mesh;
+    return value_at(*mesh.normals(), 1);
+  };
+  using Case = std::pair<std::string, std::string>;
+  for (const auto& [type, values] : {Case("char", "0 -128 127"),
+                                     {"uchar", "127 0 255"},
+                                     {"short", "0 -32768 32767"},
+                                     {"ushort", "32767 0 65535"}}) {
+    CAPTURE(type);
+    const std::vector<float> n = normal_of(type, values);
+    CHECK(n[0] == doctest::Approx(0).epsilon(0.01));
+    CHECK(n[1] == doctest::Approx(-0.7071).epsilon(0.01));
+    CHECK(n[2] == doctest::Approx(0.7071).epsilon(0.01));
+  }
+}
+
 TEST_CASE("triangle strips turn every other triangle and break at -1") {
   const Mesh mesh = import_text(
                         "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float "
