@@ -31,6 +31,14 @@ TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 
 LEAK_CHECK_FAILED = "LeakSanitizer has encountered a fatal error"
 
 
+def without_leak_check(environment=None):
+    """For who cannot run a command once more."""
+    environment = dict(environment or os.environ)
+    options = environment.get("ASAN_OPTIONS")
+    environment["ASAN_OPTIONS"] = (options + ":" if options else "") + "detect_leaks=0"
+    return environment
+
+
 def run(command, environment=None, timeout=None):
     """The finished command; once more without the leak checker if that is what failed."""
     environment = dict(environment or os.environ)
@@ -39,8 +47,7 @@ def run(command, environment=None, timeout=None):
                               env=environment, timeout=timeout)
         if LEAK_CHECK_FAILED not in done.stderr:
             break
-        options = environment.get("ASAN_OPTIONS")
-        environment["ASAN_OPTIONS"] = (options + ":" if options else "") + "detect_leaks=0"
+        environment = without_leak_check(environment)
     return done
 
 
