@@ -4,11 +4,14 @@
 #include "cli/number_check.h"
 #include "crease/render.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace crease::cli {
 
@@ -54,13 +57,30 @@ ViewParameters with_errors(ViewParameters view, double times) {
   return view;
 }
 
+// What unfolding takes is left free by the view, which is looked at again until there is enough:
+// nearly always at once.
+AdaptiveMesh limited_cut(const std::shared_ptr<const MeshHierarchy>& hierarchy,
+                         const ViewParameters& view, std::span<const char> faces_away) {
+  constexpr int kTries = 4;
+  ViewParameters with_room = view;
+  for (int i = 1;; ++i) {
+    const bool is_last = i == kTries;
+    AdaptiveMesh mesh(hierarchy);
+    mesh.update(with_room);
+    mesh.unfold(is_last ? view.max_triangles : ViewParameters{}.max_triangles, faces_away);
+    if (is_last || mesh.triangle_count() <= view.max_triangles) return mesh;
+    const std::size_t excess = mesh.triangle_count() - view.max_triangles;
+    with_room.max_triangles -= std::min(excess, with_room.max_triangles);
+  }
+}
+
 }  // namespace
 
 void add_view_options(CLI::App& command, CLI::Option* view, ViewOptions& options) {
   command
       .add_option("--degrees", options.degrees,
                   "error of shading allowed in the view besides; default: any")
-      ->check(number_from(0.0, 180.0))
+      ->check(number_above(0.0, 180.0))
       ->type_name("N")
       ->needs(view);
   command
@@ -88,14 +108,15 @@ Result<ViewedModel> load_viewed(const ModelFile& file, const ViewParameters& vie
     if (!reads.all) detail.view = with_errors(unlimited, times);
     Result<ModelHierarchy> model = load_hierarchy(file, detail);
     if (!model.ok()) return model.failure();
+    const std::vector<char> faces_away = triangles_facing_away(model->finest, model->maps);
     AdaptiveMesh mesh(model->hierarchy);
     mesh.update(with_errors(unlimited, times));
+    mesh.unfold(unlimited.max_triangles, faces_away);
     const auto viewed = [&](AdaptiveMesh& as, StoppedBy stop) {
       return ViewedModel{std::move(as), stop, model->error, model->bytes_read, model->blocks_read};
     };
     if (mesh.triangle_count() > view.max_triangles) {
-      AdaptiveMesh limited(model->hierarchy);
-      limited.update(with_errors(view, times));
+      AdaptiveMesh limited = limited_cut(model->hierarchy, with_errors(view, times), faces_away);
       const bool fits = limited.triangle_count() <= view.max_triangles;
       return viewed(limited, fits ? StoppedBy::Triangles : StoppedBy::Topology);
     }

@@ -27,6 +27,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <span>
 
 namespace crease {
 
@@ -80,6 +81,14 @@ class AdaptiveMesh {
   // The same error everywhere: splits exactly the vertices with a larger surface or line error,
   // model units. Negative: all, which restores the snapped input. Time O(active vertices + moves).
   UpdateReport set_error(float error, double seconds = 0);
+
+  // Splits independently of their neighbours leave flat surfaces folded over in places: triangles
+  // that face away from the normals that they show, at no distance from the input. Splits at these
+  // until none is left, or no more than `max_triangles` allow. For cuts that are exported, after
+  // update(), of which the next one merges again what its view does not need. `faces_away`: per
+  // triangle of the hierarchy, whether the input has it so; or empty: none. Returns how many folds
+  // are left. Time O(active triangles) for each split that one of them takes, few on the whole.
+  std::size_t unfold(std::size_t max_triangles, std::span<const char> faces_away = {});
 
   std::size_t triangle_count() const;
   std::size_t vertex_count() const;  // active ones that triangles of the input use

@@ -32,6 +32,10 @@ Result<MeshHierarchy> build_hierarchy(const Mesh& snapped, const ContractionSequ
                                       const HierarchyOptions& options,
                                       HierarchyMaps* maps = nullptr);
 
+// Per triangle of the hierarchy: 1 where all its corners' normals are on the other side than its
+// winding has outside. Cuts are no more folded there than the input (AdaptiveMesh::unfold).
+std::vector<char> triangles_facing_away(const Mesh& snapped, const HierarchyMaps& maps);
+
 // Whether full refinement is `snapped`, corner for corner: positions, values, materials and parts,
 // and which corners of a vertex share an attribute. `hierarchy` must hold check_hierarchy(). Time
 // O(corners * depth).

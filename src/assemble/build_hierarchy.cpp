@@ -8,8 +8,10 @@
 #include "assemble/join_roots.h"
 #include "assemble/leaf_wedges.h"
 #include "assemble/vertex_forest.h"
+#include "mesh/clean.h"
 
 #include <utility>
+#include <vector>
 
 namespace crease {
 
@@ -48,6 +50,15 @@ Result<MeshHierarchy> build_hierarchy(const Mesh& snapped, const ContractionSequ
     maps->split_of_contraction = forest.split_of_contraction;
   }
   return hierarchy;
+}
+
+std::vector<char> triangles_facing_away(const Mesh& snapped, const HierarchyMaps& maps) {
+  std::vector<char> faces_away(snapped.triangle_count(), 0);
+  const AttributeLayer* const normals = snapped.normals();
+  for (std::size_t t = 0; normals != nullptr && t < faces_away.size(); ++t) {
+    faces_away[index_of(maps.new_of_triangle[t])] = has_reversed_normals(snapped, *normals, t);
+  }
+  return faces_away;
 }
 
 }  // namespace crease

@@ -144,24 +144,24 @@ std::size_t count_misoriented_edges(const Mesh& mesh) {
   return count;
 }
 
+bool has_reversed_normals(const Mesh& mesh, const AttributeLayer& normals, std::size_t triangle) {
+  const auto [a, b, c] = mesh.triangles[triangle];
+  const Vec3d p = mesh.positions[index_of(a)], q = mesh.positions[index_of(b)],
+              r = mesh.positions[index_of(c)];
+  const Vec3d outside = cross(q - p, r - p);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const AttributeId id = normals.of_corner[3 * triangle + k];
+    if (id == kNoAttribute) return false;
+    const std::span<const float> n = normals.value(id);
+    if (dot(outside, Vec3d{n[0], n[1], n[2]}) >= 0) return false;
+  }
+  return !has_no_area(p, q, r);
+}
+
 std::size_t count_reversed_normals(const Mesh& mesh, const AttributeLayer& normals) {
   std::size_t count = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const auto [a, b, c] = mesh.triangles[t];
-    const Vec3d p = mesh.positions[index_of(a)], q = mesh.positions[index_of(b)],
-                r = mesh.positions[index_of(c)];
-    const Vec3d outside = cross(q - p, r - p);
-    bool is_reversed = true;
-    for (std::size_t k = 0; is_reversed && k < 3; ++k) {
-      const AttributeId id = normals.of_corner[3 * t + k];
-      if (id == kNoAttribute) {
-        is_reversed = false;
-        continue;
-      }
-      const std::span<const float> n = normals.value(id);
-      is_reversed = dot(outside, Vec3d{n[0], n[1], n[2]}) < 0;
-    }
-    count += is_reversed && !has_no_area(p, q, r);
+    count += has_reversed_normals(mesh, normals, t);
   }
   return count;
 }

@@ -34,8 +34,9 @@ std::size_t count_duplicate_triangles(const Mesh& mesh);
 // one side of the surface becomes the other there. Time O(corners), memory 12 bytes per triangle.
 std::size_t count_misoriented_edges(const Mesh& mesh);
 
-// Triangles with an area whose three corners have normals, all more than 90 degrees off the side
-// that the winding says is outside.
+// Whether a triangle has an area and three normals, all more than 90 degrees off the side that its
+// winding says is outside; and how many do.
+bool has_reversed_normals(const Mesh& mesh, const AttributeLayer& normals, std::size_t triangle);
 std::size_t count_reversed_normals(const Mesh& mesh, const AttributeLayer& normals);
 
 // Whether the three points lie on a line, as far as their coordinates can tell: the height over the

@@ -4,6 +4,7 @@
 #include "runtime/active_cut.h"
 #include "runtime/cut_drawing.h"
 #include "runtime/extract_cut.h"
+#include "runtime/folds.h"
 #include "runtime/geomorphs.h"
 #include "runtime/refiner.h"
 
@@ -75,6 +76,17 @@ UpdateReport AdaptiveMesh::update(const ViewParameters& view, double seconds) {
 UpdateReport AdaptiveMesh::set_error(float error, double seconds) {
   impl_->geomorphs.advance(seconds);
   return impl_->arrive(impl_->refiner.set_error(impl_->cut, error));
+}
+
+std::size_t AdaptiveMesh::unfold(std::size_t max_triangles, std::span<const char> faces_away) {
+  std::size_t left = 0, splits = 0;
+  do {
+    const Folds folds = find_folds(impl_->cut, faces_away);
+    left = folds.count;
+    splits = impl_->refiner.split_vertices(impl_->cut, folds.slots, max_triangles);
+  } while (splits > 0);
+  impl_->arrive({});
+  return left;
 }
 
 void AdaptiveMesh::set_geomorph_seconds(double seconds) {

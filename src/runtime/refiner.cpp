@@ -100,6 +100,19 @@ UpdateReport Refiner::set_error(ActiveCut& cut, float error) {
   return report_;
 }
 
+std::size_t Refiner::split_vertices(ActiveCut& cut, std::span<const std::uint32_t> slots,
+                                    std::size_t max_triangles) {
+  report_ = {};
+  at_once_ = false;
+  has_view_ = false;
+  for (const std::uint32_t slot : slots) {
+    const SplitId s = cut.vertices()[slot].split;
+    const std::size_t gain = cut.hierarchy().vertices.triangles_of(s).size();
+    if (cut.triangle_count() + gain <= max_triangles) move_down(cut, slot);
+  }
+  return report_.splits;
+}
+
 bool Refiner::out_of_time() {
   if (view_.clock == nullptr) return false;
   if (moves_until_clock_ > 0) {

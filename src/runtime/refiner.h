@@ -40,6 +40,11 @@ class Refiner {
   UpdateReport update(ActiveCut& cut, const ViewParameters& view);
   UpdateReport set_error(ActiveCut& cut, float error);
 
+  // These vertices, whatever the view says, as far as there are at most `max_triangles` then. How
+  // many were; the next update() looks at all anew.
+  std::size_t split_vertices(ActiveCut& cut, std::span<const std::uint32_t> slots,
+                             std::size_t max_triangles);
+
   // Whatever the view says, what has a number here is split, on the way to leaves that must be
   // active. Per split; the caller's. Not with a budget.
   void use_required(std::span<const std::uint8_t> required) { required_ = required; }
