@@ -226,7 +226,8 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
     ProgressiveMesh mesh(arrays);
     const Result<Chosen> chosen = choose_level(mesh, full, level, common);
     if (!chosen.ok()) return chosen.failure();
-    const std::string name = level_name(mesh, full_count);
+    const std::string of_file = options.file_names ? file->name() + ", " : "";
+    const std::string name = of_file + level_name(mesh, full_count);
     if (options.control) {
       controls.push_back({name, mesh.extract()});
       controls.back().mesh.images = full.images;

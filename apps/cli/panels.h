@@ -25,6 +25,7 @@ struct PanelOptions {
   std::optional<ViewParameters> view;  // instead of both: one panel, as fine as this needs it
   bool control = false;  // after the levels, each again with one averaged normal a vertex
   bool titles = true;
+  bool file_names = false;  // in titles of levels; those of views have them anyway
   // For Coloring::Error: measured distances; of a view, pixels on its screen. For Coloring::Level.
   bool errors_of_positions = false, levels_of_positions = false;
   ReadOptions read;

@@ -113,6 +113,7 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
     options.panels.view = view_of(*seen, options.of_view, options.panels.level.triangles);
   }
 
+  options.panels.file_names = options.files.size() > 1;
   Panels panels;
   for (const std::filesystem::path& file : options.files) {
     const Status added = panels.add_file(file, options.panels, common);

@@ -65,7 +65,7 @@ struct Material {
   float alpha_cutoff = 0;
   bool double_sided = false;  // a hint for who culls what faces away; crease draws both sides
   // What is behind shows through where the texture's alpha or the colours' is below 1 (BLEND of
-  // glTF). A hint: crease draws it opaque. Where the base colour's is, that says so by itself.
+  // glTF). Where the base colour's is, that says so by itself.
   bool is_blended = false;
   bool operator==(const Material&) const = default;
 };

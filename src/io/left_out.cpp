@@ -31,10 +31,12 @@ std::string counted(const char* what, std::size_t count) {
   return std::string(what) + " (" + std::to_string(count) + ")";
 }
 
-// What alpha means: where other formats say so, they say it in too many ways to be understood.
-void add_alpha(const Mesh& mesh, std::vector<std::string>& words) {
-  const auto count = std::ranges::count_if(
-      mesh.materials, [](const Material& material) { return material.alpha_cutoff > 0; });
+// What alpha means, and which sides are seen: where other formats say so, they say it in too many
+// ways to be understood.
+void add_hints(const Mesh& mesh, std::vector<std::string>& words) {
+  const auto count = std::ranges::count_if(mesh.materials, [](const Material& material) {
+    return material.alpha_cutoff > 0 && !material.base_color_texture.empty();
+  });
   if (count > 0) {
     words.push_back(
         counted("holes of materials by their textures' alpha", static_cast<std::size_t>(count)));
@@ -42,6 +44,10 @@ void add_alpha(const Mesh& mesh, std::vector<std::string>& words) {
   const auto blended = std::ranges::count_if(mesh.materials, &Material::is_blended);
   if (blended > 0) {
     words.push_back(counted("blending of materials", static_cast<std::size_t>(blended)));
+  }
+  const auto double_sided = std::ranges::count_if(mesh.materials, &Material::double_sided);
+  if (double_sided > 0) {
+    words.push_back(counted("both sides of materials", static_cast<std::size_t>(double_sided)));
   }
 }
 
@@ -74,7 +80,7 @@ std::vector<std::string> left_out_of_obj(const Mesh& mesh) {
       words.push_back("alpha of " + in_words(layer));
     }
   }
-  add_alpha(mesh, words);
+  add_hints(mesh, words);
   add_images(mesh, words);
   return words;
 }
@@ -92,7 +98,7 @@ std::vector<std::string> left_out_of_ply(const Mesh& mesh) {
       }));
   std::vector<std::string> words;
   if (count > 0) words.push_back("the images that textures name");
-  add_alpha(mesh, words);
+  add_hints(mesh, words);
   return words;
 }
 
