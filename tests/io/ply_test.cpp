@@ -280,12 +280,12 @@ TEST_CASE("normals in bytes, with signs and without") {
     return value_at(*mesh.normals(), 1);
   };
   using Case = std::pair<std::string, std::string>;
-  for (const auto& [type, values] : {Case("char", "0 -128 127"),
-                                     {"uchar", "127 0 255"},
-                                     {"short", "0 -32768 32767"},
-                                     {"ushort", "32767 0 65535"}}) {
-    CAPTURE(type);
-    const std::vector<float> n = normal_of(type, values);
+  for (const Case& c : {Case("char", "0 -128 127"),
+                        {"uchar", "127 0 255"},
+                        {"short", "0 -32768 32767"},
+                        {"ushort", "32767 0 65535"}}) {
+    CAPTURE(c.first);
+    const std::vector<float> n = normal_of(c.first, c.second);
     CHECK(n[0] == doctest::Approx(0).epsilon(0.01));
     CHECK(n[1] == doctest::Approx(-0.7071).epsilon(0.01));
     CHECK(n[2] == doctest::Approx(0.7071).epsilon(0.01));
