@@ -85,8 +85,8 @@ void add_view_options(CLI::App& command, CLI::Option* view, ViewOptions& options
       ->needs(view);
   command
       .add_flag("--consistent", options.consistent,
-                "in the view a vertex is split after those that it depends on, so that every "
-                "neighbourhood is one that the simplifier saw")
+                "in the view a vertex is split after those of larger errors that it depends on, so "
+                "that neighbourhoods are those that the simplifier saw, but where all is flat")
       ->needs(view);
 }
 

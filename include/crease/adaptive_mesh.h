@@ -49,7 +49,8 @@ struct ViewParameters {
   bool coarse_backfaces = false;
   double silhouette_weight = 1;  // errors count so much more where the surface turns away. >= 1
   // Before a vertex is split, so are the third vertices of the triangles that appear, if their
-  // error is larger; and it is merged after them. So neighbourhoods are those the simplifier saw.
+  // error is larger; and it is merged after them. So neighbourhoods are those the simplifier saw,
+  // but on flat surfaces, where all errors are 0.
   bool consistent = false;
 
   bool operator==(const ViewParameters&) const = default;

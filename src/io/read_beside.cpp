@@ -27,8 +27,9 @@ std::filesystem::path in_their_case(const std::filesystem::path& root,
     fs::path found = path / part;
     if (!fs::exists(found, error)) {
       std::string best;
-      for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
-        const std::string name = entry.path().filename().string();
+      for (fs::directory_iterator entry(path, error), end; !error && entry != end;
+           entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
         if (is_same_but_for_case(name, part.string()) && (best.empty() || name < best)) best = name;
       }
       if (best.empty()) return root / relative;
