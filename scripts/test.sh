@@ -9,7 +9,7 @@
 #   asan      all tests under the address and undefined-behaviour sanitizers, with clang
 #   tsan      the tests that use threads, under the thread sanitizer
 #   libcxx    crease_runtime with clang 14 and libc++, without exceptions and RTTI
-#   fuzz      each fuzzer of that build for FUZZ_SECONDS (60), as many at a time as there are processors
+#   fuzz      each fuzzer of asan's build for FUZZ_SECONDS (60)
 #   tidy      clang-tidy (not among all: it takes longer than the rest together)
 set -eu
 cd "$(dirname "$0")/.."
