@@ -4,6 +4,7 @@
 #include "cli/facts.h"
 #include "cli/text.h"
 #include "crease/render.h"
+#include "crease/shading.h"
 
 #include <algorithm>
 #include <utility>
@@ -45,14 +46,19 @@ Result<std::vector<std::byte>> draw_level(const ProgressiveMesh& mesh,
   return encode_png(*image);
 }
 
-ReportLevel counts_of(const ProgressiveMesh& mesh) {
+// Kinds as info tells them, of the mesh: the arrays have some smooth triangles among the mixed
+// ones, where a vertex is not smooth at other levels.
+ReportLevel counts_of(const ProgressiveMesh& mesh, const Mesh& extracted) {
+  const ShadingKinds kinds = classify_shading(extracted);
+  const auto count = [&kinds](TriangleKind kind) {
+    return std::size_t(std::ranges::count(kinds.of_triangle, kind));
+  };
   ReportLevel level;
-  const DrawList list = mesh.draw_list();
   level.triangles = mesh.triangle_count();
   level.vertices = mesh.vertex_count();
-  level.sn_triangles = list.sn.triangle_count();
-  level.fn_triangles = list.fn.triangle_count();
-  level.nsn_triangles = list.nsn.triangle_count();
+  level.sn_triangles = count(TriangleKind::SN);
+  level.fn_triangles = count(TriangleKind::FN);
+  level.nsn_triangles = count(TriangleKind::NSN);
   level.recorded = mesh.error();
   return level;
 }
@@ -82,7 +88,8 @@ Result<ReportLevels> make_report_levels(const ModelFile& file, const Mesh& full,
     const Result<Chosen> chosen = choose_level(mesh, full, {.ratio = ratio}, common);
     if (!chosen.ok()) return chosen.failure();
     if (!made.levels.empty() && made.levels.back().triangles == mesh.triangle_count()) continue;
-    ReportLevel level = counts_of(mesh);
+    const Mesh extracted = mesh.extract();
+    ReportLevel level = counts_of(mesh, extracted);
     level.name = !chosen->target_met                             ? "coarsest"
                  : level.triangles == mesh.full_triangle_count() ? "original"
                                                                  : in_percent(ratio);
@@ -90,8 +97,7 @@ Result<ReportLevels> make_report_levels(const ModelFile& file, const Mesh& full,
     level.bytes_needed = (*bytes)[finest_band_for(facts, level.triangles)];
     log(common, "  " + level.name + ": " + grouped(level.triangles) + " triangles");
     if (mesh.applied() > 0 && options.samples > 0) {
-      const Result<Comparison> measured =
-          measure_level(full, mesh.extract(), options.samples, common);
+      const Result<Comparison> measured = measure_level(full, extracted, options.samples, common);
       if (!measured.ok()) return measured.failure();
       level.measured = *measured;
     }
