@@ -42,7 +42,7 @@ set(CREASE_HEADERS_http      http_source.h)
 set(CREASE_HEADERS_serve     file_server.h)
 set(CREASE_HEADERS_spill     memory_limit.h)
 set(CREASE_HEADERS_pipeline  attribute_precision.h build.h)
-set(CREASE_HEADERS_runtime   camera.h draw_list.h draw_changes.h progressive_mesh.h
+set(CREASE_HEADERS_runtime   camera.h draw_list.h draw_changes.h indexed_arrays.h progressive_mesh.h
                            adaptive_mesh.h block_view.h block_mesh.h block_streamer.h)
 set(CREASE_HEADERS_render    render.h)
 set(CREASE_HEADERS_view      viewer.h)
