@@ -10,6 +10,8 @@ namespace {
 constexpr double kFieldOfViewDeg = 35;  // a portrait lens: little distortion at the borders
 constexpr double kMargin = 1.06;        // the picture over the scene
 
+constexpr double kSameSize = 2;  // sizes of what lies at one place, larger over smaller
+
 struct Direction {
   Vec3d towards_eye, up;
 };
@@ -64,6 +66,22 @@ Box box_of(Scene scene) {
   Box box;
   for_each(scene, [&](const Vec3d& p) { box.add(p); });
   return box;
+}
+
+bool contains(const Box& box, const Vec3d& p) {
+  for (int i = 0; i < 3; ++i) {
+    if (p[i] < box.low[i] || p[i] > box.high[i]) return false;
+  }
+  return true;
+}
+
+bool is_one_place(const Box& a, const Box& b) {
+  if (a.empty || b.empty) return true;
+  const double size_a = length(a.high - a.low), size_b = length(b.high - b.low);
+  const Box& smaller = size_a < size_b ? a : b;
+  const Box& larger = size_a < size_b ? b : a;
+  return contains(larger, (smaller.low + smaller.high) * 0.5) &&
+         std::max(size_a, size_b) <= kSameSize * std::min(size_a, size_b);
 }
 
 Camera fit(Scene scene, const Direction& direction, int width_px, int height_px) {
@@ -140,6 +158,23 @@ double projected_aspect(Scene scene, const Vec3d& up) {
   for_each(scene, [&](const Vec3d& p) { flat.add({dot(p, frame.right), dot(p, frame.above), 0}); });
   const Vec3d size = flat.high - flat.low;
   return std::clamp((size.x + 1e-30) / (size.y + 1e-30), 0.1, 10.0);
+}
+
+std::vector<std::size_t> places_of(Scene scene) {
+  std::vector<Box> boxes;
+  for (const PointSet& set : scene) {
+    Box box = box_of(std::span(&set, 1));
+    box.low += set.origin;
+    box.high += set.origin;
+    boxes.push_back(box);
+  }
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    std::size_t first = 0;
+    while (first < i && (places[first] != first || !is_one_place(boxes[first], boxes[i]))) ++first;
+    places.push_back(first);
+  }
+  return places;
 }
 
 }  // namespace crease

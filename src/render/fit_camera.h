@@ -4,6 +4,7 @@
 #include "render/transform.h"
 
 #include <span>
+#include <vector>
 
 namespace crease {
 
@@ -25,5 +26,9 @@ Camera fit_camera_beside(Scene scene, const Vec3d& forward, const Vec3d& up, int
 // Width over height of the scene in the picture that fit_camera_to would make: what the layout of
 // panels goes by.
 double projected_aspect(Scene scene, const Vec3d& up);
+
+// Of each set the first that lies at its place, where one camera shows both: the middle of the
+// smaller one's box is in the other's, and they differ in size by no more than twice.
+std::vector<std::size_t> places_of(Scene scene);
 
 }  // namespace crease

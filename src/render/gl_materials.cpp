@@ -30,12 +30,13 @@ void set_layer(const GlTexture& texture, int layer, const Image& image) {
                   GL_UNSIGNED_BYTE, image.rgba.data());
 }
 
-// The least that a material covers without its texture: one sample of a pixel (gl_target.h). Files
-// say 0 of glass, and of everything where they mean its opposite; neither should be gone.
-constexpr float kLeastCover = 0.25f;
+// The least that a material covers without its texture. Files say 0 of glass, and of everything
+// where they mean its opposite; neither should be gone.
+constexpr float kLeastCover = 0.15f;
 
 bool is_translucent(const Material& material) {
-  return material.is_blended || material.base_color[3] < 1;
+  return (material.is_blended && !material.base_color_texture.empty()) ||
+         material.base_color[3] < 1;
 }
 
 }  // namespace

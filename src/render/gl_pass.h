@@ -26,6 +26,11 @@ struct DrawStyle {
   float error_full = 1;                // Coloring::Error: the error at the scale's red end
   bool reversed_depth = false;         // as the target has it
   std::optional<ColorSrgb> surface{};  // all of it in this one
+  // Where some is seen through, which of a pixel's samples a surface covers is chosen for each
+  // surface and pixel, anew each turn: what lies behind shows by as much as it should, with a
+  // grain. Else they are the same ones at each depth, and what covers no more and lies behind is
+  // not seen.
+  std::optional<unsigned> turn{};
 };
 
 }  // namespace crease

@@ -46,7 +46,7 @@ void add_attribute(GLuint location, const GlArray& array, int components) {
 }
 
 // While it lives, what is drawn covers as many of a pixel's samples as its alpha says: that needs
-// no order and no blending.
+// no order and no blending. Programs that choose samples themselves leave alpha at 1.
 class AlphaToCoverage {
  public:
   explicit AlphaToCoverage(bool is_on) : is_on_(is_on) {
@@ -146,6 +146,16 @@ DrawRanges GlScene::all() const {
           {0, std::uint32_t(nsn_.triangle_count)}};
 }
 
+bool GlScene::is_seen_through(const DrawStyle& style) const {
+  return key_for(sn_, TriangleKind::SN, style).see_through ||
+         key_for(fn_, TriangleKind::FN, style).see_through ||
+         key_for(nsn_, TriangleKind::NSN, style).see_through;
+}
+
+std::size_t GlScene::triangle_count() const {
+  return sn_.triangle_count + fn_.triangle_count + nsn_.triangle_count;
+}
+
 std::size_t GlScene::bytes() const {
   std::size_t bytes = positions_.bytes + vertex_normals_.bytes + scalars_.bytes;
   for (const Part* part : {&sn_, &fn_, &nsn_}) {
@@ -187,6 +197,8 @@ ProgramKey GlScene::key_for(const Part& part, TriangleKind kind, const DrawStyle
     if (style.coloring == Coloring::Error) key.albedo = AlbedoSource::Errors;
     if (style.coloring == Coloring::Level) key.albedo = AlbedoSource::Levels;
   }
+  key.see_through = key.has_materials() && materials_->has_translucent();
+  key.chooses_samples = key.see_through && style.turn;
   // FN triangles are indexed, and each fragment fetches its triangle's normal: vertices are worked
   // out once and not once a triangle (bench_flat_normals; Berlin on a GPU 6.3 to 2.1 ms a frame).
   key.pulled = kind == TriangleKind::NSN || key.wireframe || key.textures ||
@@ -217,6 +229,7 @@ void GlScene::set_uniforms(const Program& program, TriangleKind kind, const Draw
     glUniform1f(program.scalar_scale, is_error ? 1 / style.error_full : 1.0f);
   }
   if (program.line_px >= 0) glUniform1f(program.line_px, style.line_px);
+  if (program.turn >= 0) glUniform1ui(program.turn, *style.turn);
 }
 
 Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind kind,
@@ -241,7 +254,7 @@ Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind
   }
   bind_texels(scalars_, unit::Scalars);
 
-  const AlphaToCoverage translucent(key.has_materials() && materials_->has_translucent());
+  const AlphaToCoverage translucent(key.see_through);
   const GLsizei corner_count = GLsizei(3 * range.count);
   if (key.pulled) {
     glBindVertexArray(no_attributes_.id());

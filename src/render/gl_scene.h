@@ -36,8 +36,10 @@ class GlScene {
               const DrawRanges& ranges) const;
 
   DrawRanges all() const;
-  const Box& box() const { return box_; }  // of the triangles' corners when it was made
-  std::size_t bytes() const;               // that it takes on the GPU, without materials
+  std::size_t triangle_count() const;
+  bool is_seen_through(const DrawStyle& style) const;  // in places
+  const Box& box() const { return box_; }              // of the triangles' corners when it was made
+  std::size_t bytes() const;  // that it takes on the GPU, without materials
 
  private:
   struct Part {

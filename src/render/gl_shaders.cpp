@@ -186,6 +186,24 @@ float line_cover() {
 }
 #endif
 
+#if MASKS
+uniform uint turn;
+
+// As many of a pixel's samples as alpha says, on the average of two by two pixels, and others on
+// each surface: so what lies behind shows through by as much, whichever is drawn first.
+int samples_of(float alpha) {
+  uvec2 at = uvec2(gl_FragCoord.xy);
+  uint dither = ((at.x ^ at.y) & 1u) * 2u + (at.y & 1u);
+  int count = int(4 * alpha + (float(dither) + 0.5) / 4);
+  uint first = (at.x * 0x9e3779b1u) ^ (at.y * 0x85ebca77u) ^ (turn * 0xc2b2ae3du);
+  first ^= floatBitsToUint(gl_FragCoord.z);
+  first = (first ^ (first >> 15)) * 0x2c1b3c6du;
+  first = (first ^ (first >> 12)) * 0x297a2d39u;
+  int mask = ((1 << count) - 1) << (first >> 30);
+  return ((mask | (mask >> 4)) & 15) * 0x11111111;  // targets of eight samples have each twice
+}
+#endif
+
 // And how much of what is behind it covers.
 vec4 surface_color() {
 #if SCALARS
@@ -246,6 +264,10 @@ void main() {
   light = mix(light, vec3(0.012, 0.016, 0.024), 0.85 * line);
   base.a = max(base.a, line);
 #endif
+#if MASKS
+  gl_SampleMask[0] = samples_of(base.a);
+  base.a = 1;
+#endif
   color = vec4(light, base.a);  // as many samples as that (GlScene::draw_part), whose alpha is then 1
 }
 )";
@@ -269,7 +291,13 @@ std::string preamble(const ProgramKey& key) {
   const auto define = [](const char* name, int value) {
     return std::string("#define ") + name + " " + std::to_string(value) + "\n";
   };
-  return "#version 330 core\n" + define("VERTEX", int(NormalSource::PerVertex)) +
+  // Masks of samples are of OpenGL 4, and nearly everywhere; without them alpha itself is the mask.
+  const std::string masks = !key.chooses_samples ? define("MASKS", 0)
+                                                 : "#extension GL_ARB_sample_shading : enable\n"
+                                                   "#ifdef GL_ARB_sample_shading\n" +
+                                                       define("MASKS", 1) + "#else\n" +
+                                                       define("MASKS", 0) + "#endif\n";
+  return "#version 330 core\n" + masks + define("VERTEX", int(NormalSource::PerVertex)) +
          define("TRIANGLE", int(NormalSource::PerTriangle)) +
          define("CORNER", int(NormalSource::PerCorner)) +
          define("UNIFORM", int(AlbedoSource::Uniform)) +
@@ -317,6 +345,7 @@ Result<Program> build_program(const ProgramKey& key) {
   p.head_light = glGetUniformLocation(id, "head_light");
   p.up = glGetUniformLocation(id, "up");
   p.line_px = glGetUniformLocation(id, "line_px");
+  p.turn = glGetUniformLocation(id, "turn");
   return p;
 }
 

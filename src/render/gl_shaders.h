@@ -30,6 +30,8 @@ struct ProgramKey {
   bool materials = false;  // with Corners
   bool textures = false;   // times the materials' textures; needs `pulled`
   bool wireframe = false;
+  bool see_through = false;      // some of the materials are
+  bool chooses_samples = false;  // of those
   // Vertices are fetched by the shader, three per triangle, so that each may have its own
   // attributes though positions are shared. Otherwise drawn indexed, positions being attributes.
   bool pulled = false;
@@ -72,7 +74,7 @@ struct Program {
   // Uniform locations, -1 where the program has no use for one.
   GLint clip_from_list = -1, eye_in_list = -1, unit = -1, albedo = -1, scalar_scale = -1;
   GLint first_triangle = -1;  // of the range that is drawn
-  GLint key_light = -1, head_light = -1, up = -1, line_px = -1;
+  GLint key_light = -1, head_light = -1, up = -1, line_px = -1, turn = -1;
 };
 
 // Keep one as long as its context: NVIDIA's driver (580, seen) may draw the first picture of a

@@ -1,5 +1,6 @@
 #include "base/assert.h"
 #include "crease/render.h"
+#include "render/averaged_tile.h"
 #include "render/fit_camera.h"
 #include "render/frustum.h"
 #include "render/gl_context.h"
@@ -20,10 +21,6 @@ namespace crease {
 namespace {
 
 constexpr int kMaxSide = 32768;
-
-// Each pixel of the picture is 2 x 2 pixels of the framebuffer with 4 samples each: edges get 17
-// steps, and highlights and lines do not flicker between neighbours.
-constexpr int kSupersampling = 2;
 
 // A larger framebuffer takes more memory (36 bytes a pixel), a smaller one draws the scene more
 // often.
@@ -113,19 +110,6 @@ ErrorScale error_scale(std::span<const Panel> panels, const RenderOptions& optio
   return {full > 0 ? full : 1, max};
 }
 
-// From encoded bytes to linear light, so that averages are of light.
-struct SrgbTable {
-  std::array<float, 256> linear{};
-  std::array<std::uint8_t, 4096> encoded{};
-  SrgbTable() {
-    for (std::size_t i = 0; i < linear.size(); ++i) linear[i] = linear_from_srgb(float(i) / 255);
-  }
-};
-
-std::uint8_t encode(float linear) {
-  return std::uint8_t(std::lround(255 * srgb_from_linear(std::clamp(linear, 0.0f, 1.0f))));
-}
-
 // The background's colour in a row, in encoded steps finer than a byte; linear in encoded values,
 // which looks even.
 std::array<float, 3> background_row(int y, int height) {
@@ -158,32 +142,11 @@ void fill_background(Image& image, const PixelRect& view) {
   }
 }
 
-// Lays a tile over the background that is already there. `tile` has `kSupersampling` pixels for
-// each of the picture's, bottom row first, colours times coverage.
-void lay_over(Image& image, const PixelRect& at, std::span<const std::uint8_t> tile) {
-  static const SrgbTable table;
-  constexpr int s = kSupersampling;
-  const std::size_t stride = std::size_t(at.width) * s;
-  for (int y = 0; y < at.height; ++y) {
-    for (int x = 0; x < at.width; ++x) {
-      float sum[4] = {};
-      for (int j = 0; j < s; ++j) {
-        const std::size_t row = std::size_t((at.height - 1 - y) * s + j);
-        const std::uint8_t* from = &tile[4 * (row * stride + std::size_t(x) * s)];
-        for (int i = 0; i < s; ++i, from += 4) {
-          for (int c = 0; c < 3; ++c) sum[c] += table.linear[from[c]];
-          sum[3] += float(from[3]);
-        }
-      }
-      if (sum[3] == 0) continue;
-      const float cover = sum[3] / (255 * s * s);
-      std::uint8_t* pixel = &image.rgba[4 * (std::size_t(at.y + y) * std::size_t(image.width) +
-                                             std::size_t(at.x + x))];
-      for (std::size_t c = 0; c < 3; ++c) {
-        pixel[c] = encode(sum[c] / (s * s) + (1 - cover) * table.linear[pixel[c]]);
-      }
-    }
-  }
+// How often a scene is drawn and averaged. What is seen through has a grain that is gone at 8; of
+// large scenes that would take long.
+unsigned turns_of(const GlScene& scene, const DrawStyle& style) {
+  if (!scene.is_seen_through(style)) return 1;
+  return unsigned(std::clamp<std::size_t>(16'000'000 / (scene.triangle_count() + 1), 2, 8));
 }
 
 // Draws one panel's view tile by tile.
@@ -191,6 +154,7 @@ Status draw_view(Image& image, const PixelRect& view_rect, const GlScene& scene,
                  std::span<const Segment> lines, const Camera& camera, const DrawStyle& style,
                  GlTarget& target, int tile_px, ProgramCache& programs) {
   DrawPass pass = pass_over(camera, double(view_rect.width) / view_rect.height, scene.box(), lines);
+  const unsigned turns = turns_of(scene, style);
   std::vector<std::uint8_t> pixels;
   for (int y = 0; y < view_rect.height; y += tile_px) {
     for (int x = 0; x < view_rect.width; x += tile_px) {
@@ -201,19 +165,25 @@ Status draw_view(Image& image, const PixelRect& view_rect, const GlScene& scene,
       pass.window.top = 1 - double(y) / view_rect.height;
       pass.window.bottom = 1 - double(y + height) / view_rect.height;
       const int draw_width = width * kSupersampling, draw_height = height * kSupersampling;
-      target.begin(draw_width, draw_height);
-      if (const Status drawn = scene.draw(programs, pass, style); !drawn.ok()) return drawn;
-      if (style.ambient_occlusion) {
-        const Result<const GlTexture*> depths = target.resolve_depth(draw_width, draw_height);
-        if (!depths.ok()) return depths.failure();
-        const Status drawn = draw_occlusion(programs, **depths, pass, style);
-        if (!drawn.ok()) return drawn;
-      }
-      const Status drawn = draw_lines(programs, lines, pass, style);
-      if (!drawn.ok()) return drawn;
       pixels.resize(4 * std::size_t(draw_width) * std::size_t(draw_height));
-      target.read(draw_width, draw_height, pixels);
-      lay_over(image, {view_rect.x + x, view_rect.y + y, width, height}, pixels);
+      AveragedTile tile(width, height);
+      for (unsigned turn = 0; turn < turns; ++turn) {
+        target.begin(draw_width, draw_height);
+        DrawStyle of_turn = style;
+        of_turn.turn = turn;
+        if (const Status drawn = scene.draw(programs, pass, of_turn); !drawn.ok()) return drawn;
+        if (style.ambient_occlusion) {
+          const Result<const GlTexture*> depths = target.resolve_depth(draw_width, draw_height);
+          if (!depths.ok()) return depths.failure();
+          const Status drawn = draw_occlusion(programs, **depths, pass, style);
+          if (!drawn.ok()) return drawn;
+        }
+        const Status drawn = draw_lines(programs, lines, pass, style);
+        if (!drawn.ok()) return drawn;
+        target.read(draw_width, draw_height, pixels);
+        tile.add(pixels);
+      }
+      tile.lay_over(image, view_rect.x + x, view_rect.y + y);
     }
   }
   return Done{};
@@ -271,8 +241,8 @@ GlMaterialsPtr upload_materials(const DrawList& list, const GlLimits& gl,
   return materials;
 }
 
-// `scene` is looked at where there is no camera.
-Result<Layout> lay_out_panels(std::size_t panel_count, bool has_titles, Scene scene,
+// `content_aspect` counts where there is no camera.
+Result<Layout> lay_out_panels(std::size_t panel_count, bool has_titles, double content_aspect,
                               const RenderOptions& options) {
   if (panel_count == 0) return fail(Error::BadValue, "no panel to draw");
   if (options.width_px < 1 || options.height_px < 1 || options.width_px > kMaxSide ||
@@ -281,16 +251,15 @@ Result<Layout> lay_out_panels(std::size_t panel_count, bool has_titles, Scene sc
                                      std::to_string(options.height_px) +
                                      " pixels; each side is 1 to " + std::to_string(kMaxSide));
   }
-  Layout layout =
-      make_layout({.panel_count = panel_count,
-                   .width_px = options.width_px,
-                   .height_px = options.height_px,
-                   .columns = options.columns,
-                   .content_aspect =
-                       options.camera ? double(options.camera->width_px) / options.camera->height_px
-                                      : projected_aspect(scene, options.up),
-                   .titles = has_titles,
-                   .legend = options.coloring != Coloring::Shaded});
+  Layout layout = make_layout({.panel_count = panel_count,
+                               .width_px = options.width_px,
+                               .height_px = options.height_px,
+                               .columns = options.columns,
+                               .content_aspect = options.camera ? double(options.camera->width_px) /
+                                                                      options.camera->height_px
+                                                                : content_aspect,
+                               .titles = has_titles,
+                               .legend = options.coloring != Coloring::Shaded});
   const PixelRect& size = layout.views.front();
   if (size.width < 1 || size.height < 1) {
     return fail(Error::BadValue, std::to_string(panel_count) + " panels do not fit into " +
@@ -300,10 +269,44 @@ Result<Layout> lay_out_panels(std::size_t panel_count, bool has_titles, Scene sc
   return layout;
 }
 
-Camera choose_camera(Scene scene, const RenderOptions& options, int width_px, int height_px) {
-  if (options.camera) return *options.camera;
-  if (options.frustum) return fit_outside(scene, *options.frustum, width_px, height_px);
-  return fit_camera_to(scene, options.up, width_px, height_px);
+// The sets whose place is `first`.
+std::vector<PointSet> at_place(Scene scene, std::span<const std::size_t> places,
+                               std::size_t first) {
+  std::vector<PointSet> sets;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    if (places[i] == first) sets.push_back(scene[i]);
+  }
+  return sets;
+}
+
+// What is seen of all places on the average, from afar.
+double aspect_of(Scene scene, std::span<const std::size_t> places, const Vec3d& up) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    if (places[i] != i) continue;
+    sum += std::log(projected_aspect(at_place(scene, places, i), up));
+    ++count;
+  }
+  return count > 0 ? std::exp(sum / count) : 1;
+}
+
+// One camera for each panel.
+std::vector<Camera> choose_cameras(Scene scene, std::span<const std::size_t> places,
+                                   const RenderOptions& options, const PixelRect& size) {
+  std::vector<Camera> cameras;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    if (places[i] != i) {
+      cameras.push_back(cameras[places[i]]);
+    } else if (options.camera) {
+      cameras.push_back(*options.camera);
+    } else if (options.frustum) {
+      cameras.push_back(fit_outside(scene, *options.frustum, size.width, size.height));
+    } else {
+      cameras.push_back(
+          fit_camera_to(at_place(scene, places, i), options.up, size.width, size.height));
+    }
+  }
+  return cameras;
 }
 
 }  // namespace
@@ -311,7 +314,7 @@ Camera choose_camera(Scene scene, const RenderOptions& options, int width_px, in
 Result<Camera> camera_of_panel(std::size_t panel_count, bool has_titles,
                                const RenderOptions& options) {
   CREASE_ASSERT(options.camera);
-  const Result<Layout> layout = lay_out_panels(panel_count, has_titles, {}, options);
+  const Result<Layout> layout = lay_out_panels(panel_count, has_titles, 1, options);
   if (!layout.ok()) return layout.failure();
   return camera_for_shape(*options.camera, layout->views.front().width,
                           layout->views.front().height);
@@ -326,10 +329,19 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
   }
   const bool has_titles =
       std::ranges::any_of(panels, [](const Panel& p) { return !p.title.empty(); });
-  const Result<Layout> layout = lay_out_panels(panels.size(), has_titles, scene, options);
+  // A camera that is asked for shows all panels.
+  const std::vector<std::size_t> places = options.camera || options.frustum
+                                              ? std::vector<std::size_t>(panels.size(), 0)
+                                              : places_of(scene);
+  const Result<Layout> layout =
+      lay_out_panels(panels.size(), has_titles, aspect_of(scene, places, options.up), options);
   if (!layout.ok()) return layout.failure();
   const PixelRect& size = layout->views.front();
-  const Camera camera = choose_camera(scene, options, size.width, size.height);
+  const std::vector<Camera> cameras = choose_cameras(scene, places, options, size);
+  if (options.on_note && std::ranges::count(places, 0) < std::ptrdiff_t(places.size())) {
+    options.on_note(
+        "models that lie apart, or differ in size by more than twice, are each seen from near");
+  }
   const std::vector<Segment> lines =
       options.frustum ? frustum_lines(scene, *options.frustum) : std::vector<Segment>{};
 
@@ -371,8 +383,8 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
                          options.coloring == Coloring::Level ? panels[i].level_of_position
                                                              : panels[i].error_of_position,
                          materials);
-    const Status drawn = draw_view(image, layout->views[i], on_gpu, lines, camera, style, *target,
-                                   tile_px, programs);
+    const Status drawn = draw_view(image, layout->views[i], on_gpu, lines, cameras[i], style,
+                                   *target, tile_px, programs);
     if (!drawn.ok()) return drawn.failure();
   }
   for (const PixelRect& separator : layout->separators) {

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace crease {
 
@@ -73,6 +74,24 @@ TEST_CASE("a box without extent still gives a camera") {
   const auto [x, y] = project(camera, {5, 5, 5});
   CHECK(std::abs(x - 320) < 1);
   CHECK(std::abs(y - 240) < 1);
+}
+
+TEST_CASE("places are those of levels of one model, and not of models apart or of other sizes") {
+  const auto box = [](double low, double high) {
+    return std::vector<Vec3f>{{float(low), float(low), 0},
+                              {float(high), float(high), float(high - low)}};
+  };
+  const std::vector<Vec3f> unit = box(0, 1), smaller = box(0.1, 0.8), tiny = box(0.5, 0.55),
+                           beside = box(0.9, 1.9), none;
+  const PointSet sets[] = {{{}, unit},   {{0.01, 0, 0}, smaller}, {{}, tiny},
+                           {{}, beside}, {{0.9, 0.9, 0}, unit},   {{100, 0, 0}, unit},
+                           {{}, none}};
+  const std::vector<std::size_t> places = places_of(sets), wanted{0, 0, 2, 3, 3, 5, 0};
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    CAPTURE(i);
+    CHECK(places[i] == wanted[i]);
+  }
+  CHECK(places_of({}).empty());
 }
 
 }  // namespace crease

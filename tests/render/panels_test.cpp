@@ -71,6 +71,38 @@ TEST_CASE("each panel shows its own list under its own title") {
   }
 }
 
+TEST_CASE("models that lie apart are each seen from near, levels of one from one place") {
+  Mesh far_box = hard_box(2), near_box = hard_box(2);
+  for (Vec3d& p : far_box.positions) p += Vec3d{1e4, 5e3, 0};
+  for (Vec3d& p : near_box.positions) p = p * 0.6;
+  const DrawArrays box(hard_box(2)), far(far_box), small(near_box);
+  const Panel panels[] = {{.list = box.list(), .title = ""},
+                          {.list = far.list(), .title = ""},
+                          {.list = small.list(), .title = ""}};
+  RenderOptions options = size(600, 200);
+  options.columns = 3;
+  std::vector<std::string> notes;
+  options.on_note = [&notes](const std::string& note) { notes.push_back(note); };
+  const Result<Image> image = render_panels(panels, options);
+  REQUIRE(image.ok());
+  CHECK(notes.size() == 1);
+  const Layout layout =
+      make_layout({.panel_count = 3, .width_px = 600, .height_px = 200, .columns = 3});
+  const int whole = count_surface(*image, layout.views[0]);
+  CHECK(whole > 5000);
+  CHECK(std::abs(count_surface(*image, layout.views[1]) - whole) < whole / 100);
+  const int small_count = count_surface(*image, layout.views[2]);
+  CHECK(small_count > whole / 5);
+  CHECK(small_count < whole / 2);
+
+  options.camera = Camera{.position = {10, -10, 10}, .target = {0, 0, 0}};
+  const Result<Image> asked = render_panels(panels, options);
+  REQUIRE(asked.ok());
+  CHECK(notes.size() == 1);
+  CHECK(count_surface(*asked, layout.views[0]) > 50);
+  CHECK(count_surface(*asked, layout.views[1]) == 0);
+}
+
 TEST_CASE("a legend stands below where colours mean something") {
   const DrawArrays cylinder(hard_cylinder(16, 3));
   for (const Coloring coloring : {Coloring::Kind, Coloring::Level, Coloring::Error}) {

@@ -189,6 +189,56 @@ TEST_CASE("what is blended covers as much of a pixel as its alpha says, without 
   CHECK(between(clear) > 12);  // what a file calls clear is seen all the same
 }
 
+TEST_CASE("through two panes one sees the share of each that its alpha and those before it say") {
+  Mesh mesh = painted_sheet(1);
+  mesh.images.clear();
+  mesh.layers.resize(1);
+  mesh.materials = {{"front", {0, 0, 1, 1}, ""}, {"behind", {1, 0, 0, 1}, ""}};
+  const std::size_t triangles = mesh.triangle_count();
+  const auto positions = std::uint32_t(mesh.vertex_count());
+  mesh.material_of_triangle.assign(triangles, MaterialId{0});
+  mesh.material_of_triangle.resize(2 * triangles, MaterialId{1});
+  for (std::uint32_t v = 0; v < positions; ++v) {
+    mesh.positions.push_back(mesh.positions[v] - Vec3d{0, 0, 0.2});
+  }
+  for (std::size_t t = 0; t < triangles; ++t) {
+    Triangle behind = mesh.triangles[t];
+    for (VertexId& v : behind) v = VertexId(std::uint32_t(v) + positions);
+    mesh.triangles.push_back(behind);
+  }
+  AttributeLayer& normals = mesh.layers[0];
+  normals.of_corner.insert(normals.of_corner.end(), normals.of_corner.begin(),
+                           normals.of_corner.begin() + std::ptrdiff_t(3 * triangles));
+  RenderOptions options = from_above();
+  // In light, averaged over the middle of the picture.
+  const auto light_of = [&](const DrawList& list) {
+    const Image image = draw(list, options);
+    Color sum{};
+    for (int y = 50; y < 70; ++y) {
+      for (int x = 50; x < 70; ++x) {
+        const Pixel p = pixel_at(image, x, y);
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += linear_from_srgb(float(p[c]) / 255) / 400;
+      }
+    }
+    return sum;
+  };
+  const auto with_alphas = [&](float front, float behind) {
+    mesh.materials[0].base_color[3] = front;
+    mesh.materials[1].base_color[3] = behind;
+    return light_of(MeshDrawArrays(mesh).draw_list());
+  };
+  const Color front = with_alphas(1, 1), clear = light_of({});
+  const Color half = with_alphas(0.5f, 1), both = with_alphas(0.5f, 0.5f);
+  const Color faint = with_alphas(0.3f, 1);
+  mesh.material_of_triangle.assign(2 * triangles, MaterialId{1});
+  const Color behind = with_alphas(1, 1);
+  for (std::size_t c = 0; c < 3; ++c) {
+    CHECK(std::abs(half[c] - (front[c] + behind[c]) / 2) < 0.02);
+    CHECK(std::abs(faint[c] - (0.3f * front[c] + 0.7f * behind[c])) < 0.02);
+    CHECK(std::abs(both[c] - (2 * front[c] + behind[c] + clear[c]) / 4) < 0.03);
+  }
+}
+
 TEST_CASE("a texture's alpha counts where its material is blended, and nowhere else") {
   Mesh mesh = painted_sheet(4);
   Image faint = *decode_image(*mesh.images[0].bytes);
