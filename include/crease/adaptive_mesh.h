@@ -23,6 +23,7 @@
 #include "crease/draw_list.h"
 #include "crease/mesh.h"
 #include "crease/mesh_hierarchy.h"
+#include "crease/shading.h"
 
 #include <cstddef>
 #include <limits>
@@ -99,6 +100,9 @@ class AdaptiveMesh {
   // `positions` and `vertex_normals` may have elements in between that no triangle uses.
   DrawList draw_list() const;
   const DrawChanges& changes() const;  // of the last update() or set_error()
+  // To which of the model's parts (hierarchy().parts) a triangle of that kind in draw_list()
+  // belongs; the first where it has none.
+  PartId part_of(TriangleKind kind, std::size_t triangle) const;
 
   // Per position of the draw list its surface or line error, whichever is larger: for pictures.
   std::vector<float> error_of_position() const;

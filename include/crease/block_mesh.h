@@ -47,6 +47,7 @@
 #include "crease/draw_list.h"
 #include "crease/mesh.h"
 #include "crease/result.h"
+#include "crease/shading.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -81,6 +82,9 @@ class ResidentBlock {
   // All triangles of the fine end, group by group. All blocks have the same origin, and a vertex
   // that several have has the same floats in all of them. Views into the block.
   DrawList draw_list() const;
+  // To which of the model's parts (BlockMesh::part_names()) a triangle of that kind in it belongs;
+  // the first where it has none.
+  PartId part_of(TriangleKind kind, std::size_t triangle) const;
   std::span<const BlockGroup> groups() const;  // ascending by patch, of which each may have several
   std::size_t bytes() const;                   // of memory that it takes
   const Data& data() const { return *data_; }  // for the library
@@ -297,6 +301,8 @@ class BlockMesh {
   std::span<const ShownRange> shown() const;     // whole groups
   std::span<const ShownCut> shown_cuts() const;  // by vertex, or between two ends
   std::size_t triangle_count() const;            // of what is shown
+  // As ResidentBlock::part_of(), of a triangle of cut.list; `cut` is one of shown_cuts().
+  PartId part_of(const ShownCut& cut, TriangleKind kind, std::size_t triangle) const;
   // The largest of what is shown. By vertex O(vertices).
   LevelError error() const;
   // How wrong the worst of it is seen to be by the last update()'s view: what is off by just as

@@ -18,6 +18,7 @@
 
 #include "crease/draw_changes.h"
 #include "crease/draw_list.h"
+#include "crease/shading.h"
 #include "crease/vec.h"
 
 #include <array>
@@ -35,6 +36,12 @@ struct MaterialRun {
   Range triangles;
 };
 
+// Which one of the draw list a triangle is, in its part.
+struct ListedTriangle {
+  TriangleKind kind{};
+  std::uint32_t number = 0;
+};
+
 struct IndexedArrays {
   Vec3d origin;                              // positions are relative to it, so that floats suffice
   std::vector<Vec3f> positions;              // vertex_count, model units less origin
@@ -44,6 +51,7 @@ struct IndexedArrays {
   std::vector<std::uint32_t> materials;         // vertex_count, or empty
   std::vector<std::uint32_t> indices;           // 3 * triangle_count
   std::vector<MaterialRun> runs;                // all triangles, in order
+  std::vector<ListedTriangle> listed;           // triangle_count: for part_of()
 
   std::size_t vertex_count() const { return positions.size(); }
   std::size_t triangle_count() const { return indices.size() / 3; }

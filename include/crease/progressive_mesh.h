@@ -12,6 +12,7 @@
 #include "crease/draw_list.h"
 #include "crease/mesh.h"
 #include "crease/progressive_arrays.h"
+#include "crease/shading.h"
 
 #include <cstdint>
 #include <memory>
@@ -57,6 +58,9 @@ class ProgressiveMesh {
 
   DrawList draw_list() const;
   const DrawChanges& changes() const;  // of the last set_ call, or advance()
+  // To which of the model's parts (arrays().parts) a triangle of that kind in draw_list() belongs;
+  // the first where it has none.
+  PartId part_of(TriangleKind kind, std::size_t triangle) const;
 
   // The level as a mesh of its own, all attribute layers, materials and parts; vertices and
   // attribute values that are used only. Time O(mesh).

@@ -93,6 +93,12 @@ void AdaptiveMesh::set_geomorph_seconds(double seconds) {
   impl_->geomorphs.set_seconds(seconds);
 }
 
+PartId AdaptiveMesh::part_of(TriangleKind kind, std::size_t triangle) const {
+  const auto& parts = hierarchy().vertices.part_of_triangle;
+  if (parts.size() == 0) return PartId{0};
+  return parts[index_of(impl_->cut.parts()[static_cast<std::size_t>(kind)].ids[triangle])];
+}
+
 std::size_t AdaptiveMesh::triangle_count() const {
   return impl_->cut.triangle_count();
 }

@@ -1,4 +1,5 @@
 // What a BlockMesh shows and misses, as lists.
+#include "base/assert.h"
 #include "runtime/block_mesh_impl.h"
 
 #include <algorithm>
@@ -59,6 +60,22 @@ void BlockMesh::Impl::list_cuts() {
   }
   listed.resize(count);
   shown_cuts.resize(count);
+}
+
+PartId BlockMesh::part_of(const ShownCut& shown, TriangleKind kind, std::size_t triangle) const {
+  const auto block = static_cast<std::uint32_t>(index_of(shown.block->id()));
+  if (const LevelList* const list = impl_->levels.list(block)) {
+    const BlockPart& part = kind == TriangleKind::SN   ? list->sn
+                            : kind == TriangleKind::FN ? list->fn
+                                                       : list->nsn;
+    return part_in(part, triangle);
+  }
+  const BlockCut* const cut = impl_->cuts.cut(block);
+  CREASE_ASSERT(cut != nullptr);
+  const ResidentBlock::Data& data = shown.block->data();
+  const std::uint32_t of_block =
+      cut->triangle_of(static_cast<Part>(kind), static_cast<std::uint32_t>(triangle));
+  return PartId{data.end.category(of_block) / data.schema->coding.material_count};
 }
 
 std::vector<ErrorSphere> BlockMesh::errors_of(const ResidentBlock& block,

@@ -8,10 +8,9 @@ namespace crease {
 
 namespace {
 
-struct ListedTriangle {
-  std::uint32_t material;
-  std::uint32_t part;  // of Indexer::parts_
-  std::uint32_t number;
+// `part`: of Indexer::parts_.
+struct Source {
+  std::uint32_t material, part, number;
 };
 
 class Indexer {
@@ -28,23 +27,23 @@ class Indexer {
     arrays_.origin = list.origin;
     arrays_.indices.reserve(list.sn.indices.size() + list.fn.indices.size() +
                             list.nsn.indices.size());
+    arrays_.listed.reserve(arrays_.indices.capacity() / 3);
   }
 
   // Of the three parts.
   void add(const std::array<Range, 3>& ranges) {
-    listed_.clear();
+    sources_.clear();
     for (std::uint32_t p = 0; p < 3; ++p) {
       for (std::uint32_t t = ranges[p].first; t < ranges[p].first + ranges[p].count; ++t) {
         const auto& materials = parts_[p]->materials;
-        listed_.push_back({materials.empty() ? 0 : materials[t], p, t});
+        sources_.push_back({materials.empty() ? 0 : materials[t], p, t});
       }
     }
     if (has_materials_) {
-      std::stable_sort(
-          listed_.begin(), listed_.end(),
-          [](const ListedTriangle& a, const ListedTriangle& b) { return a.material < b.material; });
+      std::stable_sort(sources_.begin(), sources_.end(),
+                       [](const Source& a, const Source& b) { return a.material < b.material; });
     }
-    for (const ListedTriangle& t : listed_) add(t);
+    for (const Source& t : sources_) add(t);
   }
 
   IndexedArrays take() { return std::move(arrays_); }
@@ -57,7 +56,7 @@ class Indexer {
     std::array<float, 2> texcoord{};
   };
 
-  Corner corner_of(const ListedTriangle& t, std::size_t c) const {
+  Corner corner_of(const Source& t, std::size_t c) const {
     const DrawPart& part = *parts_[t.part];
     const std::size_t at = 3 * std::size_t(t.number) + c;
     Corner corner{.position = part.indices[at], .material = t.material, .normal = {}};
@@ -93,19 +92,20 @@ class Indexer {
     return v;
   }
 
-  void add(const ListedTriangle& t) {
+  void add(const Source& t) {
     if (arrays_.runs.empty() || arrays_.runs.back().material != t.material) {
       const auto first = std::uint32_t(arrays_.triangle_count());
       arrays_.runs.push_back({t.material, {first, 0}});
     }
     ++arrays_.runs.back().triangles.count;
+    arrays_.listed.push_back({TriangleKind(t.part), t.number});
     for (std::size_t c = 0; c < 3; ++c) arrays_.indices.push_back(vertex_of(corner_of(t, c)));
   }
 
   const DrawList& list_;
   std::array<const DrawPart*, 3> parts_;
   std::vector<std::uint32_t> first_at_, next_;
-  std::vector<ListedTriangle> listed_;
+  std::vector<Source> sources_;
   bool has_colors_ = false, has_texcoords_ = false, has_materials_ = false;
   IndexedArrays arrays_;
 };

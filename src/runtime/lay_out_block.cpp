@@ -142,6 +142,10 @@ class BlockLayout {
       to.indices.reserve(3 * n);
       to.normals.reserve(normals[std::size_t(k)] * n);
       if (!schema_.materials.empty()) to.materials.reserve(n);
+      if (schema_.coding.part_count > 1) {
+        to.parts = PackedIndices<>(bits_for(schema_.coding.part_count));
+        to.parts.reserve(n);
+      }
       if (colors_) to.colors.reserve(3 * n);
       if (texcoords_) to.texcoords.reserve(3 * n);
     }
@@ -169,6 +173,9 @@ class BlockLayout {
     }
     if (!schema_.materials.empty()) {
       to.materials.push_back(mesh_.category[t] % schema_.coding.material_count);
+    }
+    if (schema_.coding.part_count > 1) {
+      to.parts.push_back(mesh_.category[t] / schema_.coding.material_count);
     }
     for (std::size_t c = 0; texcoords_ && c < 3; ++c) {
       std::array<float, 2> uv{};

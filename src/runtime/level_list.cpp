@@ -157,12 +157,12 @@ LevelListPtr make_level_list(const ResidentBlock::Data& block, const BlockHierar
   ListMaker maker(drawn, *list);
   maker.run();
   const std::uint32_t parts = block.schema->coding.part_count;
-  for (std::size_t p = 0; p < 3 && parts > 0; ++p) {
-    list->part_of_triangle[p] = PackedIndices<>(bits_for(parts));
+  BlockPart* const lists[] = {&list->sn, &list->fn, &list->nsn};
+  for (std::size_t p = 0; p < 3 && parts > 1; ++p) {
+    lists[p]->parts = PackedIndices<>(bits_for(parts));
     for (const std::uint32_t t : maker.sources()[p]) {
       const std::uint32_t triangle = data.triangle_of[index_of(cut.parts()[p].ids[t])];
-      list->part_of_triangle[p].push_back(block.end.category(triangle) /
-                                          block.schema->coding.material_count);
+      lists[p]->parts.push_back(block.end.category(triangle) / block.schema->coding.material_count);
     }
   }
   list->revision = next_list();
@@ -170,12 +170,9 @@ LevelListPtr make_level_list(const ResidentBlock::Data& block, const BlockHierar
 }
 
 std::size_t LevelList::bytes() const {
-  std::size_t bytes = sizeof(*this) + 8 * done.capacity() +
-                      sizeof(Vec3f) * (positions.capacity() + vertex_normals.capacity()) +
-                      sn.bytes() + fn.bytes() + nsn.bytes() +
-                      sizeof(BlockGroup) * groups.capacity();
-  for (const PackedIndices<>& parts : part_of_triangle) bytes += parts.bytes();
-  return bytes;
+  return sizeof(*this) + 8 * done.capacity() +
+         sizeof(Vec3f) * (positions.capacity() + vertex_normals.capacity()) + sn.bytes() +
+         fn.bytes() + nsn.bytes() + sizeof(BlockGroup) * groups.capacity();
 }
 
 }  // namespace crease

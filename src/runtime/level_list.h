@@ -20,8 +20,7 @@ struct LevelList {
   std::vector<std::uint64_t> done;  // a bit per split of the hierarchy that the job made
   std::vector<Vec3f> positions, vertex_normals;
   BlockPart sn, fn, nsn;
-  std::vector<BlockGroup> groups;                   // of no patch
-  std::array<PackedIndices<>, 3> part_of_triangle;  // per triangle of sn, fn, nsn; or empty
+  std::vector<BlockGroup> groups;  // of no patch
   std::uint64_t revision = 0;
 
   std::size_t bytes() const;

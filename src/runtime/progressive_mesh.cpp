@@ -207,6 +207,13 @@ void ProgressiveMesh::advance(double seconds) {
 bool ProgressiveMesh::is_moving() const {
   return impl_->is_moving();
 }
+PartId ProgressiveMesh::part_of(TriangleKind kind, std::size_t triangle) const {
+  const ProgressiveArrays& arrays = *impl_->arrays;
+  if (arrays.part_of_triangle.empty()) return PartId{0};
+  return PartId{
+      arrays.part_of_triangle[impl_->parts[static_cast<std::size_t>(kind)].first + triangle]};
+}
+
 std::size_t ProgressiveMesh::wanted_triangle_count() const {
   return impl_->is_coarsening() ? impl_->wanted_triangles : triangle_count();
 }

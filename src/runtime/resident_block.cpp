@@ -37,7 +37,7 @@ std::size_t most_bits(const codec::BlockLayer& layer) {
 
 std::size_t BlockPart::bytes() const {
   return bytes_of_vector(indices) + bytes_of_vector(normals) + bytes_of_vector(materials) +
-         bytes_of_vector(colors) + bytes_of_vector(texcoords);
+         bytes_of_vector(colors) + bytes_of_vector(texcoords) + parts.bytes();
 }
 
 std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema& schema) {
@@ -51,7 +51,8 @@ std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema&
       sizeof(Vec3i) + sizeof(codec::VertexName) + 2 * sizeof(Vec3f) +
       std::max(sizeof(codec::Split), sizeof(codec::VertexName));  // a root or made by a split
   // Corners, derived; label and category, each of its own; values likewise.
-  std::size_t bits_of_triangle = 3 * vertex_bits + 1 + 2 * (32 + bits_for(facts.triangles_fine));
+  std::size_t bits_of_triangle = 3 * vertex_bits + 1 + 2 * (32 + bits_for(facts.triangles_fine)) +
+                                 bits_for(schema.coding.part_count);
   for (const codec::BlockLayer& layer : schema.coding.layers) {
     bits_of_triangle += 3 * (most_bits(layer) + bits_for(3 * std::size_t(facts.triangles_fine)));
   }
@@ -82,6 +83,13 @@ std::span<const BlockGroup> ResidentBlock::groups() const {
 
 std::size_t ResidentBlock::bytes() const {
   return data_->bytes;
+}
+
+PartId ResidentBlock::part_of(TriangleKind kind, std::size_t triangle) const {
+  const BlockPart& part = kind == TriangleKind::SN   ? data_->sn
+                          : kind == TriangleKind::FN ? data_->fn
+                                                     : data_->nsn;
+  return part_in(part, triangle);
 }
 
 DrawList ResidentBlock::draw_list() const {

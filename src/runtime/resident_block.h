@@ -19,6 +19,7 @@ struct BlockPart {
   std::vector<std::uint32_t> materials;
   std::vector<std::array<float, 4>> colors;
   std::vector<std::array<float, 2>> texcoords;
+  PackedIndices<> parts;  // of the model, per triangle; or empty where it has one at most
 
   std::size_t bytes() const;
 };
@@ -40,6 +41,10 @@ struct ResidentBlock::Data {
   BlockPart sn, fn, nsn;
   std::size_t bytes = 0;
 };
+
+inline PartId part_in(const BlockPart& part, std::size_t triangle) {
+  return PartId{part.parts.size() == 0 ? 0 : part.parts[triangle]};
+}
 
 struct BlockDecodeJob::Data {
   BlockEntry entry;

@@ -136,80 +136,18 @@ std::optional<Hit> pick(std::span<const ShownCut> shown, const Grid& grid, const
   return nearest;
 }
 
-namespace {
-
-// Draw lists have no parts: the triangle is looked for by its corners.
-std::optional<std::uint32_t> triangle_of_block(const Hit& hit) {
-  const ResidentBlock::Data& data = hit.block->data();
-  const BlockPart& part = hit.kind == TriangleKind::SN   ? data.sn
-                          : hit.kind == TriangleKind::FN ? data.fn
-                                                         : data.nsn;
-  for (std::uint32_t t = 0; t < data.end.triangle_count(); ++t) {
-    const codec::Corners corners = data.end.triangle(t);
-    bool same = true;
-    for (std::size_t c = 0; c < 3; ++c) {
-      same &=
-          data.position_of_vertex[corners[c]] == part.indices[3 * std::size_t(hit.triangle) + c];
-    }
-    if (same) return t;
-  }
-  return std::nullopt;
-}
-
-// At a level between the block's ends, or by vertex.
-std::optional<std::uint32_t> part_of_cut(const Hit& hit, const BlockMesh& mesh) {
-  const auto block = static_cast<std::uint32_t>(index_of(hit.block->id()));
-  if (const LevelList* const list = mesh.impl().levels.list(block)) {
-    return list->part_of_triangle[static_cast<std::size_t>(hit.kind)][hit.triangle];
-  }
-  const BlockCut* const cut = mesh.impl().cuts.cut(block);
-  if (cut == nullptr) return std::nullopt;
-  const ResidentBlock::Data& data = hit.block->data();
-  const std::uint32_t triangle = cut->triangle_of(static_cast<Part>(hit.kind), hit.triangle);
-  return data.end.category(triangle) / data.schema->coding.material_count;
-}
-
-std::optional<std::uint32_t> part_of_block(const Hit& hit) {
-  const std::optional<std::uint32_t> triangle = triangle_of_block(hit);
-  if (!triangle) return std::nullopt;
-  const ResidentBlock::Data& data = hit.block->data();
-  return data.end.category(*triangle) / data.schema->coding.material_count;
-}
-
-}  // namespace
-
 std::string part_of(const Hit& hit, const BlockMesh& mesh) {
   if (hit.block == nullptr) return {};
-  const std::span<const std::string> names = mesh.part_names();
-  if (names.empty()) return {};
-  const std::optional<std::uint32_t> part =
-      hit.is_by_vertex ? part_of_cut(hit, mesh) : part_of_block(hit);
-  return part && *part < names.size() ? names[*part] : std::string();
+  if (!hit.is_by_vertex) {
+    return name_of(hit.block->part_of(hit.kind, hit.triangle), mesh.part_names());
+  }
+  ShownCut cut;
+  cut.block = hit.block;
+  return name_of(mesh.part_of(cut, hit.kind, hit.triangle), mesh.part_names());
 }
 
-// By places: corners come from floats, and may be off by their last bits.
-std::string part_of(const Hit& hit, const Mesh& mesh) {
-  if (mesh.part_of_triangle.empty()) return {};
-  double size = 0;
-  for (const Vec3d& corner : hit.corners) size = std::max(size, length(corner - mesh.positions[0]));
-  const double close = 1e-6 * size;
-  const auto is_at = [&](VertexId v, const Vec3d& corner) {
-    const Vec3d off = mesh.positions[index_of(v)] - corner;
-    return dot(off, off) <= close * close;
-  };
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle& vertices = mesh.triangles[t];
-    bool is_same = true;
-    for (const Vec3d& corner : hit.corners) {
-      is_same &=
-          is_at(vertices[0], corner) || is_at(vertices[1], corner) || is_at(vertices[2], corner);
-      if (!is_same) break;
-    }
-    if (!is_same) continue;
-    const std::size_t part = index_of(mesh.part_of_triangle[t]);
-    return part < mesh.parts.size() ? mesh.parts[part] : std::string();
-  }
-  return {};
+std::string name_of(PartId part, std::span<const std::string> names) {
+  return index_of(part) < names.size() ? names[index_of(part)] : std::string();
 }
 
 }  // namespace crease

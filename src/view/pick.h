@@ -45,8 +45,7 @@ std::optional<Hit> pick(std::span<const ShownCut> shown, const Grid& grid, const
 
 // The name of the part that a triangle of a block belongs to, or empty. `mesh` shows it.
 std::string part_of(const Hit& hit, const BlockMesh& mesh);
-// The same of a mesh that has the triangle among others. Time O(triangles).
-std::string part_of(const Hit& hit, const Mesh& mesh);
+std::string name_of(PartId part, std::span<const std::string> names);
 
 const DrawPart& part_of_kind(const DrawList& list, TriangleKind kind);
 

@@ -199,7 +199,7 @@ class ShownVertices final : public ShownWhole {
     const std::vector<float> errors = mesh_->error_of_position();
     HitFacts facts{in_words(mesh_->triangle_count(), mesh_->hierarchy().vertices.triangles.size()),
                    {},
-                   part_of(hit, mesh_->extract())};
+                   name_of(mesh_->part_of(hit.kind, hit.triangle), mesh_->hierarchy().parts)};
     const DrawPart& part = part_of_kind(list, hit.kind);
     for (std::size_t c = 0; c < 3; ++c) {
       const float error = errors[part.indices[3 * std::size_t(hit.triangle) + c]];
@@ -299,16 +299,8 @@ class ShownLinear final : public ShownWhole {
     return crease::pick(mesh_->draw_list(), ray);
   }
   HitFacts facts_of(const Hit& hit) const override {
-    const ProgressiveArrays& arrays = mesh_->arrays();
-    HitFacts facts{
-        in_words(mesh_->triangle_count(), mesh_->full_triangle_count()), mesh_->error(), {}};
-    if (arrays.part_of_triangle.empty()) return facts;
-    std::size_t triangle = hit.triangle;  // the three kinds in a row
-    if (hit.kind != TriangleKind::SN) triangle += arrays.full.sn_triangles;
-    if (hit.kind == TriangleKind::NSN) triangle += arrays.full.fn_triangles;
-    const std::uint32_t part = arrays.part_of_triangle[triangle];
-    if (part < arrays.parts.size()) facts.part = arrays.parts[part];
-    return facts;
+    return {in_words(mesh_->triangle_count(), mesh_->full_triangle_count()), mesh_->error(),
+            name_of(mesh_->part_of(hit.kind, hit.triangle), mesh_->arrays().parts)};
   }
   std::vector<Vec3f> outline() const override { return used_positions(mesh_->draw_list()); }
 

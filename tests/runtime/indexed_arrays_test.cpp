@@ -126,11 +126,25 @@ void check_sound(const IndexedArrays& arrays, std::span<const Vec3f> positions) 
   CHECK(first == arrays.triangle_count());
 }
 
+// That each triangle is the one of the list that it says.
+bool tells_sources(const IndexedArrays& arrays, const DrawList& list) {
+  const std::array<const DrawPart*, 3> parts{&list.sn, &list.fn, &list.nsn};
+  bool same = arrays.listed.size() == arrays.triangle_count();
+  for (std::size_t c = 0; same && c < arrays.indices.size(); ++c) {
+    const ListedTriangle& from = arrays.listed[c / 3];
+    const std::uint32_t v =
+        parts[std::size_t(from.kind)]->indices[3 * std::size_t(from.number) + c % 3];
+    same = list.positions[v] == arrays.positions[arrays.indices[c]];
+  }
+  return same;
+}
+
 void check_list(const DrawList& list) {
   const IndexedArrays arrays = indexed_arrays(list);
   check_sound(arrays, list.positions);
   CHECK(arrays.origin == list.origin);
   CHECK(indexed(arrays) == listed(list));
+  CHECK(tells_sources(arrays, list));
   // One run a material.
   std::set<std::uint32_t> materials;
   for (const MaterialRun& run : arrays.runs) CHECK(materials.insert(run.material).second);
@@ -189,6 +203,7 @@ std::size_t check_blocks(const EncodedCase& c, std::uint64_t seed) {
       const IndexedArrays& arrays = arrays_of[entry.id] = indexed_arrays(**block);
       check_sound(arrays, (*block)->draw_list().positions);
       CHECK(indexed(arrays) == listed((*block)->draw_list()));
+      CHECK(tells_sources(arrays, (*block)->draw_list()));
     }
   }
   std::mt19937_64 random(seed);
