@@ -218,6 +218,9 @@ vec4 surface_color() {
   int material = int(texelFetch(materials, first_triangle + gl_PrimitiveID).r);
   c = texelFetch(material_colors, 2 * material);
 #endif
+#if MATERIALS && !MASKS
+  c.a = max(c.a, 0.25);  // one sample of a pixel
+#endif
 #if TEXTURES
   vec4 of_texture = texture_color();
   if (of_texture.a < v_cutoff) discard;
