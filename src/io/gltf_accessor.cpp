@@ -315,6 +315,7 @@ Result<GltfReader::Floats> GltfReader::given_as(const Floats& given, const Layou
                              std::to_string(given.components) + " components");
   }
   Floats floats = given;
+  if (given.is_worked_out) return floats;
   floats.integers = layout.component_type != kFloat && !layout.normalized;
   if (!layout.normalized) return floats;
   for (float& x : floats.values)

@@ -310,6 +310,7 @@ class MeshBuilder {
           auto base = reader_.floats(stored, 3, 3, place + ".attributes." + semantic);
           if (!base.ok()) return base.failure();
           moved = *std::move(base);
+          moved->is_worked_out = true;
         }
         const std::string here = place_of(place + ".targets", k) + "." + semantic;
         const auto offset = reader_.floats(target, 3, 3, here);

@@ -263,6 +263,23 @@ TEST_CASE("glTF: morph targets are taken by the mesh's weights, or the node's") 
   CHECK(refusal_of(b.gltf(), "a.gltf").find("targets[1].POSITION") != std::string::npos);
 }
 
+// The sum is no number of the accessor's any more.
+TEST_CASE("glTF: what morph targets make of normalized integers is not divided once more") {
+  GltfBuilder b = triangle_at_a_node();
+  GltfBuilder::Json& primitive = b.json["meshes"][0]["primitives"][0];
+  const auto normalized = [&](const std::vector<std::int16_t>& values) {
+    const std::size_t accessor = b.add<std::int16_t>(values, "VEC3");
+    b.json["accessors"][accessor]["normalized"] = true;
+    return accessor;
+  };
+  primitive["attributes"]["POSITION"] = normalized({0, 0, 32767, 32767, 0, 32767, 0, 32767, 32767});
+  primitive["targets"] = {{{"POSITION", normalized({0, 0, 32767, 0, 0, 32767, 0, 0, 32767})}}};
+  b.json["meshes"][0]["weights"] = {0.5};
+  b.json["nodes"][0].erase("weights");
+  const Mesh mesh = import_text(b.gltf(), "a.gltf").mesh;
+  CHECK(corner(mesh, 0, 1) == Vec3d{1, 0, 1.5});
+}
+
 TEST_CASE("glTF: every index type, and none") {
   const auto check = [](const GltfBuilder& b) {
     const Mesh mesh = import_text(b.glb(), "indices.glb").mesh;
