@@ -3,6 +3,8 @@
 
 #include "crease/vec.h"
 
+#include <cmath>
+
 namespace crease {
 
 // DESIGN 9: {"position":[x,y,z],"target":[x,y,z],"up":[x,y,z],"vertical_fov":45,
@@ -16,5 +18,15 @@ struct Camera {
 
   bool operator==(const Camera&) const = default;
 };
+
+// Whether it is finite, looks from one place to another, with an angle of view between 0 and 180
+// degrees, at a picture that has pixels. A mesh that is told to show what another one sees, of a
+// minimised window for instance, goes on showing what it did.
+inline bool can_see(const Camera& c) {
+  const Vec3d all = c.position + c.target + c.up;
+  return std::isfinite(all.x + all.y + all.z + c.pixels) && c.position != c.target &&
+         c.up != Vec3d{} && c.vertical_fov_deg > 0 && c.vertical_fov_deg < 180 && c.width_px > 0 &&
+         c.height_px > 0;
+}
 
 }  // namespace crease

@@ -71,6 +71,7 @@ AdaptiveMesh::AdaptiveMesh(AdaptiveMesh&&) noexcept = default;
 
 UpdateReport AdaptiveMesh::update(const ViewParameters& view, double seconds) {
   impl_->geomorphs.advance(seconds);
+  if (!can_see(view.camera)) return impl_->arrive({});
   return impl_->arrive(impl_->refiner.update(impl_->cut, view));
 }
 UpdateReport AdaptiveMesh::set_error(float error, double seconds) {

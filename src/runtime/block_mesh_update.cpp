@@ -36,9 +36,14 @@ BlockChooser::Limits BlockMesh::Impl::limits(const BlockViewParameters& paramete
           has_levels ? &levels : nullptr};
 }
 
-BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& parameters) {
+BlockUpdate BlockMesh::Impl::update(const BlockViewParameters& given) {
   BlockUpdate report;
   unused.clear();
+  BlockViewParameters parameters = given;
+  if (!can_see(parameters.view.camera)) {
+    if (updates == 0) return report;
+    parameters.view.camera = last.view.camera;
+  }
   const bool is_same = parameters.view == last.view && parameters.max_bytes == last.max_bytes &&
                        parameters.by_vertex == last.by_vertex &&
                        parameters.in_levels == last.in_levels;

@@ -64,7 +64,7 @@ void ProgressiveMesh::Impl::want(std::size_t count) {
 }
 
 void ProgressiveMesh::Impl::advance(double passed) {
-  now += passed;
+  if (passed > 0) now += passed;  // what is no number is none
   mark_moving();
   if (is_coarsening() && now - began_leaving >= seconds) {
     take_coarser();

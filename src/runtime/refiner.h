@@ -152,6 +152,7 @@ class Refiner {
   bool at_once_ = false;  // all that is found to be due is done by this update()
   float merge_below_ = 1;
   Odometer odometer_;
+  bool was_far_ = false;
   ViewError::Motion late_{};  // of the last frames, each less than the one after it
   int frames_on_odometer_ = 0;
   WatchList wrong_;                          // per slot

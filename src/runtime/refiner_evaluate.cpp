@@ -10,7 +10,8 @@ namespace crease {
 namespace {
 
 constexpr int kFramesOnOdometer = 4096;  // so that floats can tell what a frame adds
-constexpr double kOfBefore = 0.75;       // what a frame before this one tells of those to come
+constexpr float kFar = 1e15f;
+constexpr double kOfBefore = 0.75;  // what a frame before this one tells of those to come
 
 }  // namespace
 
@@ -23,7 +24,7 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
   moved.clock_context = view.clock_context;
   moved.max_seconds = view.max_seconds;
   moved.max_triangles = view.max_triangles;
-  const bool only_moved = has_view_ && moved == view;
+  bool only_moved = has_view_ && moved == view;
   has_view_ = true;
   view_ = view;
   const ViewError before = error_;
@@ -33,6 +34,13 @@ void Refiner::look_from(const ActiveCut& cut, const ViewParameters& view) {
   odometer_.turn += motion.turn;
   late_.travel = kOfBefore * late_.travel + motion.travel;
   late_.turn = kOfBefore * late_.turn + motion.turn;
+  // Of distances whose squares no float holds no answer is kept.
+  const bool is_far = !(error_.eye_length() < kFar);
+  if (is_far || was_far_) {
+    only_moved = false;
+    late_ = {};
+  }
+  was_far_ = is_far;
   odometer_.turn_per_travel = Odometer::ratio(late_.turn, late_.travel);
   odometer_.slop = 1e-6f * error_.eye_length();
   if (!only_moved || ++frames_on_odometer_ > kFramesOnOdometer) {

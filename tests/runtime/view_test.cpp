@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -154,6 +156,52 @@ TEST_CASE("what time does not suffice for is done by the next updates") {
   }
   CHECK(updates > 2);
   CHECK(shown_triangles(by_and_by.draw_list()) == shown_triangles(at_once.draw_list()));
+}
+
+TEST_CASE("a view that is none changes nothing, and one from beyond all floats is forgotten") {
+  const auto h = hierarchy_of(torus(24, 48));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const ViewParameters good = view_from(*h, kNear, 0.5);
+  const auto with = [&good](auto change) {
+    ViewParameters view = good;
+    change(view.camera);
+    return view;
+  };
+  AdaptiveMesh mesh(h);
+  mesh.update(good);
+  const auto shown = shown_triangles(mesh.draw_list());
+  for (const ViewParameters& none :
+       {with([&](Camera& c) { c.position.x = nan; }), with([&](Camera& c) { c.position.y = inf; }),
+        with([&](Camera& c) { c.target = c.position; }), with([&](Camera& c) { c.height_px = 0; }),
+        with([&](Camera& c) { c.vertical_fov_deg = nan; }),
+        with([&](Camera& c) { c.pixels = nan; }), with([&](Camera& c) { c.up = {}; })}) {
+    const UpdateReport report = mesh.update(none, nan);
+    CHECK(report.splits + report.merges == 0);
+    CHECK(shown_triangles(mesh.draw_list()) == shown);
+  }
+  for (const double far : {1e12, 1e16, 1e18, 1e20, 1e30, 1e100, 1e300}) {
+    CAPTURE(far);
+    mesh.update(with([&](Camera& c) { c.position = {far, 0, 0}; }));
+    mesh.update(good);
+    CHECK(shown_triangles(mesh.draw_list()) == shown);
+    mesh.update(with([&](Camera& c) { c.target = {0, far, far}; }));
+    mesh.update(good);
+    CHECK(shown_triangles(mesh.draw_list()) == shown);
+  }
+}
+
+TEST_CASE("seconds that are no number let nothing be on its way for good") {
+  const auto h = hierarchy_of(torus(24, 48));
+  AdaptiveMesh mesh(h);
+  mesh.set_geomorph_seconds(0.25);
+  const ViewParameters view = view_from(*h, kNear, 0.5);
+  mesh.update(view, std::numeric_limits<double>::quiet_NaN());
+  mesh.update(view, -1);
+  UpdateReport report;
+  for (int i = 0; i < 20; ++i) report = mesh.update(view, 0.05);
+  CHECK(report.moving == 0);
+  for (const Vec3f& p : mesh.draw_list().positions) REQUIRE(std::isfinite(p.x + p.y + p.z));
 }
 
 TEST_CASE("hysteresis lets a camera that wavers change nothing") {
