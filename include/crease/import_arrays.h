@@ -67,8 +67,9 @@ struct VertexArrays {
 
 // Reads the arrays before it returns. `name` begins messages; import_mesh() says what becomes of
 // ugly input. Fails with BadValue for an index out of range, an array of another length than the
-// others ask for, or a position that is not finite, and says which and where; with NoTriangles
-// where none is left. Time and memory as import_mesh().
+// others ask for, rows at a null pointer, an image without bytes, or a position or a material's
+// number that is not finite, and says which and where; with NoTriangles where none is left. Time
+// and memory as import_mesh().
 Result<Imported> import_arrays(const VertexArrays& arrays, std::string_view name,
                                const ImportOptions& options);
 

@@ -17,10 +17,10 @@ namespace crease {
 
 struct SimplifyOptions {
   Placement placement = Placement::Optimal;
-  std::uint32_t patch_triangles = 10'000;
-  int threads = 0;  // 0: all. The result does not depend on it
+  std::uint32_t patch_triangles = 10'000;  // at least 1; hundreds make sense
+  int threads = 0;                         // 0: all. The result does not depend on it
   // How much a wrong normal costs beside a wrong distance: a normal that is off by one radian over
-  // an area costs as much as a distance of normal_weight mean edge lengths there.
+  // an area costs as much as a distance of normal_weight mean edge lengths there. 0 and more.
   double normal_weight = 0.97;
   // The input's vertices are followed: LevelError::surface is nearly a bound, thin parts stay long.
   // Else it is an estimate, often several times too small, and it takes a third of the time less.
@@ -42,7 +42,7 @@ struct SimplifyStatistics {
 
 // `snapped` must lie on `grid` and hold check_mesh(). The result is the same to the bit for any
 // number of threads. Memory beside the input: about 165 bytes a triangle and 6 MB a thread. Fails
-// only when interrupted. `statistics` may be null.
+// when interrupted, and for options out of their ranges. `statistics` may be null.
 Result<ContractionSequence> simplify(const Mesh& snapped, const Grid& grid,
                                      const SimplifyOptions& options,
                                      SimplifyStatistics* statistics = nullptr);

@@ -3,6 +3,7 @@
 #include "io/formats.h"
 #include "io/raw_mesh.h"
 
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <type_traits>
@@ -48,7 +49,8 @@ class ArrayReader {
     raw_.default_normals = arrays_.made_normals;
     raw_.up = arrays_.up;
     raw_.images = arrays_.images;
-    if (!read_positions() || !read_triangles() || !read_layers()) return *failure_;
+    if (!check_materials() || !read_positions() || !read_triangles() || !read_layers())
+      return *failure_;
     if (!read_ids("material_of_triangle", arrays_.material_of_triangle, arrays_.materials.size(),
                   raw_.material_of_triangle) ||
         !read_ids("part_of_triangle", arrays_.part_of_triangle, arrays_.parts.size(),
@@ -81,7 +83,30 @@ class ArrayReader {
     return true;
   }
 
+  template <typename Number>
+  bool check_rows(const std::string& array, const Rows<Number>& rows) {
+    return rows.count == 0 || rows.first != nullptr ||
+           refuse(array + " are nowhere: a null pointer");
+  }
+
+  bool check_materials() {
+    for (const Material& material : arrays_.materials) {
+      const auto& [red, green, blue, alpha] = material.base_color;
+      if (!std::isfinite(red + green + blue + alpha) || !std::isfinite(material.alpha_cutoff)) {
+        return refuse("material '" + material.name + "' has a number that is not finite");
+      }
+    }
+    for (const ImageFile& image : arrays_.images) {
+      if (image.bytes == nullptr) return refuse("image '" + image.name + "' has no bytes");
+    }
+    return true;
+  }
+
   bool read_positions() {
+    if (!std::visit([&](const auto& rows) { return check_rows("positions", rows); },
+                    arrays_.positions)) {
+      return false;
+    }
     raw_.positions.resize(vertex_count_);
     std::visit(
         [&](const auto& rows) {
@@ -148,6 +173,7 @@ class ArrayReader {
     if (!check_indices(array + ", of_corner", layer.of_corner, layer.values.count, true)) {
       return false;
     }
+    if (!check_rows(array + ": values", layer.values)) return false;
     RawLayer raw;
     raw.name = layer.name;
     raw.role = layer.role;

@@ -101,6 +101,12 @@ Status check_mesh(const Mesh& mesh) {
       !status.ok()) {
     return status;
   }
+  for (const Material& material : mesh.materials) {
+    const auto& [red, green, blue, alpha] = material.base_color;
+    if (!std::isfinite(red + green + blue + alpha) || !std::isfinite(material.alpha_cutoff)) {
+      return broken("material '" + material.name + "': a number is not finite");
+    }
+  }
   if (Status status = check_images(mesh.images); !status.ok()) return status;
   return check_categories(mesh.part_of_triangle, mesh.triangle_count(), mesh.parts.size(), "part");
 }

@@ -36,6 +36,7 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
   if (mesh.normals() == nullptr) {
     return fail(Error::Invalid, "the mesh has no normal layer, which simplification needs");
   }
+  if (const Status sound = check_mesh(mesh); !sound.ok()) return sound.failure();
   const Status precise = check_precision(mesh, options.precision);
   if (!precise.ok()) return precise.failure();
   const Grid grid = make_grid(mesh, options.precision);
@@ -51,8 +52,9 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
   join_equal_values(*sequence, mesh);
   if (!goes_on(options, "encode", 0)) return interrupted;
   MemorySink sink;
-  const Result<EncodedModel> encoded = run_on(
-      options.simplify.threads, [&] { return encode_model(mesh, *sequence, codings, sink); });
+  const Result<EncodedModel> encoded = run_on(options.simplify.threads, [&] {
+    return encode_model(mesh, *sequence, codings, sink, options.simplify.progress);
+  });
   if (!encoded.ok()) return encoded.failure();
   built.blocks = encoded->blocks;
   built.file_bytes = sink.take();

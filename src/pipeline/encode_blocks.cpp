@@ -1,6 +1,7 @@
 #include "pipeline/encode_blocks.h"
 
 #include "parallel/parallel.h"
+#include "parallel/shared_progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,8 @@ class BandEncoder {
   BandEncoder(const codec::BlockCoding& coding) : coding_(coding) {}
 
   // `band`: as the file counts.
-  void encode(const BandPlans& plans, std::uint16_t band, std::vector<CodedBlock>& blocks) {
+  void encode(const BandPlans& plans, std::uint16_t band, std::vector<CodedBlock>& blocks,
+              SharedProgress& progress) {
     const std::size_t patches = plans.plans.size();
     std::vector<codec::CoarseEnd> starts =
         codec::sort_by_label(ends_, static_cast<std::uint32_t>(patches));
@@ -74,13 +76,15 @@ class BandEncoder {
     const std::uint32_t first = static_cast<std::uint32_t>(blocks.size());
     blocks.resize(first + patches);
     parallel_for(patches, [&](std::size_t p) {
+      if (progress.stopped()) return;
       CodedBlock& block = blocks[first + p];
       block.facts.band = band;
       block.facts.patch = static_cast<std::uint32_t>(p);
       ids[p].block = BlockId{first + static_cast<std::uint32_t>(p)};
       encode_patch(plans, p, std::move(starts[p]), block, ends[p], ids[p]);
+      progress.advance(block.facts.triangles_fine);
     });
-    if (band == kFinest) return;
+    if (band == kFinest || progress.stopped()) return;
     ends_ = std::move(ends);
     ids_ = std::move(ids);
     for (std::size_t e = 0; e < ends_.size(); ++e) {
@@ -156,12 +160,19 @@ class BandEncoder {
 
 }  // namespace
 
-std::vector<CodedBlock> encode_blocks(std::vector<BandPlans> plans,
-                                      const codec::BlockCoding& coding) {
+Result<std::vector<CodedBlock>> encode_blocks(std::vector<BandPlans> plans,
+                                              const codec::BlockCoding& coding,
+                                              const ProgressCallback& progress) {
+  std::size_t triangles = 0;
+  for (const BandPlans& band : plans) {
+    for (const std::vector<std::uint32_t>& ids : band.triangle_ids) triangles += ids.size();
+  }
+  SharedProgress told(progress, "encode", triangles);
   std::vector<CodedBlock> blocks;
   BandEncoder encoder(coding);
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    encoder.encode(plans[i], static_cast<std::uint16_t>(plans.size() - 1 - i), blocks);
+    encoder.encode(plans[i], static_cast<std::uint16_t>(plans.size() - 1 - i), blocks, told);
+    if (told.stopped()) return fail(Error::Interrupted, "encode: interrupted");
     plans[i] = {};
   }
   return blocks;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "crease/block_file.h"
+#include "crease/progress.h"
+#include "crease/result.h"
 #include "pipeline/plan_blocks.h"
 
 #include <cstddef>
@@ -18,8 +20,9 @@ struct CodedBlock {
 };
 
 // Block i of the result has the id i. `plans`: the base first; each band is gone once it is
-// encoded. The blocks of a band on all threads.
-std::vector<CodedBlock> encode_blocks(std::vector<BandPlans> plans,
-                                      const codec::BlockCoding& coding);
+// encoded. The blocks of a band on all threads. `progress` is told of "encode", and fails it.
+Result<std::vector<CodedBlock>> encode_blocks(std::vector<BandPlans> plans,
+                                              const codec::BlockCoding& coding,
+                                              const ProgressCallback& progress = {});
 
 }  // namespace crease

@@ -54,7 +54,8 @@ std::vector<BandFacts> band_facts(const Mesh& snapped, const ContractionSequence
 }  // namespace
 
 Result<EncodedModel> encode_model(const Mesh& snapped, const ContractionSequence& sequence,
-                                  std::span<const LayerCoding> codings, ByteSink& sink) {
+                                  std::span<const LayerCoding> codings, ByteSink& sink,
+                                  const ProgressCallback& progress) {
   ContainerContent content;
   content.facts.grid = sequence.grid;
   content.facts.grid_bits = grid_bits(snapped, sequence);
@@ -68,8 +69,10 @@ Result<EncodedModel> encode_model(const Mesh& snapped, const ContractionSequence
   content.tables = encode_lattices(codings);
   content.images = snapped.images;
 
-  std::vector<CodedBlock> blocks =
-      encode_blocks(plan_blocks(snapped, sequence, codings), block_coding(snapped, codings));
+  Result<std::vector<CodedBlock>> coded = encode_blocks(plan_blocks(snapped, sequence, codings),
+                                                        block_coding(snapped, codings), progress);
+  if (!coded.ok()) return coded.failure();
+  std::vector<CodedBlock>& blocks = *coded;
   if (!content.facts.bands.empty()) {
     content.facts.bands.back().triangles_after = blocks.front().facts.triangles_fine;
   }

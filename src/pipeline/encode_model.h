@@ -5,6 +5,7 @@
 #include "codec/layer_coding.h"
 #include "crease/contraction.h"
 #include "crease/mesh.h"
+#include "crease/progress.h"
 #include "crease/result.h"
 
 #include <cstdint>
@@ -17,8 +18,9 @@ struct EncodedModel {
 };
 
 // `sequence` must have its bands, and the mesh and the sequence be snapped to `codings`. Fails
-// where the sink does, or where the model is larger than a file can say.
+// where the sink does, or where the model is larger than a file can say, or when interrupted.
 Result<EncodedModel> encode_model(const Mesh& snapped, const ContractionSequence& sequence,
-                                  std::span<const LayerCoding> codings, ByteSink& sink);
+                                  std::span<const LayerCoding> codings, ByteSink& sink,
+                                  const ProgressCallback& progress = {});
 
 }  // namespace crease

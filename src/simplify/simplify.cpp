@@ -488,6 +488,10 @@ class Simplifier {
 Result<ContractionSequence> simplify(const Mesh& snapped, const Grid& grid,
                                      const SimplifyOptions& options,
                                      SimplifyStatistics* statistics) {
+  if (options.patch_triangles == 0) return fail(Error::Invalid, "patches of no triangles");
+  if (!(options.normal_weight >= 0) || !std::isfinite(options.normal_weight)) {
+    return fail(Error::Invalid, "a weight of normals that is negative, or no number");
+  }
   return run_on(options.threads,
                 [&] { return simplification::Simplifier(snapped, grid, options).run(statistics); });
 }

@@ -54,7 +54,7 @@ void check_blocks(const Mesh& mesh, const ContractionSequence& sequence,
                   std::span<const LayerCoding> codings) {
   const BlockCoding coding = block_coding(mesh, codings);
   const std::vector<BandPlans> plans = plan_blocks(mesh, sequence, codings);
-  const std::vector<CodedBlock> blocks = encode_blocks(plans, coding);
+  const std::vector<CodedBlock> blocks = *encode_blocks(plans, coding);
   std::vector<FineEnd> ends;
   std::size_t next = 0, splits = 0;
   for (std::uint32_t band = 0; band < plans.size(); ++band) {
@@ -149,7 +149,7 @@ TEST_CASE("harmed blocks decode to an error or to a block within the limits") {
   const std::vector<LayerCoding> codings = codings_of(mesh, kExactPrecision);
   const BlockCoding coding = block_coding(mesh, codings);
   const std::vector<CodedBlock> blocks =
-      encode_blocks(plan_blocks(mesh, sequence, codings), coding);
+      *encode_blocks(plan_blocks(mesh, sequence, codings), coding);
   REQUIRE(blocks.size() == 2);
 
   const auto decode = [&](std::size_t block, std::span<const std::byte> bytes,

@@ -213,6 +213,16 @@ TEST_CASE("arrays that do not fit together are refused, by name and place") {
   arrays.material_of_triangle = far;
   CHECK(refusal(arrays) == "part 17: material_of_triangle[1] is 1, and there are 1");
 
+  arrays = square();
+  arrays.materials = {{.name = "brick", .base_color = {1, NAN, 1, 1}}};
+  CHECK(refusal(arrays) == "part 17: material 'brick' has a number that is not finite");
+  arrays = square();
+  arrays.images = {{"brick.png", nullptr}};
+  CHECK(refusal(arrays) == "part 17: image 'brick.png' has no bytes");
+  arrays = square();
+  arrays.positions = Rows<float>{nullptr, 4};
+  CHECK(refusal(arrays) == "part 17: positions are nowhere: a null pointer");
+
   arrays = VertexArrays{};
   CHECK(refusal(arrays) == "part 17: no triangles in it");
   std::vector<float> bad = kUnitSquare;

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
 namespace crease {
 namespace {
 
@@ -69,15 +71,45 @@ TEST_CASE("a built model is its file, and a stopped build says so") {
   CHECK(file->block_count() == built->blocks);
   CHECK(file->facts().triangle_count == hard_cylinder(24, 4).triangle_count());
 
-  for (const char* stage : {"encode"}) {
+  // At its beginning and on the way.
+  for (const double share : {0.0, 0.01, 0.5}) {
     BuildOptions options;
-    options.simplify.progress = [stage](const char* now, double) {
-      return std::string(now) != stage;
+    options.simplify.patch_triangles = 300;
+    options.simplify.threads = 1;
+    double last = 0;
+    options.simplify.progress = [&](const char* now, double done) {
+      if (std::string(now) != "encode") return true;
+      CHECK(done >= last);
+      last = done;
+      return done < share;
     };
-    const Result<Built> stopped = build_model(hard_cylinder(24, 4), options);
+    const Result<Built> stopped = build_model(smooth_sphere(40, 60), options);
     REQUIRE(!stopped.ok());
     CHECK(stopped.failure().error == Error::Interrupted);
+    CHECK(last < share + 0.4);
   }
+}
+
+TEST_CASE("a mesh that is none, and options out of their ranges, are refused") {
+  const auto refusal = [](auto change) {
+    Mesh mesh = smooth_sphere(8, 12);
+    BuildOptions options;
+    change(mesh, options);
+    const Result<Built> built = build_model(std::move(mesh), options);
+    REQUIRE(!built.ok());
+    return built.failure().error;
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  CHECK(refusal([&](Mesh& m, BuildOptions&) { m.layers[0].values[3] = nan; }) == Error::Invalid);
+  CHECK(refusal([](Mesh& m, BuildOptions&) {
+          m.material_of_triangle.assign(m.triangle_count(), MaterialId{7});
+        }) == Error::Invalid);
+  CHECK(refusal([&](Mesh& m, BuildOptions&) {
+          m.materials = {{"paint", {nan, 0, 0, 1}, ""}};
+        }) == Error::Invalid);
+  CHECK(refusal([](Mesh&, BuildOptions& o) { o.simplify.patch_triangles = 0; }) == Error::Invalid);
+  CHECK(refusal([&](Mesh&, BuildOptions& o) { o.simplify.normal_weight = nan; }) == Error::Invalid);
+  CHECK(refusal([](Mesh&, BuildOptions& o) { o.simplify.normal_weight = -1; }) == Error::Invalid);
 }
 
 TEST_CASE("a built file is the same for 1, 2 and 7 threads, and so is what is decoded" *
