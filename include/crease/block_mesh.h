@@ -8,6 +8,7 @@
 //     mesh->update({.view = {.camera = camera}, .max_bytes = 256 << 20});
 //     for (const BlockEntry& entry : mesh->missing()) ...            // fetch, most valuable first
 //     for (const ShownRange& range : mesh->shown()) draw(*range.block, range.sn, ...);
+//     for (const ShownCut& cut : mesh->shown_cuts()) draw(cut.list);  // most of it, once there are
 //   whenever a payload has come:
 //     if (auto job = mesh->decode_job(id)) block = job->run(payload);  // on any thread
 //     mesh->insert(*block);
@@ -294,7 +295,8 @@ class BlockMesh {
   // As for blocks. What is not resident any more is let go.
   void insert(BlockLevelsPtr levels);
 
-  // All of the view is shown as the last update() wanted it, as far as blocks are resident.
+  // By vertex, all of the view is shown as the last update() wanted it, as far as blocks are
+  // resident. By block that is so at once; levels show it with fewer triangles later.
   bool has_arrived() const;
 
   // Both until the next update(). Coarse blocks first.

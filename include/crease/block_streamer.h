@@ -4,7 +4,8 @@
 //   Result<BlockStreamer> streamer = BlockStreamer::open(open_async_http(url));
 //   every frame:
 //     streamer->update({.view = {.camera = camera}, .max_bytes = 256 << 20});
-//     for (const ShownRange& range : streamer->mesh().shown()) draw(range);
+//     for (const ShownRange& range : streamer->mesh().shown()) draw(*range.block, range);
+//     for (const ShownCut& cut : streamer->mesh().shown_cuts()) draw(cut.list);
 //
 // Several views of one model, for pictures side by side:
 //
@@ -13,6 +14,9 @@
 //
 // By vertex, hierarchies are made on the threads that decode, when there is nothing to decode;
 // until then blocks are shown whole. So are levels by block, once no block is missing.
+//
+// Images of textures lie at the file's end and are not streamed: BlockFile::read_images() reads
+// them, on a thread of the program's own and from a source of its own where it takes long.
 //
 // Memory: what BlockViewParameters::max_bytes allows of resident blocks, and beside that at most
 // StreamOptions::max_pending_bytes of payloads, what the source keeps of those that came for
@@ -51,7 +55,9 @@ struct StreamOptions {
 struct StreamReport {
   BlockUpdate cut;
   std::size_t inserted = 0;  // blocks
-  bool is_complete = false;  // all that the view wants is there, and shown
+  // All that the view wants is there, and shown. By block, levels may still come that show it with
+  // far fewer triangles, until BlockMesh::missing_levels() is empty.
+  bool is_complete = false;
 };
 
 // Since the streamer was opened.

@@ -23,7 +23,8 @@ struct DrawPart {
   std::span<const std::uint32_t> indices;  // 3 * triangle_count
   std::span<const Vec3f> normals;          // SN: empty; FN: triangle_count; NSN: 3 * triangle_count
   std::span<const std::uint32_t> materials;  // triangle_count, or empty
-  // Linear RGBA 0..1 per corner, 3 * triangle_count, or empty when the mesh has no colour layer.
+  // RGBA 0..1 per corner, 3 * triangle_count, or empty when the mesh has no colour layer: sRGB, as
+  // the layer has them, where materials' base colours are linear; and linear alpha.
   std::span<const std::array<float, 4>> colors;
   // Per corner, v up, 3 * triangle_count, or empty where no material has a texture or the mesh no
   // texture coordinates.

@@ -1,5 +1,6 @@
 // A draw list as vertices and indices, for engines that draw no other way: a vertex for all corners
-// that have position, normal, colour, texture coordinates and material in common.
+// that have position (the same of the list), normal, colour, texture coordinates and material in
+// common.
 //
 //   const IndexedArrays level = indexed_arrays(progressive_mesh.draw_list());
 //   upload(level.positions, level.normals, level.indices);
@@ -7,10 +8,16 @@
 //
 // Of a BlockMesh each block is laid out once, and a frame chooses among its triangles:
 //
-//   arrays_of[block->id()] = indexed_arrays(*block);           // when it has been decoded
-//   for (const ShownRange& shown : mesh.shown()) draw(arrays_of[shown.block->id()],
-//   triangles_of(shown)); for (const ShownCut& cut : mesh.shown_cuts())
-//   draw(indexed_arrays(cut.list));   // where it changed
+//   whenever a block has been decoded:
+//     arrays_of[block->id()] = indexed_arrays(*block);
+//   every frame:
+//     for (const ShownRange& shown : mesh.shown()) {
+//       draw(arrays_of[shown.block->id()], triangles_of(shown));
+//     }
+//     for (const ShownCut& cut : mesh.shown_cuts()) {
+//       if (is_new(cut.revision)) arrays_of_cut[cut.revision] = indexed_arrays(cut.list);
+//       draw(arrays_of_cut[cut.revision]);
+//     }
 //
 // The three parts of a draw list need fewer bytes (README), and of a level only its changes are
 // uploaded; here each change makes the arrays anew.
@@ -46,7 +53,7 @@ struct IndexedArrays {
   Vec3d origin;                              // positions are relative to it, so that floats suffice
   std::vector<Vec3f> positions;              // vertex_count, model units less origin
   std::vector<Vec3f> normals;                // vertex_count
-  std::vector<std::array<float, 4>> colors;  // vertex_count, linear RGBA 0..1; or empty
+  std::vector<std::array<float, 4>> colors;  // vertex_count, RGBA 0..1 as in DrawPart; or empty
   std::vector<std::array<float, 2>> texcoords;  // vertex_count, v up; or empty
   std::vector<std::uint32_t> materials;         // vertex_count, or empty
   std::vector<std::uint32_t> indices;           // 3 * triangle_count

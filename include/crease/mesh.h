@@ -35,7 +35,7 @@ enum class Interpolation : std::uint8_t {
 enum class AttributeRole : std::uint8_t {
   Normal,    // dimension 3, Direction. At most one layer has this role
   TexCoord,  // dimension 2, v up as in OBJ
-  Color,     // dimension 3 or 4, linear, 0..1: sRGB as files of bytes have it, then alpha
+  Color,     // dimension 3 or 4, 0..1: sRGB, as files of bytes have it, then linear alpha
   Other,     // whatever the source had; the name tells
 };
 

@@ -1,7 +1,9 @@
 // What long work tells its caller, and how the caller stops it.
 //
-//   Progress progress{[&](const char* stage, double done) { bar.show(stage, done); return !stop;
-//   }};
+//   options.progress = [&](const char* stage, double done) {
+//     bar.show(stage, done);
+//     return !stop;
+//   };
 #pragma once
 
 #include <functional>

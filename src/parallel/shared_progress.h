@@ -1,8 +1,12 @@
 // The progress of one stage that several threads work on.
 //
 //   SharedProgress progress(options.progress, "compare", samples);
-//   parallel_for(n, [&](std::size_t i) { if (!progress.stopped()) { work(i); progress.advance(1); }
-//   }); if (progress.stopped()) return fail(Error::Interrupted, ...);
+//   parallel_for(n, [&](std::size_t i) {
+//     if (progress.stopped()) return;
+//     work(i);
+//     progress.advance(1);
+//   });
+//   if (progress.stopped()) return fail(Error::Interrupted, ...);
 #pragma once
 
 #include "crease/progress.h"
