@@ -112,6 +112,7 @@ void Panels::add(Source source, const std::string& title, Json json, const Panel
   if (!kept.images.empty()) panel.list.images = kept.images;
   if (options.titles) panel.title = title;
   panel.level_share = share;
+  panel.model = file_count_;
   panel.error_of_position = kept.errors;
   panel.level_of_position = kept.levels;
   panels_.push_back(std::move(panel));
@@ -184,6 +185,7 @@ Status Panels::add_view(const std::filesystem::path& path, const PanelOptions& o
 
 Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& options,
                         const Common& common) {
+  ++file_count_;
   if (options.view) return add_view(path, options, common);
   const LevelOptions& one = options.level;
   const bool whole = std::ranges::all_of(options.ratios, [](double r) { return r == 1; }) &&

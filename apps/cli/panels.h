@@ -73,6 +73,7 @@ class Panels {
   Json json_ = Json::array();
   std::uint64_t bytes_read_ = 0;
   UpAxis up_ = UpAxis::Unknown;
+  std::uint32_t file_count_ = 0;
 };
 
 // One normal a vertex: the average of the corners' stored normals, weighted by their angles. What a

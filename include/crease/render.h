@@ -47,8 +47,9 @@ enum class Coloring : std::uint8_t {
 
 struct Panel {
   DrawList list{};
-  std::string title;      // drawn at the panel's top; empty: nothing
-  float level_share = 0;  // for Coloring::Level: 0 full resolution .. 1 base
+  std::string title;        // drawn at the panel's top; empty: nothing
+  std::uint32_t model = 0;  // panels of one are seen by one camera
+  float level_share = 0;    // for Coloring::Level: 0 full resolution .. 1 base
   // The same for each position of the list, where levels differ; or empty.
   std::span<const float> level_of_position{};
   // For Coloring::Error: one value per position of the list, in RenderOptions::error_unit; or
@@ -58,8 +59,8 @@ struct Panel {
 
 struct RenderOptions {
   int width_px = 1920, height_px = 1080;  // of the whole picture; panels share it in a row or grid
-  // Else fitted: one for all panels whose models lie at one place and differ in size by no more
-  // than twice, as levels of one do; others have one of their own.
+  // Else fitted: one for all panels of a model, and of models that lie at one place and differ in
+  // size by no more than twice; others have one of their own.
   std::optional<Camera> camera{};
   // Shows as lines what this camera sees. Without `camera` the picture is then taken from outside:
   // from beside and behind it, with everything in view.

@@ -1,6 +1,7 @@
 #include "render/fit_camera.h"
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 namespace crease {
@@ -160,18 +161,22 @@ double projected_aspect(Scene scene, const Vec3d& up) {
   return std::clamp((size.x + 1e-30) / (size.y + 1e-30), 0.1, 10.0);
 }
 
-std::vector<std::size_t> places_of(Scene scene) {
-  std::vector<Box> boxes;
-  for (const PointSet& set : scene) {
-    Box box = box_of(std::span(&set, 1));
-    box.low += set.origin;
-    box.high += set.origin;
-    boxes.push_back(box);
+std::vector<std::size_t> places_of(Scene scene, std::span<const std::uint32_t> models) {
+  std::map<std::uint32_t, Box> boxes;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const Box box = box_of(scene.subspan(i, 1));
+    if (box.empty) continue;
+    boxes[models[i]].add(scene[i].origin + box.low);
+    boxes[models[i]].add(scene[i].origin + box.high);
   }
   std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
+  for (std::size_t i = 0; i < scene.size(); ++i) {
     std::size_t first = 0;
-    while (first < i && (places[first] != first || !is_one_place(boxes[first], boxes[i]))) ++first;
+    while (first < i &&
+           (places[first] != first || (models[first] != models[i] &&
+                                       !is_one_place(boxes[models[first]], boxes[models[i]])))) {
+      ++first;
+    }
     places.push_back(first);
   }
   return places;

@@ -3,6 +3,7 @@
 
 #include "render/transform.h"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,8 +28,9 @@ Camera fit_camera_beside(Scene scene, const Vec3d& forward, const Vec3d& up, int
 // panels goes by.
 double projected_aspect(Scene scene, const Vec3d& up);
 
-// Of each set the first that lies at its place, where one camera shows both: the middle of the
-// smaller one's box is in the other's, and they differ in size by no more than twice.
-std::vector<std::size_t> places_of(Scene scene);
+// Of each set the first that lies at its place, where one camera shows both: they are of one model,
+// or the middle of the smaller model's box is in the other's, and they differ in size by no more
+// than twice. `models`: one a set.
+std::vector<std::size_t> places_of(Scene scene, std::span<const std::uint32_t> models);
 
 }  // namespace crease

@@ -324,15 +324,17 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
   std::vector<std::vector<Vec3f>> points;
   for (const Panel& panel : panels) points.push_back(used_positions(panel.list));
   std::vector<PointSet> scene;
+  std::vector<std::uint32_t> models;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     scene.push_back({panels[i].list.origin, points[i]});
+    models.push_back(panels[i].model);
   }
   const bool has_titles =
       std::ranges::any_of(panels, [](const Panel& p) { return !p.title.empty(); });
   // A camera that is asked for shows all panels.
   const std::vector<std::size_t> places = options.camera || options.frustum
                                               ? std::vector<std::size_t>(panels.size(), 0)
-                                              : places_of(scene);
+                                              : places_of(scene, models);
   const Result<Layout> layout =
       lay_out_panels(panels.size(), has_titles, aspect_of(scene, places, options.up), options);
   if (!layout.ok()) return layout.failure();

@@ -85,13 +85,14 @@ TEST_CASE("places are those of levels of one model, and not of models apart or o
                            beside = box(0.9, 1.9), none;
   const PointSet sets[] = {{{}, unit},   {{0.01, 0, 0}, smaller}, {{}, tiny},
                            {{}, beside}, {{0.9, 0.9, 0}, unit},   {{100, 0, 0}, unit},
-                           {{}, none}};
-  const std::vector<std::size_t> places = places_of(sets), wanted{0, 0, 2, 3, 3, 5, 0};
+                           {{}, none},   {{50, 0, 0}, tiny}};
+  const std::vector<std::uint32_t> models{0, 1, 2, 3, 4, 5, 6, 5};
+  const std::vector<std::size_t> places = places_of(sets, models), wanted{0, 0, 2, 3, 3, 5, 0, 5};
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     CAPTURE(i);
     CHECK(places[i] == wanted[i]);
   }
-  CHECK(places_of({}).empty());
+  CHECK(places_of({}, {}).empty());
 }
 
 }  // namespace crease

@@ -76,9 +76,9 @@ TEST_CASE("models that lie apart are each seen from near, levels of one from one
   for (Vec3d& p : far_box.positions) p += Vec3d{1e4, 5e3, 0};
   for (Vec3d& p : near_box.positions) p = p * 0.6;
   const DrawArrays box(hard_box(2)), far(far_box), small(near_box);
-  const Panel panels[] = {{.list = box.list(), .title = ""},
-                          {.list = far.list(), .title = ""},
-                          {.list = small.list(), .title = ""}};
+  Panel panels[] = {{.list = box.list(), .title = "", .model = 0},
+                    {.list = far.list(), .title = "", .model = 1},
+                    {.list = small.list(), .title = "", .model = 2}};
   RenderOptions options = size(600, 200);
   options.columns = 3;
   std::vector<std::string> notes;
@@ -95,10 +95,16 @@ TEST_CASE("models that lie apart are each seen from near, levels of one from one
   CHECK(small_count > whole / 5);
   CHECK(small_count < whole / 2);
 
+  panels[1].model = 0;  // one model, wherever its parts are
+  const Result<Image> together = render_panels(panels, options);
+  REQUIRE(together.ok());
+  CHECK(notes.size() == 2);  // the small one
+  CHECK(count_surface(*together, layout.views[0]) < 100);
+
   options.camera = Camera{.position = {10, -10, 10}, .target = {0, 0, 0}};
   const Result<Image> asked = render_panels(panels, options);
   REQUIRE(asked.ok());
-  CHECK(notes.size() == 1);
+  CHECK(notes.size() == 2);
   CHECK(count_surface(*asked, layout.views[0]) > 50);
   CHECK(count_surface(*asked, layout.views[1]) == 0);
 }
