@@ -86,6 +86,7 @@ BlockViewParameters random_view(const Mesh& mesh, std::mt19937_64& random) {
   const auto vertex = [&] { return mesh.positions[random() % mesh.vertex_count()]; };
   parameters.view.camera.position = vertex() * 1.5;
   parameters.view.camera.target = vertex();
+  if (!can_see(parameters.view.camera)) parameters.view.camera.target.z -= 1;
   parameters.view.camera.pixels = double(1 + random() % 64);
   parameters.view.coarse_outside = random() % 4 != 0;
   parameters.view.degrees = random() % 2 ? 0 : 5;
