@@ -14,6 +14,9 @@ namespace crease::codec {
 
 namespace {
 
+constexpr int kMostTries = 2;
+constexpr double kLonger = 2;  // then it waits until others cost so much more
+
 class Deferral {
  public:
   Deferral(const UnfoldedBlock& block, std::vector<OrderedContraction> order)
@@ -33,9 +36,20 @@ class Deferral {
       if (!waiting_.empty() &&
           (next == order_.size() || waiting_.front().cost <= order_[next].cost)) {
         std::pop_heap(waiting_.begin(), waiting_.end(), Later{});
-        const OrderedContraction& c = order_[waiting_.back().place];
+        Waiting waiting = waiting_.back();
         waiting_.pop_back();
-        look_at(c);
+        OrderedContraction& c = order_[waiting.place];
+        const double with_children = waits_until(c);
+        if (with_children > waiting.cost) {
+          wait(with_children, waiting);
+          continue;
+        }
+        const double fold = look_at(c);
+        if (fold > 0 && waiting.tries < kMostTries && (next < order_.size() || !waiting_.empty())) {
+          ++waiting.tries;
+          wait(std::max(kLonger * waiting.cost, fold), waiting);
+          continue;
+        }
         contract(c);
         done.push_back(c);
         continue;
@@ -43,9 +57,7 @@ class Deferral {
       OrderedContraction& c = order_[next];
       const double cost = std::max(waits_until(c), c.cost + look_at(c));
       if (cost > c.cost) {
-        c.cost = waits_for_[first_of(c)] = cost;
-        waiting_.push_back({cost, static_cast<std::uint32_t>(next)});
-        std::push_heap(waiting_.begin(), waiting_.end(), Later{});
+        wait(cost, {cost, static_cast<std::uint32_t>(next), 0});
       } else {
         contract(c);
         done.push_back(c);
@@ -59,12 +71,22 @@ class Deferral {
   struct Waiting {
     double cost;
     std::uint32_t place;  // in order_: children come before their parents
+    int tries;            // so often it still folded when it had waited
   };
   struct Later {
     bool operator()(const Waiting& a, const Waiting& b) const {
       return a.cost > b.cost || (a.cost == b.cost && a.place > b.place);
     }
   };
+
+  void wait(double cost, Waiting waiting) {
+    OrderedContraction& c = order_[waiting.place];
+    double& until = waits_for_[first_of(c)];
+    until = std::max(until, cost);
+    waiting.cost = c.cost = cost;
+    waiting_.push_back(waiting);
+    std::push_heap(waiting_.begin(), waiting_.end(), Later{});
+  }
 
   std::uint32_t first_of(const OrderedContraction& c) const {
     return block_.splits[c.split].vertex;

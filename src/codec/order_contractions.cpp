@@ -31,8 +31,8 @@ constexpr double kPartWeight = 3;
 // simplifier. Where more than a few of a block's do, their order says little of the simplifier's,
 // and triangles could fold over.
 constexpr double kLengthShare = 1e-8;
-constexpr std::size_t kFewOfThem = 8;  // one of so many
-constexpr double kMostCost = 1e300;    // of nonsense, that a hostile block may have
+constexpr std::size_t kFewOfThem = 256;  // one of so many
+constexpr double kMostCost = 1e300;      // of nonsense, that a hostile block may have
 // Witnesses that are farther off than so many times what planes say: of one contraction in hundreds
 // where triangles are connected. Where loose parts join, ends of a part may have joined others
 // already when it is contracted itself, which comes before in the order that is found then. Where
