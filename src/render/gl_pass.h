@@ -31,6 +31,7 @@ struct DrawStyle {
   // grain. Else they are the same ones at each depth, and what covers no more and lies behind is
   // not seen.
   std::optional<unsigned> turn{};
+  bool only_opaque = false;  // without what is seen through
 };
 
 }  // namespace crease

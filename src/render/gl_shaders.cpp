@@ -248,6 +248,9 @@ void main() {
   if (dot(n, plane) * seen_side < 0) n = -n;
 
   vec4 base = surface_color();
+#if ONLY_OPAQUE
+  if (base.a < 1) discard;
+#endif
   vec3 ambient = mix(vec3(0.110, 0.100, 0.092), vec3(0.290, 0.312, 0.345), 0.5 + 0.5 * dot(n, up));
   // Wrapped round the surface, so that no terminator cuts a dome in two.
   float key = pow(0.5 + 0.5 * dot(n, key_light), 2.3);
@@ -307,7 +310,8 @@ std::string preamble(const ProgramKey& key) {
          define("CORNERS", int(AlbedoSource::Corners)) + define("SCALARS", key.has_scalars()) +
          define("NORMALS", int(key.normals)) + define("ALBEDO", int(key.albedo)) +
          define("MATERIALS", key.has_materials()) + define("TEXTURES", key.textures) +
-         define("WIREFRAME", key.wireframe) + define("PULLED", key.pulled);
+         define("WIREFRAME", key.wireframe) + define("PULLED", key.pulled) +
+         define("ONLY_OPAQUE", key.only_opaque);
 }
 
 Result<Program> build_program(const ProgramKey& key) {
