@@ -114,7 +114,7 @@ struct NormalRule {
 };
 
 // Where sharp edges are fragments, as the noise of a scan makes them, none of them is a feature.
-constexpr double kMostLooseCreases = 0.3;
+constexpr double kMostLooseCreases = 0.2;     // hard surfaces have 0.08 at most, scans 0.25 to 0.6
 constexpr std::size_t kScanTriangles = 2000;  // fewer say nothing about noise
 
 bool is_scan(const Mesh& mesh, double angle_deg) {
