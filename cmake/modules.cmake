@@ -25,7 +25,9 @@ function(crease_module name)
   target_include_directories(crease_${name}_objects
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
-  target_compile_options(crease_${name}_objects PRIVATE -ffp-contract=off -fno-math-errno ${CREASE_FALSE_WARNINGS})
+  # Assertions name a file of the tree, wherever that was.
+  target_compile_options(crease_${name}_objects PRIVATE -ffp-contract=off -fno-math-errno
+    -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/= ${CREASE_FALSE_WARNINGS})
   if(name MATCHES "^(hierarchy|runtime)$" AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # Else GCC inlines no function that another library might replace, not even within a file.
     target_compile_options(crease_${name}_objects PRIVATE -fno-semantic-interposition)
