@@ -134,7 +134,8 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
                  {"bytes_read", panels.bytes_read()}, {"seconds", watch.seconds()}};
   report.text = options.output.string() + ": " + std::to_string(image->width) + " x " +
                 std::to_string(image->height) + ", " + std::to_string(panels.list().size()) +
-                " panels, " + in_seconds(watch.seconds());
+                (panels.list().size() == 1 ? " panel, " : " panels, ") +
+                in_seconds(watch.seconds());
   return report;
 }
 

@@ -28,7 +28,8 @@ class Losses {
   std::vector<std::string> notes() const {
     std::vector<std::string> notes;
     for (const auto& [what, count] : counts_) {
-      notes.push_back(std::to_string(count) + " materials lose " + what);
+      notes.push_back(count == 1 ? "a material loses " + what
+                                 : std::to_string(count) + " materials lose " + what);
     }
     return notes;
   }

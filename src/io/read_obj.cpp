@@ -390,8 +390,9 @@ class ObjReader {
     if (count == 0) return;
     const auto first = std::ranges::find(is_known_material_, false) - is_known_material_.begin();
     const std::string& name = raw_.materials[static_cast<std::size_t>(first)].name;
-    raw_.report.notes.push_back(std::to_string(count) + " materials are in no library: white (" +
-                                in_quotes(name) + (count > 1 ? ", ...)" : ")"));
+    raw_.report.notes.push_back(
+        std::to_string(count) + (count == 1 ? " material is" : " materials are") +
+        " in no library: white (" + in_quotes(name) + (count > 1 ? ", ...)" : ")"));
   }
 
   // False if it is not there. One from elsewhere is passed over without a word.

@@ -168,19 +168,19 @@ TEST_CASE("glTF: what materials say beyond a base colour is told, kind by kind")
                    {"doubleSided", true},
                    {"emissiveFactor", {1, 0.5, 0}}},
                   {{"pbrMetallicRoughness", plain}, {"doubleSided", true}}}) ==
-        Notes{"1 materials lose emission"});
+        Notes{"a material loses emission"});
   CHECK(notes_of({{{"pbrMetallicRoughness",
                     {{"metallicFactor", 0}, {"metallicRoughnessTexture", texture}}},
                    {"normalTexture", texture},
                    {"occlusionTexture", texture}}}) ==
-        Notes{"1 materials lose metallic and roughness", "1 materials lose normalTexture",
-              "1 materials lose occlusionTexture"});
+        Notes{"a material loses metallic and roughness", "a material loses normalTexture",
+              "a material loses occlusionTexture"});
   CHECK(notes_of({{{"pbrMetallicRoughness", {{"baseColorTexture", texture}}},
                    {"alphaMode", "BLEND"},
                    {"extensions", {{"KHR_materials_unlit", GltfBuilder::Json::object()}}}}}) ==
-        Notes{"1 materials lose 'KHR_materials_unlit'",
-              "1 materials lose wrapS or wrapT, which become REPEAT",
-              "1 materials lose magFilter NEAREST"});
+        Notes{"a material loses 'KHR_materials_unlit'",
+              "a material loses wrapS or wrapT, which become REPEAT",
+              "a material loses magFilter NEAREST"});
 }
 
 TEST_CASE("glTF: alpha counts where it blends") {
