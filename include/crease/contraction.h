@@ -26,8 +26,9 @@
 namespace crease {
 
 // Errors keep their units and are never mixed into one number. The surface's is nearly a bound: no
-// input vertex was found farther than that from the level, but for a tenth; a level's surface can
-// be farther from the input between them. The others are means over what a vertex stands for.
+// input vertex was found farther than that from the level, but for a tenth, nor for those of a part
+// that has vanished, of which the size counts; a level's surface can be farther from the input
+// between them. The others are means over what a vertex stands for.
 struct LevelError {
   float surface = 0;  // distance between the surfaces, model units
   float line = 0;     // displacement of creases and open borders, and of what textures, colours and
