@@ -26,8 +26,8 @@ struct DrawPart {
   // RGBA 0..1 per corner, 3 * triangle_count, or empty when the mesh has no colour layer: sRGB, as
   // the layer has them, where materials' base colours are linear; and linear alpha.
   std::span<const std::array<float, 4>> colors;
-  // Per corner, v up, 3 * triangle_count, or empty where no material has a texture or the mesh no
-  // texture coordinates.
+  // Per corner, v up, 3 * triangle_count: the first layer of texture coordinates in a plane, or
+  // empty where there is none.
   std::span<const std::array<float, 2>> texcoords{};
 
   std::size_t triangle_count() const { return indices.size() / 3; }

@@ -5,7 +5,7 @@
 #include "base/assert.h"
 #include "hierarchy/attribute_values.h"
 #include "hierarchy/packed_contraction.h"
-#include "mesh/painted_layer.h"
+#include "mesh/drawn_texcoords.h"
 
 #include <algorithm>
 #include <bit>
@@ -414,7 +414,7 @@ class Arranger {
   std::vector<Item> items_;               // scratch of one contraction
   std::vector<std::uint32_t> own_words_;  // likewise
   std::vector<std::size_t> repainted_;    // likewise
-  const std::uint32_t painted_ = painted_layer(mesh_.layers, mesh_.materials);
+  const std::uint32_t painted_ = drawn_texcoords(mesh_.layers);
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // The moves of vertices. Corners follow in active_cut_corners.cpp.
 #include "runtime/active_cut.h"
 
-#include "mesh/painted_layer.h"
+#include "mesh/drawn_texcoords.h"
 
 #include "base/assert.h"
 #include "hierarchy/grid_sum.h"
@@ -41,7 +41,7 @@ ActiveCut::ActiveCut(const MeshHierarchy& hierarchy, const char* is_hidden)
     if (!layer.constant_of_wedge.empty()) constants_.push_back(&layer.constant_of_wedge);
     tracks_others_ |= l != normal_layer_;
   }
-  texcoord_layer_ = painted_layer(hierarchy_.layers, hierarchy_.materials);
+  texcoord_layer_ = drawn_texcoords(hierarchy_.layers);
   arriving_.assign(3 * tracked_.size(), kNone);
   touches_triangles_ = normal_layer_ == kNone || is_painted() ||
                        place_of_layer_[normal_layer_] != kNone || !h_.deriving_splits.empty();

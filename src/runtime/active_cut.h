@@ -130,7 +130,7 @@ class ActiveCut {
 
   std::uint32_t normal_layer() const { return normal_layer_; }  // kNone: there is none
   std::uint32_t color_layer() const { return color_layer_; }
-  std::uint32_t texcoord_layer() const { return texcoord_layer_; }  // kNone: no textures
+  std::uint32_t texcoord_layer() const { return texcoord_layer_; }  // kNone: no texture coordinates
 
   // By DB03, of what the corners have now, which sorted_normals() tells from then on.
   Part sort(ActiveTriangles& part, std::uint32_t triangle) const;

@@ -3,7 +3,7 @@
 
 #include "crease/mesh.h"
 #include "crease/vec.h"
-#include "mesh/painted_layer.h"
+#include "mesh/drawn_texcoords.h"
 
 #include <array>
 #include <cstdint>

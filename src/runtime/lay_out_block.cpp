@@ -25,7 +25,7 @@ class BlockLayout {
       if (is_normal && !normals_) normals_.emplace(Layer{l, values_of(l)});
       if (layer.role == AttributeRole::Color && !colors_) colors_.emplace(Layer{l, values_of(l)});
     }
-    const std::uint32_t painted = painted_layer(schema_.facts.layers, schema_.materials);
+    const std::uint32_t painted = drawn_texcoords(schema_.facts.layers);
     if (painted != kNone) texcoords_.emplace(Layer{painted, values_of(painted)});
   }
 

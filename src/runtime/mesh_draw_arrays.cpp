@@ -67,7 +67,7 @@ MeshDrawArrays::Impl::Impl(const Mesh& mesh)
     : origin(center_of(mesh)), materials(mesh.materials), images(mesh.images) {
   CREASE_ASSERT(mesh.normals() != nullptr);
   colors = color_layer(mesh);
-  const std::uint32_t painted = painted_layer(mesh.layers, materials);
+  const std::uint32_t painted = drawn_texcoords(mesh.layers);
   if (painted != kNone) texcoords = &mesh.layers[painted];
   const ShadingKinds kinds = classify_shading(mesh);
   add_vertices(mesh, kinds);

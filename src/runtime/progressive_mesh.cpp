@@ -37,7 +37,7 @@ ProgressiveMesh::Impl::Impl(ProgressiveArraysPtr given) : arrays(std::move(given
   for (std::uint32_t l = 0; l < arrays->layers.size() && color_layer == kMaxLayers; ++l) {
     if (arrays->layers[l].role == AttributeRole::Color) color_layer = l;
   }
-  const std::uint32_t painted = painted_layer(arrays->layers, arrays->materials);
+  const std::uint32_t painted = drawn_texcoords(arrays->layers);
   if (painted != kNone) texcoord_layer = painted;
   position_changes.resize(full.vertices());
   own_normal_changes.resize(full.sn_vertices);

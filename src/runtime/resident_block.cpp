@@ -1,6 +1,6 @@
 #include "runtime/resident_block.h"
 
-#include "mesh/painted_layer.h"
+#include "mesh/drawn_texcoords.h"
 #include "runtime/group_by_place.h"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ std::size_t resident_bytes_of(const BlockFacts& facts, const codec::ModelSchema&
   const bool has_colors =
       std::any_of(schema.facts.layers.begin(), schema.facts.layers.end(),
                   [](const LayerSchema& layer) { return layer.role == AttributeRole::Color; });
-  const bool has_texcoords = painted_layer(schema.facts.layers, schema.materials) != kNone;
+  const bool has_texcoords = drawn_texcoords(schema.facts.layers) != kNone;
   const std::size_t layers = schema.facts.layers.size();
   const std::size_t vertex_bits = bits_for(facts.vertices);
   const std::size_t of_vertex =

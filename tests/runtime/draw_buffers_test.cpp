@@ -140,7 +140,7 @@ void check_draw_list(const ProgressiveMesh& pm) {
   for (const AttributeLayer& layer : mesh.layers) {
     if (color == nullptr && layer.role == AttributeRole::Color) color = &layer;
   }
-  const std::uint32_t painted = painted_layer(mesh.layers, mesh.materials);
+  const std::uint32_t painted = drawn_texcoords(mesh.layers);
   const AttributeLayer* uv = painted == kNone ? nullptr : &mesh.layers[painted];
   std::size_t t = 0;
   for (const DrawPart* part : {&list.sn, &list.fn, &list.nsn}) {

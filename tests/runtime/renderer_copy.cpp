@@ -124,7 +124,7 @@ std::vector<std::string> shown_triangles(const Mesh& mesh, const Grid& grid) {
   const auto color = std::find_if(mesh.layers.begin(), mesh.layers.end(), [](const auto& layer) {
     return layer.role == AttributeRole::Color;
   });
-  const std::uint32_t painted = painted_layer(mesh.layers, mesh.materials);
+  const std::uint32_t painted = drawn_texcoords(mesh.layers);
   std::vector<std::string> all;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     std::string bytes;

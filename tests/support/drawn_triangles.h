@@ -51,12 +51,10 @@ inline TriangleBag drawn(const DrawList& list) {
   return bag;
 }
 
-// That textures go by, or null where no material has one.
-inline const AttributeLayer* painted_layer_of(const Mesh& mesh) {
-  bool has_texture = false;
-  for (const Material& m : mesh.materials) has_texture |= !m.base_color_texture.empty();
+// Whose texture coordinates are drawn, or null.
+inline const AttributeLayer* texcoords_of(const Mesh& mesh) {
   for (const AttributeLayer& layer : mesh.layers) {
-    if (has_texture && layer.role == AttributeRole::TexCoord && layer.dimension == 2) return &layer;
+    if (layer.role == AttributeRole::TexCoord && layer.dimension == 2) return &layer;
   }
   return nullptr;
 }
@@ -65,7 +63,7 @@ inline const AttributeLayer* painted_layer_of(const Mesh& mesh) {
 template <typename Place>
 TriangleBag drawn_of_mesh(const Mesh& mesh, Place place) {
   TriangleBag bag;
-  const AttributeLayer* painted = painted_layer_of(mesh);
+  const AttributeLayer* painted = texcoords_of(mesh);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     std::vector<FloatKey> corners;
     for (std::size_t k = 0; k < 3; ++k) {
