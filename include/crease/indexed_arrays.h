@@ -66,9 +66,9 @@ struct IndexedArrays {
 
 // Triangles by material, then as the list has them: SN, FN, NSN. Vertices in the order of
 // triangles, none without. Colours are there if the list has any, likewise texture coordinates and
-// materials. `list` is one that the library has made. Owns what it returns. Time O(corners) and
-// that of sorting materials; memory beside the result: 12 bytes a triangle, 4 a position and 4 a
-// vertex.
+// materials. `list` is one that the library has made. Owns what it returns. Time O(corners +
+// materials), 17 to 92 ns a triangle; memory beside the result: 24 bytes a triangle, 4 a position
+// and 4 a vertex.
 IndexedArrays indexed_arrays(const DrawList& list);
 
 // The same group by group, in each by material: so what is shown of a block are consecutive

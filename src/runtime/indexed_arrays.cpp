@@ -2,7 +2,8 @@
 
 #include "crease/block_mesh.h"
 
-#include <algorithm>
+#include <cstddef>
+#include <utility>
 
 namespace crease {
 
@@ -27,6 +28,9 @@ class Indexer {
     arrays_.origin = list.origin;
     arrays_.indices.reserve(list.sn.indices.size() + list.fn.indices.size() +
                             list.nsn.indices.size());
+    arrays_.positions.reserve(list.positions.size());
+    arrays_.normals.reserve(list.positions.size());
+    next_.reserve(list.positions.size());
     arrays_.listed.reserve(arrays_.indices.capacity() / 3);
   }
 
@@ -39,10 +43,7 @@ class Indexer {
         sources_.push_back({materials.empty() ? 0 : materials[t], p, t});
       }
     }
-    if (has_materials_) {
-      std::stable_sort(sources_.begin(), sources_.end(),
-                       [](const Source& a, const Source& b) { return a.material < b.material; });
-    }
+    if (has_materials_) sort_by_material();
     for (const Source& t : sources_) add(t);
   }
 
@@ -67,6 +68,22 @@ class Indexer {
     if (!part.colors.empty()) corner.color = part.colors[at];
     if (!part.texcoords.empty()) corner.texcoord = part.texcoords[at];
     return corner;
+  }
+
+  void sort_by_material() {
+    first_of_material_.clear();
+    for (const Source& source : sources_) {
+      if (source.material + 2 > first_of_material_.size()) {
+        first_of_material_.resize(source.material + 2, 0);
+      }
+      ++first_of_material_[source.material + 1];
+    }
+    for (std::size_t m = 1; m < first_of_material_.size(); ++m) {
+      first_of_material_[m] += first_of_material_[m - 1];
+    }
+    sorted_.resize(sources_.size());
+    for (const Source& source : sources_) sorted_[first_of_material_[source.material]++] = source;
+    sources_.swap(sorted_);
   }
 
   bool is_vertex(std::size_t v, const Corner& corner) const {
@@ -105,7 +122,8 @@ class Indexer {
   const DrawList& list_;
   std::array<const DrawPart*, 3> parts_;
   std::vector<std::uint32_t> first_at_, next_;
-  std::vector<Source> sources_;
+  std::vector<Source> sources_, sorted_;
+  std::vector<std::size_t> first_of_material_;
   bool has_colors_ = false, has_texcoords_ = false, has_materials_ = false;
   IndexedArrays arrays_;
 };
