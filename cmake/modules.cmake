@@ -112,12 +112,12 @@ endfunction()
 
 # A test program of doctest cases; tests/support has its main, the mesh zoo and the real models.
 # THREADED ones also run under the thread sanitizer (scripts/test.sh tsan), those with THREADED_CASES
-# only as far as they are in doctest's suite "threads".
+# only as far as they are in doctest's suite "threads". Those that draw with OpenGL say so (DRAWS).
 #
 #   crease_test(io SOURCES obj_test.cpp ply_test.cpp FOLDERS io)
 #   crease_test(parallel SOURCES parallel_test.cpp FOLDERS parallel THREADED)
 function(crease_test name)
-  cmake_parse_arguments(ARG "THREADED;THREADED_CASES" "" "SOURCES;FOLDERS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "THREADED;THREADED_CASES;DRAWS" "" "SOURCES;FOLDERS;LIBRARIES" ${ARGN})
   crease_program(test_${name} SOURCES ${ARG_SOURCES} FOLDERS ${ARG_FOLDERS} mesh
                  LIBRARIES crease_test_support ${ARG_LIBRARIES})
   # To compile doctest, RapidCheck and nlohmann-json takes longer than to run the tests; what they
@@ -130,7 +130,11 @@ function(crease_test name)
   if(ARG_THREADED_CASES AND NOT thread_sanitizer EQUAL -1)
     set(cases --test-suite=threads)
   endif()
-  add_test(NAME ${name} COMMAND test_${name} ${cases})
+  set(launcher)
+  if(ARG_DRAWS AND CREASE_SANITIZED)
+    set(launcher ${CREASE_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/support/leaks.py)
+  endif()
+  add_test(NAME ${name} COMMAND ${launcher} $<TARGET_FILE:test_${name}> ${cases})
   if(ARG_THREADED OR ARG_THREADED_CASES)
     set_tests_properties(${name} PROPERTIES LABELS threads)
     add_dependencies(threaded_tests test_${name})

@@ -313,7 +313,7 @@ class Failures(tool.Case):
             pipe = self.path("pipe" + ending)
             os.mkfifo(pipe)
             writer = subprocess.Popen([tool.BINARY, *command, "-o", pipe, "--quiet"],
-                                      env=tool.without_leak_check())
+                                      env=tool.leaks.without_check())
             reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)  # waits for no writer
             self.assertEqual(writer.wait(), 0)
             self.assertTrue(os.read(reading, 60_000).startswith(begin))

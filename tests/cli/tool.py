@@ -18,37 +18,17 @@ import tempfile
 import unittest
 import zlib
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+
+import leaks  # noqa: E402
+from leaks import run  # noqa: E402
+
 BINARY = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else "crease"
 SHARED = pathlib.Path(
     os.environ.get("CREASE_SHARED_DATA", pathlib.Path(__file__).parents[3] / "shared/data"))
 
 SQUARE = "v 0 0 {z}\nv 1 0 {z}\nv 1 1 {z}\nv 0 1 {z}\nf 1 2 3\nf 1 3 4\n"
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
-
-
-# Of the leak checker's own tracer, now and then while the threads of an OpenGL driver end: it has
-# looked for no leak, and ends the process with a status of its own.
-LEAK_CHECK_FAILED = "LeakSanitizer has encountered a fatal error"
-
-
-def without_leak_check(environment=None):
-    """For who cannot run a command once more."""
-    environment = dict(environment or os.environ)
-    options = environment.get("ASAN_OPTIONS")
-    environment["ASAN_OPTIONS"] = (options + ":" if options else "") + "detect_leaks=0"
-    return environment
-
-
-def run(command, environment=None, timeout=None):
-    """The finished command; once more without the leak checker if that is what failed."""
-    environment = dict(environment or os.environ)
-    for _ in range(2):
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace",
-                              env=environment, timeout=timeout)
-        if LEAK_CHECK_FAILED not in done.stderr:
-            break
-        environment = without_leak_check(environment)
-    return done
 
 
 def quarters_png(side=32):

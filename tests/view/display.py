@@ -5,10 +5,15 @@
 """
 
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+
+import leaks  # noqa: E402
 
 
 class Display:
@@ -44,4 +49,4 @@ class Display:
 
 if __name__ == "__main__":
     with Display() as own:
-        sys.exit(subprocess.run(sys.argv[1:], env=own.environment).returncode)
+        sys.exit(leaks.run_and_tell(sys.argv[1:], own.environment))

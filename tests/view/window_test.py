@@ -139,7 +139,7 @@ class Window(tool.Case):
 
     def check_status(self, exit_status, out, err):
         self.assertNotIn("OpenGL: ", err)  # with CREASE_GL_DEBUG
-        if tool.LEAK_CHECK_FAILED in err:
+        if tool.leaks.TRACER_FAILED in err:
             self.assertNotIn("ERROR: ", err)  # of the other checkers
         else:
             self.assertEqual(self.viewer.returncode, exit_status, out + err)
