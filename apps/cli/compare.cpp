@@ -2,11 +2,13 @@
 #include "crease/compare.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/facts.h"
 #include "cli/fields.h"
 #include "cli/model.h"
 #include "cli/number_check.h"
 #include "cli/text.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -61,6 +63,19 @@ Result<Mesh> load_b(const CompareArguments& options, const Common& common,
   return load_mesh(options.b, as_a, common, &report_b);
 }
 
+// Meshes in other units are seldom so far apart that comparing them is refused.
+void note_sizes(const Mesh& a, const Mesh& b, const Common& common) {
+  constexpr double kOtherUnits = 100;
+  const auto size_of = [](const Mesh& mesh) {
+    const auto [low, high] = bounds_of(mesh);
+    return length(high - low);
+  };
+  const double size_a = size_of(a), size_b = size_of(b);
+  if (std::max(size_a, size_b) <= kOtherUnits * std::min(size_a, size_b)) return;
+  log(common, "one is " + in_length(size_a) + " long, the other " + in_length(size_b) +
+                  ": is one of them in other units?");
+}
+
 Result<Report> run_compare(const CompareArguments& options, const Common& common) {
   const Stopwatch watch;
   Mesh meshes[2];
@@ -76,6 +91,7 @@ Result<Report> run_compare(const CompareArguments& options, const Common& common
     if (interrupted()) return interrupted_failure();
     meshes[i] = *std::move(mesh);
   }
+  note_sizes(meshes[0], meshes[1], common);
   CompareOptions compare = options.compare;
   compare.threads = common.threads;
   compare.progress = progress_bar(common);

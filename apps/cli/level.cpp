@@ -121,6 +121,9 @@ class ErrorSearch {
     if (interrupted()) return interrupted_failure();
 
     mesh_.set_applied(good);
+    log(common_, "  of " + std::to_string(tries_) + (tries_ == 1 ? " level" : " levels") +
+                     " measured, " + std::to_string(mesh_.triangle_count()) +
+                     " triangles are the fewest within " + in_length(limit_));
     const Result<Comparison> measured = measure_level(full_, mesh_.extract(), samples_, common_);
     if (!measured.ok()) return measured.failure();
     Chosen chosen;
@@ -158,11 +161,11 @@ class ErrorSearch {
         meshes_within(full_, mesh_.extract(), limit_, options_of(samples_, common_));
     wipe_progress_bar();
     if (!within.ok()) return false;  // interrupted, which run() sees
-    log(common_, "  " + std::to_string(mesh_.triangle_count()) + " triangles: " +
-                     (*within ? "within" : "not within") + " " + in_length(limit_));
+    ++tries_;
     return *within;
   }
 
+  int tries_ = 0;
   ProgressiveMesh& mesh_;
   const Mesh& full_;
   double limit_;
