@@ -10,6 +10,7 @@
 #include <random>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace crease {
 
@@ -39,6 +40,24 @@ inline BlockMesh mesh_of(const BlockFile& file) {
   }
   mesh->set_part_names(*file.read_parts());
   return *std::move(mesh);
+}
+
+// Decodes all blocks into the mesh, coarse ones first.
+inline std::vector<ResidentBlockPtr> insert_all_blocks(const BlockFile& file, BlockMesh& mesh) {
+  std::vector<ResidentBlockPtr> blocks;
+  for (std::uint32_t p = 0; p < file.page_count(); ++p) {
+    const Result<DirectoryPage> page = file.read_page(p);
+    REQUIRE(page.ok());
+    for (const BlockEntry& entry : page->blocks) {
+      const std::optional<BlockDecodeJob> job = mesh.decode_job(entry.id);
+      REQUIRE(job.has_value());
+      const Result<ResidentBlockPtr> block = job->run(*file.read_block(entry));
+      REQUIRE(block.ok());
+      mesh.insert(*block);
+      blocks.push_back(*block);
+    }
+  }
+  return blocks;
 }
 
 }  // namespace crease

@@ -191,20 +191,11 @@ std::size_t check_blocks(const EncodedCase& c, std::uint64_t seed) {
   const BlockFile file = opened(c.bytes);
   BlockMesh mesh = mesh_of(file);
   std::map<BlockId, IndexedArrays> arrays_of;
-  for (std::uint32_t p = 0; p < file.page_count(); ++p) {
-    const Result<DirectoryPage> page = file.read_page(p);
-    REQUIRE(page.ok());
-    for (const BlockEntry& entry : page->blocks) {
-      const std::optional<BlockDecodeJob> job = mesh.decode_job(entry.id);
-      REQUIRE(job.has_value());
-      const Result<ResidentBlockPtr> block = job->run(*file.read_block(entry));
-      REQUIRE(block.ok());
-      mesh.insert(*block);
-      const IndexedArrays& arrays = arrays_of[entry.id] = indexed_arrays(**block);
-      check_sound(arrays, (*block)->draw_list().positions);
-      CHECK(indexed(arrays) == listed((*block)->draw_list()));
-      CHECK(tells_sources(arrays, (*block)->draw_list()));
-    }
+  for (const ResidentBlockPtr& block : insert_all_blocks(file, mesh)) {
+    const IndexedArrays& arrays = arrays_of[block->id()] = indexed_arrays(*block);
+    check_sound(arrays, block->draw_list().positions);
+    CHECK(indexed(arrays) == listed(block->draw_list()));
+    CHECK(tells_sources(arrays, block->draw_list()));
   }
   std::mt19937_64 random(seed);
   std::size_t shown_parts = 0;

@@ -118,15 +118,8 @@ TEST_CASE("triangles of blocks know their part of the model") {
   for (const EncodedCase& c : cases_of_parts()) {
     const BlockFile file = opened(c.bytes);
     BlockMesh mesh = mesh_of(file);
-    for (std::uint32_t p = 0; p < file.page_count(); ++p) {
-      const Result<DirectoryPage> page = file.read_page(p);
-      REQUIRE(page.ok());
-      for (const BlockEntry& entry : page->blocks) {
-        const std::optional<BlockDecodeJob> job = mesh.decode_job(entry.id);
-        REQUIRE(job.has_value());
-        mesh.insert(*job->run(*file.read_block(entry)));
-        CHECK(mesh.resident(entry.id)->bytes() <= mesh.bytes_of(entry.facts));
-      }
+    for (const ResidentBlockPtr& block : insert_all_blocks(file, mesh)) {
+      CHECK(block->bytes() <= mesh.bytes_of(block->facts()));
     }
     for (int i = 0; i < (kSanitized ? 6 : 24); ++i) {
       BlockViewParameters parameters = random_view(c.mesh, random);
