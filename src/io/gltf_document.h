@@ -59,8 +59,7 @@ class GltfReader {
     std::size_t components = 0;  // a value
     bool integers = false;       // stored as integers and not normalized
     Rounded rounded{};           // those of them
-    bool is_worked_out =
-        false;  // what is given: not stored numbers, but what floats() made of them
+    bool is_worked_out = false;  // given as floats() would have made it of stored numbers
     std::size_t count() const { return components == 0 ? 0 : values.size() / components; }
   };
   Result<Floats> floats(const Json& accessor_index, std::size_t min_components,
