@@ -2,8 +2,8 @@
 
 #include "io/formats.h"
 #include "io/raw_mesh.h"
+#include "mesh/finite_material.h"
 
-#include <cmath>
 #include <cstring>
 #include <optional>
 #include <type_traits>
@@ -91,8 +91,7 @@ class ArrayReader {
 
   bool check_materials() {
     for (const Material& material : arrays_.materials) {
-      const auto& [red, green, blue, alpha] = material.base_color;
-      if (!std::isfinite(red + green + blue + alpha) || !std::isfinite(material.alpha_cutoff)) {
+      if (!is_finite(material)) {
         return refuse("material '" + material.name + "' has a number that is not finite");
       }
     }

@@ -1,5 +1,7 @@
 #include "crease/mesh.h"
 
+#include "mesh/finite_material.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -102,8 +104,7 @@ Status check_mesh(const Mesh& mesh) {
     return status;
   }
   for (const Material& material : mesh.materials) {
-    const auto& [red, green, blue, alpha] = material.base_color;
-    if (!std::isfinite(red + green + blue + alpha) || !std::isfinite(material.alpha_cutoff)) {
+    if (!is_finite(material)) {
       return broken("material '" + material.name + "': a number is not finite");
     }
   }
