@@ -137,11 +137,6 @@ Result<GltfReader::Layout> GltfReader::layout_of(const Json& accessor,
     return fail_at_place(Error::BadFormat, source_, place,
                          "accessor without a usable count, type or componentType");
   }
-  // Zero-filled accessors need no bytes, so only this keeps them from asking for any memory.
-  if (*count > 1024 + 64 * source_.bytes.size() && !at(accessor, "bufferView").is_number()) {
-    return fail_at_place(Error::OverLimit, source_, place,
-                         std::to_string(*count) + " values without data");
-  }
   layout.count = *count;
   return layout;
 }
@@ -164,13 +159,15 @@ Result<std::span<const std::byte>> GltfReader::buffer(std::size_t index, const s
   if (uri == nullptr) {
     if (index != 0) return fail_at_place(Error::BadFormat, source_, here, "no uri");
     entry.bytes = document_.binary_chunk;
-  } else {
-    Result<std::vector<std::byte>> bytes = uri->starts_with("data:")
-                                               ? decode_data_uri(source_, here + ".uri", *uri)
-                                               : read_beside(source_, here + ".uri", *uri);
+  } else if (uri->starts_with("data:")) {
+    Result<std::vector<std::byte>> bytes = decode_data_uri(source_, here + ".uri", *uri);
     if (!bytes.ok()) return bytes.failure();
-    entry.owned = *std::move(bytes);
-    entry.bytes = entry.owned;
+    entry.decoded = *std::move(bytes);
+    entry.bytes = entry.decoded;
+  } else {
+    const Result<std::span<const std::byte>> bytes = file_beside(here + ".uri", *uri);
+    if (!bytes.ok()) return bytes.failure();
+    entry.bytes = *bytes;
   }
   if (entry.bytes.size() < *length) {
     return fail_at_place(Error::Truncated, source_, here,
@@ -180,6 +177,30 @@ Result<std::span<const std::byte>> GltfReader::buffer(std::size_t index, const s
   entry.bytes = entry.bytes.first(*length);
   entry.loaded = true;
   return entry.bytes;
+}
+
+// They stay as long as the reader.
+Result<std::span<const std::byte>> GltfReader::file_beside(const std::string& place,
+                                                           const std::string& uri) {
+  const auto known = files_.find(uri);
+  if (known != files_.end()) return std::span<const std::byte>(known->second);
+  Result<std::vector<std::byte>> bytes = read_beside(source_, place, uri);
+  if (!bytes.ok()) return bytes.failure();
+  return std::span<const std::byte>(files_[uri] = *std::move(bytes));
+}
+
+std::size_t GltfReader::input_bytes() {
+  if (input_bytes_) return *input_bytes_;
+  const Json& buffers = at(document_.json, "buffers");
+  for (std::size_t i = 0; i < size_of(buffers); ++i) {
+    const std::string uri = as_text(at(buffers[i], "uri"));
+    if (!uri.empty() && !uri.starts_with("data:")) {
+      static_cast<void>(file_beside(place_of("buffers", i) + ".uri", uri));
+    }
+  }
+  input_bytes_ = source_.bytes.size();
+  for (const auto& [uri, bytes] : files_) *input_bytes_ += bytes.size();
+  return *input_bytes_;
 }
 
 std::size_t GltfReader::buffer_bytes() const {
@@ -273,6 +294,10 @@ Result<std::vector<T>> GltfReader::read(const Json& accessor, const Layout& layo
     for (std::size_t i = 0; i < layout.count; ++i) {
       decode(view->bytes.data() + i * view->stride, &values[i * layout.components]);
     }
+  } else if (layout.count > 1024 + 64 * input_bytes()) {
+    // Zeros need no bytes, so only this keeps them from asking for any memory.
+    return fail_at_place(Error::OverLimit, source_, place,
+                         std::to_string(layout.count) + " values without data");
   } else {
     values.resize(layout.count * layout.components);
   }

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -73,6 +74,10 @@ class GltfReader {
   // Of the buffers that were loaded so far.
   std::size_t buffer_bytes() const;
 
+  // What there is to read: the file and, each once, the files beside it that are buffers. Loads
+  // those; one that cannot be read counts nothing here and fails where it is used.
+  std::size_t input_bytes();
+
   // From here on floats() and indices() give this for the accessor: what its primitive decoded.
   // Until the next forget_given().
   void give(std::size_t accessor, Floats values) { given_floats_[accessor] = std::move(values); }
@@ -99,11 +104,12 @@ class GltfReader {
   };
   struct Buffer {
     bool loaded = false;
-    std::vector<std::byte> owned;
+    std::vector<std::byte> decoded;  // out of a data URI
     std::span<const std::byte> bytes;
   };
 
   Result<Layout> layout_of(const Json& accessor, const std::string& place) const;
+  Result<std::span<const std::byte>> file_beside(const std::string& place, const std::string& uri);
   Result<std::span<const std::byte>> buffer(std::size_t index, const std::string& place);
   // What `range` has of its buffer: a bufferView, or the extension that compresses one.
   Result<std::span<const std::byte>> bytes_of(const Json& range, const std::string& place);
@@ -119,6 +125,8 @@ class GltfReader {
   const Source& source_;
   const GltfDocument& document_;
   std::vector<Buffer> buffers_;
+  std::map<std::string, std::vector<std::byte>> files_;  // by uri
+  std::optional<std::size_t> input_bytes_;
   std::map<std::size_t, std::vector<std::byte>> decoded_views_;  // those that are compressed
   std::map<std::size_t, Floats> given_floats_;
   std::map<std::size_t, std::vector<std::uint32_t>> given_indices_;

@@ -358,9 +358,9 @@ class MeshBuilder {
   }
 
   // Nodes share meshes and primitives share accessors, so a small file can ask for any amount of
-  // memory. A thousand times its size is more than instancing needs.
-  std::size_t most_values() const {
-    return std::min<std::size_t>((std::size_t(1) << 20) + 1000 * source_.bytes.size(),
+  // memory. A thousand times what there is to read is more than instancing needs.
+  std::size_t most_values() {
+    return std::min<std::size_t>((std::size_t(1) << 20) + 1000 * reader_.input_bytes(),
                                  std::size_t(1) << 28);
   }
   bool within_limit(std::size_t instance_count, std::size_t vertex_count, std::size_t run) {

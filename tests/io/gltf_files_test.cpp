@@ -107,6 +107,42 @@ TEST_CASE("glTF: buffers come from beside the file and from nowhere else") {
   std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("glTF: what a file may ask for grows with its buffers, beside it as inside") {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("crease_gltf_size_" + std::to_string(std::rand()));
+  std::filesystem::create_directories(folder);
+  const auto import_beside = [&](const GltfBuilder& b, const std::string& gltf) {
+    std::ofstream(folder / "model.bin", std::ios::binary) << b.binary();
+    std::ofstream(folder / "model.gltf", std::ios::binary) << gltf;
+    return import_mesh(folder / "model.gltf", {});
+  };
+  // 700,000 triangles are more than 1000 of each byte of the JSON.
+  GltfBuilder b = one_triangle();
+  std::vector<std::uint8_t> indices(2'100'000);
+  for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint8_t>(i % 3);
+  b.json["meshes"][0]["primitives"][0]["indices"] = b.add(indices, "SCALAR");
+  for (const std::string& gltf : {b.gltf(), b.gltf_beside("model.bin")}) {
+    const Result<Imported> in = import_beside(b, gltf);
+    REQUIRE_MESSAGE(in.ok(), (in.ok() ? "" : in.failure().message));
+    CHECK(in->mesh.triangle_count() == 700'000);
+  }
+
+  GltfBuilder zeros = one_triangle();
+  zeros.add_view(std::vector<char>(10'000));
+  const auto ask_for = [&](std::size_t count) {
+    zeros.json["accessors"][0] = {{"componentType", 5126}, {"count", count}, {"type", "VEC3"}};
+    nlohmann::json gltf = nlohmann::json::parse(zeros.gltf_beside("model.bin"));
+    for (std::size_t i = 1; i < 100; ++i) gltf["buffers"][i] = gltf["buffers"][0];
+    return import_beside(zeros, gltf.dump());
+  };
+  const Result<Imported> no_area = ask_for(600'000), refused = ask_for(2'000'000);
+  REQUIRE_FALSE(no_area.ok());
+  CHECK(no_area.failure().error == Error::NoTriangles);
+  REQUIRE_FALSE(refused.ok());  // a file counts once
+  CHECK(refused.failure().message.find("values without data") != std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
 // Counts from the table of an independent checker (README beside the models), who joins what is
 // equal to the bit.
 TEST_CASE("glTF: real models have the counts of the independent table") {
