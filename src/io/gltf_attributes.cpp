@@ -163,7 +163,16 @@ Status GltfLayers::add(GltfReader& reader, const Json& attributes, const std::st
   return Done{};
 }
 
+// Textures are painted by the first layer of texture coordinates.
+void GltfLayers::put_first_set_first() {
+  const auto first = std::ranges::find(layers_, AttributeRole::TexCoord,
+                                       [](const Layer& layer) { return layer.raw.role; });
+  const auto set_0 = std::ranges::find(layers_, "TEXCOORD_0", &Layer::semantic);
+  if (set_0 != layers_.end()) std::rotate(first, set_0, set_0 + 1);
+}
+
 void GltfLayers::finish(RawMesh& raw) {
+  put_first_set_first();
   for (Layer& layer : layers_) {
     if (!layer.missing.empty()) {
       std::vector<bool> has_value(vertex_count_, true);

@@ -29,7 +29,7 @@ class GltfLayers {
 
   // Reads every attribute of a primitive but POSITION and appends its values once for each
   // transform. The texture coordinates that `use` names become set 0, transformed, and set 0 takes
-  // their place.
+  // their place. Set 0 is the first in the end, whatever was met first.
   Status add(GltfReader& reader, const Json& attributes, const std::string& place,
              std::size_t vertex_count, const std::vector<Transform>& transforms,
              const TextureUse& use);
@@ -52,6 +52,7 @@ class GltfLayers {
   void append(Layer& layer, const GltfReader::Floats& values,
               const std::vector<Transform>& transforms);
   void append_missing(Layer& layer, std::size_t count);
+  void put_first_set_first();
 
   const Source& source_;
   std::vector<Layer> layers_;

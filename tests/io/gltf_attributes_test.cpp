@@ -110,6 +110,45 @@ TEST_CASE("glTF: further sets and attributes of one's own are carried") {
   CHECK(has_note(imported.report, "TANGENT"));
 }
 
+TEST_CASE("glTF: the texture coordinates that textures use are the first, wherever they are met") {
+  const auto uv_layers = [](const GltfBuilder& b) {
+    std::vector<std::string> names;
+    for (const AttributeLayer& layer : import_text(b.gltf(), "a.gltf").mesh.layers) {
+      if (layer.role == AttributeRole::TexCoord) names.push_back(layer.name);
+    }
+    return names;
+  };
+  GltfBuilder b = one_triangle();
+  Json& primitive = b.json["meshes"][0]["primitives"][0];
+  for (std::size_t set = 0; set < 3; ++set) {
+    const float s = float(set);
+    primitive["attributes"]["TEXCOORD_" + std::to_string(set)] =
+        b.add<float>({s, 0, s, 0, s, 0}, "VEC2");
+  }
+  primitive["material"] = 0;
+  b.json["textures"] = {{{"source", 0}}};
+  b.json["images"] = {{{"uri", "brick.png"}}};
+  Json& texture = b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  texture = {{"index", 0}};
+  for (std::size_t set = 0; set < 3; ++set) {
+    CAPTURE(set);
+    texture["texCoord"] = set;
+    CHECK(uv_layers(b).size() == 3);
+    CHECK(uv_layers(b)[0] == "uv");
+    const Mesh mesh = import_text(b.gltf(), "a.gltf").mesh;
+    CHECK(value_at(mesh, "uv", 0, 0)[0] == float(set));
+    if (set > 0) CHECK(value_at(mesh, "uv" + std::to_string(set), 0, 0)[0] == 0);
+  }
+  // One without a texture comes before, and has another set alone.
+  GltfBuilder two = one_triangle();
+  two.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
+      two.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
+  CHECK(uv_layers(two) == std::vector<std::string>{"uv1"});
+  two.primitive({{"POSITION", two.add<float>({0, 0, 1, 1, 0, 1, 0, 1, 1}, "VEC3")},
+                 {"TEXCOORD_0", two.add<float>({0, 0, 1, 0, 0, 1}, "VEC2")}});
+  CHECK(uv_layers(two) == std::vector<std::string>{"uv", "uv1"});
+}
+
 TEST_CASE("glTF: primitives need not have the same attributes") {
   GltfBuilder b;
   const std::vector<float> above = {0, 0, 1, 1, 0, 1, 0, 1, 1};
