@@ -4,6 +4,7 @@
 #include "io/layer_fill.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace crease {
@@ -22,6 +23,10 @@ bool is_set_of(const std::string& semantic, std::string_view kind, std::string& 
 // Feature ids are numbers that stand for things; blending two of them means nothing.
 bool is_id(const std::string& semantic) {
   return semantic == "_BATCHID" || semantic.starts_with("_FEATURE_ID");
+}
+
+bool is_of_skin(const std::string& semantic) {
+  return semantic.starts_with("JOINTS_") || semantic.starts_with("WEIGHTS_");
 }
 
 RawLayer make_layer(const std::string& semantic, std::size_t dimension, bool integers) {
@@ -88,11 +93,11 @@ void GltfLayers::append_missing(Layer& layer, std::size_t count) {
 }
 
 void GltfLayers::append(Layer& layer, const GltfReader::Floats& floats,
-                        const std::vector<Transform>& transforms) {
+                        const std::vector<Placement>& placements) {
   std::vector<float>& out = layer.raw.values;
   const std::size_t count = floats.count(), dimension = layer.raw.dimension;
   layer.rounded.add(floats.rounded);
-  for (const Transform& transform : transforms) {
+  for (const Placement& placement : placements) {
     const std::size_t begin = out.size();
     out.resize(begin + count * dimension, fill_of(layer.raw.role));
     for (std::size_t i = 0; i < count; ++i) {
@@ -107,24 +112,32 @@ void GltfLayers::append(Layer& layer, const GltfReader::Floats& floats,
     if (layer.raw.role == AttributeRole::TexCoord) {
       for (std::size_t i = begin + 1; i < out.size(); i += 2) out[i] = 1.0f - out[i];  // v up
     }
-    // Normals that keep their direction keep their bits.
-    if (layer.raw.role != AttributeRole::Normal || transform.only_scales()) continue;
-    const Transform of_normals = transform.of_normals();
-    for (std::size_t i = begin; i < out.size(); i += 3) {
-      const Vec3d stored{out[i], out[i + 1], out[i + 2]};
-      const Vec3d turned = normalized(of_normals.direction(stored));
-      for (std::size_t k = 0; k < 3; ++k) out[i + k] = float(turned[static_cast<int>(k)]);
+    if (layer.raw.role != AttributeRole::Normal) continue;
+    Transform of_normals;
+    bool keeps_direction = false;
+    for (std::size_t v = 0; v < count; ++v) {
+      if (v == 0 || placement.has_joints()) {
+        const Transform transform = placement.of(v);
+        of_normals = transform.of_normals();
+        keeps_direction = transform.only_scales();
+      }
+      if (keeps_direction) continue;  // and its bits
+      float* n = &out[begin + 3 * v];
+      const Vec3d turned = normalized(of_normals.direction({n[0], n[1], n[2]}));
+      for (std::size_t k = 0; k < 3; ++k) n[k] = float(turned[static_cast<int>(k)]);
     }
   }
 }
 
 Status GltfLayers::add(GltfReader& reader, const Json& attributes, const std::string& place,
-                       std::size_t vertex_count, const std::vector<Transform>& transforms,
+                       std::size_t vertex_count, const std::vector<Placement>& placements,
                        const TextureUse& use) {
-  const std::size_t total = vertex_count * transforms.size();
+  const std::size_t total = vertex_count * placements.size();
   std::vector<bool> present(layers_.size(), false);
+  const bool has_joints =
+      std::any_of(placements.begin(), placements.end(), std::mem_fn(&Placement::has_joints));
   for (const auto& [semantic, accessor] : attributes.items()) {
-    if (semantic == "POSITION") continue;
+    if (semantic == "POSITION" || (has_joints && is_of_skin(semantic))) continue;
     std::string suffix;
     std::size_t low = 1, high = 4;
     if (semantic == "NORMAL")
@@ -152,7 +165,7 @@ Status GltfLayers::add(GltfReader& reader, const Json& attributes, const std::st
       ++ignored_[semantic];
       continue;
     }
-    append(*layer, *floats, transforms);
+    append(*layer, *floats, placements);
     present.resize(layers_.size(), false);
     present[static_cast<std::size_t>(layer - layers_.data())] = true;
   }

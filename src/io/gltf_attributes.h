@@ -11,7 +11,7 @@
 #include "crease/result.h"
 #include "io/gltf_document.h"
 #include "io/gltf_images.h"
-#include "io/gltf_scene.h"
+#include "io/gltf_skin.h"
 #include "io/raw_mesh.h"
 
 #include <cstddef>
@@ -27,11 +27,12 @@ class GltfLayers {
  public:
   explicit GltfLayers(const Source& source) : source_(source) {}
 
-  // Reads every attribute of a primitive but POSITION and appends its values once for each
-  // transform. The texture coordinates that `use` names become set 0, transformed, and set 0 takes
-  // their place. Set 0 is the first in the end, whatever was met first.
+  // Reads every attribute of a primitive but POSITION and, where there are joints, those of its
+  // skin, and appends its values once for each placement. The texture coordinates that `use` names
+  // become set 0, transformed, and set 0 takes their place. Set 0 is the first in the end, whatever
+  // was met first.
   Status add(GltfReader& reader, const Json& attributes, const std::string& place,
-             std::size_t vertex_count, const std::vector<Transform>& transforms,
+             std::size_t vertex_count, const std::vector<Placement>& placements,
              const TextureUse& use);
 
   // Moves the layers and notes into `raw`, whose triangles are complete.
@@ -50,7 +51,7 @@ class GltfLayers {
 
   Layer* layer_of(const std::string& semantic, std::size_t dimension, bool integers);
   void append(Layer& layer, const GltfReader::Floats& values,
-              const std::vector<Transform>& transforms);
+              const std::vector<Placement>& placements);
   void append_missing(Layer& layer, std::size_t count);
   void put_first_set_first();
 

@@ -47,6 +47,43 @@ Result<Transform> local_transform(const Source& source, const Json& node,
   return transform_of_trs(t, q, s);
 }
 
+// The last node that has it for a child, of each node.
+std::vector<std::optional<std::size_t>> parents_of(const Json& nodes) {
+  std::vector<std::optional<std::size_t>> parents(size_of(nodes));
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    const Json& children = at(nodes[i], "children");
+    for (std::size_t c = 0; c < size_of(children); ++c) {
+      const auto child = as_index(children[c]);
+      if (child && *child < parents.size()) parents[*child] = i;
+    }
+  }
+  return parents;
+}
+
+// Joints may stand beside the scene. What is broken there, or in a loop, stands nowhere.
+void place_others(const Source& source, const Json& nodes,
+                  std::vector<std::optional<Transform>>& to_world_of_node) {
+  const std::vector<std::optional<std::size_t>> parents = parents_of(nodes);
+  std::vector<bool> is_tried(parents.size(), false);
+  std::vector<std::size_t> upwards;  // from a node to below one that is settled
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    upwards.clear();
+    std::optional<std::size_t> above = i;
+    for (; above && !is_tried[*above] && !to_world_of_node[*above]; above = parents[*above]) {
+      is_tried[*above] = true;
+      upwards.push_back(*above);
+    }
+    std::optional<Transform> parent = above ? to_world_of_node[*above] : Transform{};
+    for (; parent && !upwards.empty(); upwards.pop_back()) {
+      const std::size_t node = upwards.back();
+      const Result<Transform> local = local_transform(source, nodes[node], place_of("nodes", node));
+      if (!local.ok()) break;
+      parent = parent->after(*local);
+      to_world_of_node[node] = parent;
+    }
+  }
+}
+
 // The nodes to begin with, and the place that names them.
 std::pair<std::vector<Json>, std::string> root_nodes(const Json& json) {
   const Json& scenes = at(json, "scenes");
@@ -58,17 +95,10 @@ std::pair<std::vector<Json>, std::string> root_nodes(const Json& json) {
     return {std::move(roots), place_of("scenes", scene) + ".nodes"};
   }
   const Json& nodes = at(json, "nodes");
-  std::vector<bool> has_parent(size_of(nodes), false);
-  for (std::size_t i = 0; i < size_of(nodes); ++i) {
-    const Json& children = at(nodes[i], "children");
-    for (std::size_t c = 0; c < size_of(children); ++c) {
-      const auto child = as_index(children[c]);
-      if (child && *child < has_parent.size()) has_parent[*child] = true;
-    }
-  }
+  const std::vector<std::optional<std::size_t>> parents = parents_of(nodes);
   std::vector<Json> roots;
-  for (std::size_t i = 0; i < has_parent.size(); ++i) {
-    if (!has_parent[i]) roots.push_back(i);
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    if (!parents[i]) roots.push_back(i);
   }
   return {std::move(roots), "nodes"};
 }
@@ -200,9 +230,8 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
     if (!pushed.ok()) return pushed.failure();
   }
   if (skinned > 0) {
-    scene.notes.push_back(
-        std::to_string(skinned) +
-        " skinned meshes taken as their first joint moves them, without the others");
+    place_others(source, nodes, scene.to_world_of_node);
+    scene.notes.push_back(std::to_string(skinned) + " skinned meshes taken as their joints stand");
   }
   if (hidden > 0) {
     scene.notes.push_back(std::to_string(hidden) +

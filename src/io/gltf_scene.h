@@ -53,7 +53,8 @@ struct MeshInstance {
 
 struct GltfScene {
   std::vector<MeshInstance> instances;  // in the order of the graph, parents first
-  std::vector<std::optional<Transform>> to_world_of_node;  // of those in the scene
+  // Of those in the scene, and of all others where there are skins.
+  std::vector<std::optional<Transform>> to_world_of_node;
   std::vector<std::string> notes;
 };
 

@@ -7,6 +7,7 @@
 #include "io/gltf_instancing.h"
 #include "io/gltf_materials.h"
 #include "io/gltf_scene.h"
+#include "io/gltf_skin.h"
 #include "io/text.h"
 
 #include <algorithm>
@@ -87,7 +88,8 @@ class MeshBuilder {
         json_(document.json),
         center_(document.center),
         reader_(source, document),
-        layers_(source) {}
+        layers_(source),
+        skins_(document.json, reader_) {}
 
   Result<RawMesh> build() {
     Result<GltfScene> scene = walk_scene(source_, json_);
@@ -109,10 +111,10 @@ class MeshBuilder {
     std::vector<std::map<Weights, std::vector<Instance>>> instances_of_mesh(size_of(meshes));
     for (const MeshInstance& instance : scene->instances) {
       const auto part = static_cast<PartId>(raw_.parts.size());
-      const Transform to_world =
-          instance.skin ? of_skin(*instance.skin, *scene) : instance.to_world;
+      Instance whole{part, instance.to_world};
+      if (instance.skin) whole = {part, {}, &skins_.joints_of(*instance.skin, *scene)};
       std::vector<Instance>& instances = instances_of_mesh[instance.mesh][instance.weights];
-      const Status placed = place(instance, part, to_world, instances);
+      const Status placed = place(instance, whole, instances);
       if (!placed.ok()) return placed.failure();
       if (has_parts) raw_.parts.push_back(instance.name);
     }
@@ -143,13 +145,14 @@ class MeshBuilder {
   struct Instance {
     PartId part{};
     Transform to_world;
+    const std::vector<Transform>* joints = nullptr;  // of a skin, after that
   };
 
   // Once, or as often as its node's EXT_mesh_gpu_instancing says.
-  Status place(const MeshInstance& instance, PartId part, const Transform& to_world,
+  Status place(const MeshInstance& instance, const Instance& whole,
                std::vector<Instance>& instances) {
     if (!instance.instanced_node) {
-      instances.push_back({part, to_world});
+      instances.push_back(whole);
       return Done{};
     }
     constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
@@ -161,29 +164,34 @@ class MeshBuilder {
     if (!transforms.ok()) return transforms.failure();
     instanced_ += transforms->size();
     for (const Transform& transform : *transforms) {
-      instances.push_back({part, to_world.after(transform)});
+      instances.push_back({whole.part, whole.to_world.after(transform), whole.joints});
     }
     return Done{};
   }
 
-  // What moves the vertices of a skinned mesh, instead of its node: in the pose that it was bound
-  // in all joints do so alike. The first stands for them. A skin that is broken moves nothing.
-  Transform of_skin(std::size_t index, const GltfScene& scene) {
-    const auto [known, is_new] = of_skin_.try_emplace(index);
-    if (is_new) known->second = read_skin(index, scene);
-    return known->second;
-  }
-  Transform read_skin(std::size_t index, const GltfScene& scene) {
-    const Json& skin = at(at(json_, "skins"), index);
-    const auto joint = as_index(at(at(skin, "joints"), std::size_t(0)));
-    if (!joint || *joint >= scene.to_world_of_node.size()) return {};
-    const std::optional<Transform>& to_world = scene.to_world_of_node[*joint];
-    if (!to_world) return {};
-    const Json& stored = at(skin, "inverseBindMatrices");
-    if (stored.is_null()) return *to_world;
-    const auto to_joint = reader_.floats(stored, 16, 16, "inverseBindMatrices");
-    if (!to_joint.ok() || to_joint->count() == 0) return {};
-    return to_world->after(transform_of(to_joint->values.data()));
+  // `weights`, which the placements refer to, are those of the primitive.
+  Result<std::vector<Placement>> placements_of(const std::vector<Instance>& instances,
+                                               const Json& attributes, const std::string& place,
+                                               std::size_t vertex_count, JointWeights& weights) {
+    std::vector<Placement> placements;
+    bool is_read = false;
+    for (const Instance& instance : instances) {
+      if (instance.joints == nullptr) {
+        placements.emplace_back(instance.to_world);
+        continue;
+      }
+      if (!is_read) {
+        auto read = read_joint_weights(source_, reader_, attributes, place, vertex_count);
+        if (!read.ok()) return read.failure();
+        weights = *std::move(read);
+        is_read = true;
+        if (weights.empty()) ++unweighted_primitives_;
+      }
+      const Status in_skin = check_joints(source_, weights, instance.joints->size(), place);
+      if (!in_skin.ok()) return in_skin.failure();
+      placements.emplace_back(instance.to_world, *instance.joints, weights);
+    }
+    return placements;
   }
 
   // `instances` have these weights.
@@ -230,35 +238,53 @@ class MeshBuilder {
                            "instances and shared accessors multiply the file beyond reason");
     }
 
+    JointWeights joint_weights;
+    const auto placements =
+        placements_of(instances, attributes, attributes_place, vertex_count, joint_weights);
+    if (!placements.ok()) return placements.failure();
+
     const std::size_t first_vertex = raw_.positions.size();
     const std::size_t first_triangle = raw_.triangles.size();
-    std::vector<Transform> transforms;
-    for (const Instance& instance : instances) {
-      transforms.push_back(instance.to_world);
+    for (std::size_t i = 0; i < instances.size(); ++i) {
       const auto base = static_cast<std::uint32_t>(raw_.positions.size());
-      for (std::size_t v = 0; v < vertex_count; ++v) {
-        const float* stored = &positions->values[3 * v];
-        const Vec3d p = instance.to_world.point({stored[0], stored[1], stored[2]}) + center_;
-        if (!is_position(p)) {
-          return fail_at_place(Error::BadValue, source_, place_of(position_place, v),
-                               std::string("position is ") + fault_of(p));
-        }
-        raw_.positions.push_back(p);
-      }
-      const bool mirrored = instance.to_world.determinant() < 0;
-      const auto vertex = [&](std::size_t i) {
-        return base + (indexed ? indices[i] : static_cast<std::uint32_t>(i));
+      const auto mirrored = add_positions(*positions, (*placements)[i], position_place);
+      if (!mirrored.ok()) return mirrored.failure();
+      const auto vertex = [&](std::size_t c) {
+        return base + (indexed ? indices[c] : static_cast<std::uint32_t>(c));
       };
-      add_triangles(static_cast<Mode>(mode), run, mirrored, vertex, raw_.triangles);
-      raw_.part_of_triangle.resize(raw_.triangles.size(), instance.part);
+      add_triangles(static_cast<Mode>(mode), run, *mirrored, vertex, raw_.triangles);
+      raw_.part_of_triangle.resize(raw_.triangles.size(), instances[i].part);
     }
     if (raw_.positions.size() == first_vertex) return Done{};
     const auto material = as_index(at(primitive, "material"));
     const Json& entry = at(at(json_, "materials"), material.value_or(std::size_t(-1)));
-    Status added = layers_.add(reader_, attributes, attributes_place, vertex_count, transforms,
+    Status added = layers_.add(reader_, attributes, attributes_place, vertex_count, *placements,
                                texture_use(base_color_texture(entry)));
     if (!added.ok()) return added;
     return add_material(primitive, place, raw_.triangles.size() - first_triangle);
+  }
+
+  // True if the placement mirrors: if most vertices are, as a primitive has one winding (3.7.4).
+  Result<bool> add_positions(const GltfReader::Floats& positions, const Placement& placement,
+                             const std::string& place) {
+    Transform to_world;
+    bool is_mirrored = false;
+    std::size_t mirrored_count = 0;
+    for (std::size_t v = 0; v < positions.count(); ++v) {
+      const float* stored = &positions.values[3 * v];
+      if (v == 0 || placement.has_joints()) {
+        to_world = placement.of(v);
+        is_mirrored = to_world.determinant() < 0;
+      }
+      const Vec3d p = to_world.point({stored[0], stored[1], stored[2]}) + center_;
+      if (!is_position(p)) {
+        return fail_at_place(Error::BadValue, source_, place_of(place, v),
+                             std::string("position is ") + fault_of(p));
+      }
+      raw_.positions.push_back(p);
+      if (is_mirrored) ++mirrored_count;
+    }
+    return 2 * mirrored_count > positions.count();
   }
 
   // What KHR_draco_mesh_compression holds of a primitive takes the place of its accessors' values,
@@ -385,6 +411,11 @@ class MeshBuilder {
     note(point_and_line_primitives_, "primitives of points or lines ignored");
     note(morphed_primitives_,
          "primitives with morph targets taken as their weights are, at rest without");
+    note(unweighted_primitives_,
+         "primitives without JOINTS_0 and WEIGHTS_0 taken as the first joint of their skin moves "
+         "them");
+    note(skins_.broken_joints(),
+         "joints of skins move nothing: there is no such node, or no inverse bind matrix");
     note(odd_runs_, "primitives whose index count is no multiple of three; the rest is ignored");
     note(size_of(at(json_, "animations")), "animations ignored");
     note(size_of(at(json_, "cameras")), "cameras ignored");
@@ -402,11 +433,12 @@ class MeshBuilder {
   Vec3d center_;
   GltfReader reader_;
   GltfLayers layers_;
+  GltfSkins skins_;
   RawMesh raw_;
-  std::map<std::size_t, Transform> of_skin_;
   std::vector<std::uint32_t> material_of_triangle_;
   std::size_t work_ = 0, instanced_ = 0;
   std::size_t point_and_line_primitives_ = 0, morphed_primitives_ = 0, odd_runs_ = 0;
+  std::size_t unweighted_primitives_ = 0;
 };
 
 }  // namespace

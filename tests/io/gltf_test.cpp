@@ -212,25 +212,6 @@ TEST_CASE("glTF: what is not taken is told") {
   }
 }
 
-TEST_CASE("glTF: a skinned mesh stands where its joints put it, not its node") {
-  GltfBuilder b = triangle_at_a_node();
-  b.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {100, 0, 0}}},
-                     {{"children", {2}}, {"translation", {0, 3, 0}}},
-                     {{"translation", {0, 0, 5}}}};
-  b.json["scenes"] = {{{"nodes", {0, 1}}}};
-  b.json["skins"] = {{{"joints", {2, 1}}}};
-  const Imported in = import_text(b.gltf(), "a.gltf");
-  CHECK(corner(in.mesh, 0, 0) == Vec3d{0, 3, 5});
-  CHECK(has_note(in.report, "1 skinned meshes taken as their first joint moves them"));
-  // Bound where the joint is: all is as stored.
-  std::vector<float> bound = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -3, -5, 1};
-  b.json["skins"][0]["inverseBindMatrices"] = b.add_accessor(
-      {{"bufferView", b.add_view(bound)}, {"componentType", 5126}, {"count", 1}, {"type", "MAT4"}});
-  CHECK(corner(import_text(b.gltf(), "a.gltf").mesh, 0, 0) == Vec3d{0, 0, 0});
-  b.json["skins"][0]["joints"] = {9};
-  CHECK(corner(import_text(b.gltf(), "a.gltf").mesh, 0, 0) == Vec3d{0, 0, 0});
-}
-
 TEST_CASE("glTF: morph targets are taken by the mesh's weights, or the node's") {
   GltfBuilder b = triangle_at_a_node();
   const auto normals = b.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
