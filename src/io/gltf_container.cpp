@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -70,6 +71,31 @@ Result<GltfDocument> open_glb(const Source& source, std::span<const std::byte> g
   return document;
 }
 
+// RTC_CENTER of a feature table: three numbers, or where three floats are in its binary part, which
+// the bytes from `begin` to `end` are.
+Result<Vec3d> tile_center(const Source& source, const Json& stored, std::size_t begin,
+                          std::size_t end) {
+  if (stored.is_null()) return Vec3d{};
+  if (const auto center = as_vector(stored)) return *center;
+  constexpr std::size_t kBytes = 12;
+  const auto offset = as_index(at(stored, "byteOffset"));
+  if (!offset) {
+    return fail_at_place(Error::BadFormat, source, "RTC_CENTER",
+                         "neither three numbers nor where they are");
+  }
+  if (end - begin < kBytes || *offset > end - begin - kBytes) {
+    return fail_at_place(Error::BadValue, source, "RTC_CENTER.byteOffset",
+                         std::to_string(*offset) + " of " + std::to_string(end - begin) +
+                             " bytes does not leave three floats");
+  }
+  Vec3d center;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t at = begin + *offset + 4 * static_cast<std::size_t>(k);
+    center[k] = static_cast<double>(std::bit_cast<float>(u32_at(source.bytes, at)));
+  }
+  return center;
+}
+
 // 3D Tiles 1.0, Batched 3D Model: a header of 28 bytes and four tables before a GLB.
 Result<GltfDocument> open_b3dm(const Source& source) {
   constexpr std::size_t kHeader = 28;
@@ -93,13 +119,15 @@ Result<GltfDocument> open_b3dm(const Source& source) {
   document->format = "b3dm";
   const std::size_t features_length = u32_at(bytes, 12);
   if (features_length > 0) {
-    const auto features = bytes.subspan(kHeader, std::min(features_length, glb_offset - kHeader));
-    Result<Json> table = parse_json(source, characters(features), kHeader);
+    Result<Json> table =
+        parse_json(source, characters(bytes.subspan(kHeader, features_length)), kHeader);
     if (!table.ok()) return table.failure();
+    const std::size_t begin = kHeader + features_length;
+    const Result<Vec3d> center =
+        tile_center(source, at(*table, "RTC_CENTER"), begin, begin + u32_at(bytes, 16));
+    if (!center.ok()) return center.failure();
     // Tiles are z-up, the glTF inside is y-up; positions stay y-up, so the centre is turned.
-    if (const auto center = as_vector(at(*table, "RTC_CENTER"))) {
-      document->center = {center->x, center->z, -center->y};
-    }
+    document->center = {center->x, center->z, -center->y};
   }
   return document;
 }

@@ -91,12 +91,16 @@ class GltfBuilder {
     return "glTF" + u32(2) + u32(28 + text.size() + binary.size()) + u32(text.size()) + "JSON" +
            text + u32(binary.size()) + std::string("BIN\0", 4) + binary;
   }
-  // 3D Tiles 1.0 around it; the feature table is JSON.
-  std::string b3dm(std::string features = "{\"BATCH_LENGTH\":0}") const {
+  // 3D Tiles 1.0 around it: JSON and binary part of the feature table, JSON of the batch table.
+  std::string b3dm(std::string features = "{\"BATCH_LENGTH\":0}", const std::string& binary = "",
+                   std::string batches = "") const {
     const std::string inside = glb();
     features.resize((features.size() + 3) / 4 * 4, ' ');
-    return "b3dm" + u32(1) + u32(28 + features.size() + inside.size()) + u32(features.size()) +
-           u32(0) + u32(0) + u32(0) + features + inside;
+    batches.resize((batches.size() + 3) / 4 * 4, ' ');
+    return "b3dm" + u32(1) +
+           u32(28 + features.size() + binary.size() + batches.size() + inside.size()) +
+           u32(features.size()) + u32(binary.size()) + u32(batches.size()) + u32(0) + features +
+           binary + batches + inside;
   }
 
  private:

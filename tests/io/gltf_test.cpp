@@ -306,4 +306,18 @@ TEST_CASE("b3dm: the centre of a tile is added, turned to y-up") {
   CHECK(corner(mesh, 0, 1) == Vec3d{101, 300, -200});
 }
 
+TEST_CASE("b3dm: the centre of a tile may be in the binary part of its table") {
+  const GltfBuilder b = one_triangle();
+  const float numbers[] = {0, 100, 200, 300};
+  const std::string binary(reinterpret_cast<const char*>(numbers), sizeof numbers);
+  const auto tile = [&](const std::string& center) {
+    return b.b3dm(R"({"BATCH_LENGTH":0,"RTC_CENTER":)" + center + "}", binary);
+  };
+  const Mesh mesh = import_text(tile(R"({"byteOffset":4})"), "t.b3dm").mesh;
+  CHECK(corner(mesh, 0, 1) == Vec3d{101, 300, -200});
+  CHECK(refusal_of(tile(R"({"byteOffset":8})"), "t.b3dm") ==
+        "t.b3dm: RTC_CENTER.byteOffset: 8 of 16 bytes does not leave three floats");
+  CHECK(refusal_of(tile("\"here\""), "t.b3dm").find("RTC_CENTER: neither") != std::string::npos);
+}
+
 }  // namespace crease
