@@ -96,6 +96,20 @@ Result<Vec3d> tile_center(const Source& source, const Json& stored, std::size_t 
   return center;
 }
 
+// What a batch table loses, whose JSON this is.
+void tell_batch_table(const Source& source, std::span<const std::byte> json,
+                      std::vector<std::string>& notes) {
+  if (json.empty()) return;
+  const Result<Json> table = parse_json(source, characters(json), 0);
+  if (!table.ok() || !table->is_object()) {
+    notes.push_back("a batch table that is no JSON object ignored");
+  } else if (!table->empty()) {
+    notes.push_back(std::to_string(table->size()) +
+                    " properties of the batch table ignored: batch ids are kept, what they stand "
+                    "for is not");
+  }
+}
+
 // 3D Tiles 1.0, Batched 3D Model: a header of 28 bytes and four tables before a GLB.
 Result<GltfDocument> open_b3dm(const Source& source) {
   constexpr std::size_t kHeader = 28;
@@ -117,14 +131,17 @@ Result<GltfDocument> open_b3dm(const Source& source) {
   Result<GltfDocument> document = open_glb(source, glb);
   if (!document.ok()) return document;
   document->format = "b3dm";
-  const std::size_t features_length = u32_at(bytes, 12);
+  const std::size_t features_length = u32_at(bytes, 12), binary_length = u32_at(bytes, 16);
+  tell_batch_table(source,
+                   bytes.subspan(kHeader + features_length + binary_length, u32_at(bytes, 20)),
+                   document->notes);
   if (features_length > 0) {
     Result<Json> table =
         parse_json(source, characters(bytes.subspan(kHeader, features_length)), kHeader);
     if (!table.ok()) return table.failure();
     const std::size_t begin = kHeader + features_length;
     const Result<Vec3d> center =
-        tile_center(source, at(*table, "RTC_CENTER"), begin, begin + u32_at(bytes, 16));
+        tile_center(source, at(*table, "RTC_CENTER"), begin, begin + binary_length);
     if (!center.ok()) return center.failure();
     // Tiles are z-up, the glTF inside is y-up; positions stay y-up, so the centre is turned.
     document->center = {center->x, center->z, -center->y};

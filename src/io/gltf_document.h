@@ -30,6 +30,7 @@ struct GltfDocument {
   // Added to every position: RTC_CENTER of a b3dm or CESIUM_RTC, turned to y-up.
   Vec3d center;
   std::string format;  // "glTF", "GLB" or "b3dm"
+  std::vector<std::string> notes;
 };
 
 // Told by the first bytes. The document keeps views into the source's bytes.

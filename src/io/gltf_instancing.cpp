@@ -1,5 +1,6 @@
 #include "io/gltf_instancing.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -7,7 +8,8 @@ namespace crease {
 
 Result<std::vector<Transform>> read_instancing(const Source& source, const Json& extension,
                                                GltfReader& reader, std::size_t most,
-                                               const std::string& place) {
+                                               const std::string& place,
+                                               std::map<std::string, std::size_t>& ignored) {
   struct Attribute {
     const char* name;
     std::size_t components;
@@ -38,6 +40,10 @@ Result<std::vector<Transform>> read_instancing(const Source& source, const Json&
   if (*count > most) {
     return fail_at_place(Error::OverLimit, source, place,
                          "instances multiply the file beyond reason");
+  }
+  for (auto it = stored.begin(); it != stored.end(); ++it) {
+    const auto is_it = [&](const Attribute& attribute) { return it.key() == attribute.name; };
+    if (std::none_of(attributes.begin(), attributes.end(), is_it)) ++ignored[it.key()];
   }
   std::vector<Transform> transforms;
   for (std::size_t i = 0; i < *count; ++i) {

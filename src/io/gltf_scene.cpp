@@ -1,5 +1,6 @@
 #include "io/gltf_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -101,6 +102,25 @@ std::pair<std::vector<Json>, std::string> root_nodes(const Json& json) {
     if (!parents[i]) roots.push_back(i);
   }
   return {std::move(roots), "nodes"};
+}
+
+// Meshes that are not in the scene, of which `reached` are the nodes.
+void tell_left_out(const Json& json, const std::vector<bool>& reached,
+                   std::vector<std::string>& notes) {
+  const Json& nodes = at(json, "nodes");
+  std::vector<bool> has_node(size_of(at(json, "meshes")), false);
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const auto mesh = as_index(at(nodes[i], "mesh"));
+    if (!mesh || *mesh >= has_node.size()) continue;
+    has_node[*mesh] = true;
+    if (!reached[i]) ++left_out;
+  }
+  if (left_out > 0) {
+    notes.push_back(std::to_string(left_out) + " nodes with meshes left out: not in the scene");
+  }
+  const auto unused = std::count(has_node.begin(), has_node.end(), false);
+  if (unused > 0) notes.push_back(std::to_string(unused) + " meshes left out: no node has them");
 }
 
 std::vector<double> weights_of(const Json& mesh, const Json& node) {
@@ -229,6 +249,7 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
     Status pushed = push_all(children, size_of(children), place + ".children", to_world, is_hidden);
     if (!pushed.ok()) return pushed.failure();
   }
+  tell_left_out(json, reached, scene.notes);
   if (skinned > 0) {
     place_others(source, nodes, scene.to_world_of_node);
     scene.notes.push_back(std::to_string(skinned) + " skinned meshes taken as their joints stand");

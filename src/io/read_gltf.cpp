@@ -89,12 +89,14 @@ class MeshBuilder {
         center_(document.center),
         reader_(source, document),
         layers_(source),
-        skins_(document.json, reader_) {}
+        skins_(document.json, reader_) {
+    raw_.report.notes = document.notes;
+  }
 
   Result<RawMesh> build() {
     Result<GltfScene> scene = walk_scene(source_, json_);
     if (!scene.ok()) return scene.failure();
-    raw_.report.notes = std::move(scene->notes);
+    std::ranges::copy(scene->notes, std::back_inserter(raw_.report.notes));
     GltfImages images(source_, json_, reader_);
     GltfMaterials materials = read_gltf_materials(json_, images);
     raw_.materials = std::move(materials.materials);
@@ -159,8 +161,9 @@ class MeshBuilder {
     const Json& node = at(at(json_, "nodes"), *instance.instanced_node);
     const std::string here =
         place_of("nodes", *instance.instanced_node) + ".extensions." + kInstancing;
-    const auto transforms = read_instancing(source_, at(at(node, "extensions"), kInstancing),
-                                            reader_, most_values() - instanced_, here);
+    const auto transforms =
+        read_instancing(source_, at(at(node, "extensions"), kInstancing), reader_,
+                        most_values() - instanced_, here, ignored_of_instances_);
     if (!transforms.ok()) return transforms.failure();
     instanced_ += transforms->size();
     for (const Transform& transform : *transforms) {
@@ -405,7 +408,7 @@ class MeshBuilder {
   }
 
   void add_notes() {
-    const auto note = [&](std::size_t count, const char* what) {
+    const auto note = [&](std::size_t count, const std::string& what) {
       if (count > 0) raw_.report.notes.push_back(std::to_string(count) + " " + what);
     };
     note(point_and_line_primitives_, "primitives of points or lines ignored");
@@ -419,6 +422,9 @@ class MeshBuilder {
     note(odd_runs_, "primitives whose index count is no multiple of three; the rest is ignored");
     note(size_of(at(json_, "animations")), "animations ignored");
     note(size_of(at(json_, "cameras")), "cameras ignored");
+    for (const auto& [name, count] : ignored_of_instances_) {
+      note(count, "nodes have instances whose " + in_quotes(name) + " is ignored");
+    }
     const Json& extensions = at(json_, "extensions");
     note(size_of(at(at(extensions, "KHR_lights_punctual"), "lights")), "lights ignored");
     note(size_of(at(at(extensions, "KHR_materials_variants"), "variants")),
@@ -436,6 +442,7 @@ class MeshBuilder {
   GltfSkins skins_;
   RawMesh raw_;
   std::vector<std::uint32_t> material_of_triangle_;
+  std::map<std::string, std::size_t> ignored_of_instances_;  // attribute: nodes that have it
   std::size_t work_ = 0, instanced_ = 0;
   std::size_t point_and_line_primitives_ = 0, morphed_primitives_ = 0, odd_runs_ = 0;
   std::size_t unweighted_primitives_ = 0;

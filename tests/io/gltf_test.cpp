@@ -165,6 +165,10 @@ TEST_CASE("glTF: EXT_mesh_gpu_instancing puts a mesh at many places") {
   const Vec3d flipped = corner(in.mesh, 2, 2) - Vec3d{100, 0, 7};
   CHECK(flipped == Vec3d{2 * before[0], 2 * before[1], -2 * before[2]});
 
+  extension["attributes"]["_COLOR_0"] = b.add<float>({1, 0, 0, 0, 1, 0, 0, 0, 1}, "VEC3");
+  CHECK(import_text(b.gltf(), "a.gltf").report.notes ==
+        std::vector<std::string>{"1 nodes have instances whose '_COLOR_0' is ignored"});
+
   extension["attributes"]["SCALE"] = b.add<float>({1, 1, 1}, "VEC3");
   CHECK(refusal_of(b.gltf(), "a.gltf").ends_with("SCALE: not a value for every instance"));
   extension["attributes"] = {{"_ID", 0}};
@@ -196,6 +200,23 @@ TEST_CASE("glTF: what KHR_node_visibility hides is left out, and said") {
   CHECK(in.mesh.triangle_count() == 1);
   CHECK(in.mesh.parts == std::vector<std::string>{"seen"});
   CHECK(has_note(in.report, "1 nodes that KHR_node_visibility hides left out"));
+}
+
+TEST_CASE("glTF: what no node of the scene shows is left out, and said") {
+  GltfBuilder b = triangle_at_a_node();
+  CHECK(import_text(b.gltf(), "a.gltf").report.notes.empty());
+  b.json["nodes"].push_back({{"mesh", 0}, {"translation", {5, 0, 0}}});
+  b.json["scenes"].push_back({{"nodes", {1}}});
+  b.json["meshes"].push_back(b.json["meshes"][0]);
+  for (int scene = 0; scene < 2; ++scene) {
+    b.json["scene"] = scene;
+    const Imported in = import_text(b.gltf(), "a.gltf");
+    CHECK(corner(in.mesh, 0, 0) == Vec3d{5.0 * scene, 0, 0});
+    CHECK(in.mesh.triangle_count() == 1);
+    CHECK(in.report.notes ==
+          std::vector<std::string>{"1 nodes with meshes left out: not in the scene",
+                                   "1 meshes left out: no node has them"});
+  }
 }
 
 TEST_CASE("glTF: what is not taken is told") {
@@ -304,6 +325,19 @@ TEST_CASE("b3dm: the centre of a tile is added, turned to y-up") {
   const Mesh mesh =
       import_text(b.b3dm(R"({"BATCH_LENGTH":0,"RTC_CENTER":[100,200,300]})"), "t.b3dm").mesh;
   CHECK(corner(mesh, 0, 1) == Vec3d{101, 300, -200});
+}
+
+TEST_CASE("b3dm: what a batch table says is not kept, and said") {
+  const GltfBuilder b = one_triangle();
+  const auto notes = [&](const std::string& batches) {
+    return import_text(b.b3dm("{}", "", batches), "t.b3dm").report.notes;
+  };
+  CHECK(notes("").empty());
+  CHECK(notes("{}").empty());
+  CHECK(notes(R"({"name":["house"],"height":[3]})") ==
+        std::vector<std::string>{"2 properties of the batch table ignored: batch ids are kept, "
+                                 "what they stand for is not"});
+  CHECK(notes("name") == std::vector<std::string>{"a batch table that is no JSON object ignored"});
 }
 
 TEST_CASE("b3dm: the centre of a tile may be in the binary part of its table") {
