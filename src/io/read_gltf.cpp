@@ -60,6 +60,12 @@ Status check_required_extensions(const Source& source, const Json& json) {
 // 3.7.2.1: primitive.mode.
 enum class Mode : std::size_t { Triangles = 4, Strip = 5, Fan = 6 };
 
+// 3.7.2.2: what morph targets move, of what is kept.
+bool is_morphed(const std::string& semantic) {
+  return semantic == "POSITION" || semantic == "NORMAL" || semantic.starts_with("TEXCOORD_") ||
+         semantic.starts_with("COLOR_");
+}
+
 // Appends the triangles that a run of vertices makes. `vertex(i)` is the i-th.
 template <typename Vertex>
 void add_triangles(Mode mode, std::size_t count, bool mirrored, Vertex vertex,
@@ -327,22 +333,27 @@ class MeshBuilder {
   // 3.7.2.2: what the weights make of a primitive takes the place of its accessors' values.
   Status morph(const Json& primitive, const std::string& place, const Weights& weights) {
     const Json& targets = at(primitive, "targets");
+    const Json& attributes = at(primitive, "attributes");
     if (size_of(targets) > 0) ++morphed_primitives_;
-    for (const char* semantic : {"POSITION", "NORMAL"}) {
-      const Json& stored = at(at(primitive, "attributes"), semantic);
-      const auto accessor = as_index(stored);
+    std::vector<std::pair<std::size_t, GltfReader::Floats>> all_moved;
+    for (auto it = attributes.begin(); attributes.is_object() && it != attributes.end(); ++it) {
+      const std::string& semantic = it.key();
+      const auto accessor = as_index(it.value());
+      const std::size_t components = reader_.components_of(it.value());
+      if (!is_morphed(semantic) || components == 0) continue;
       std::optional<GltfReader::Floats> moved;
-      for (std::size_t k = 0; accessor && k < std::min(size_of(targets), weights.size()); ++k) {
-        const Json& target = at(targets[k], semantic);
+      for (std::size_t k = 0; k < std::min(size_of(targets), weights.size()); ++k) {
+        const Json& target = at(targets[k], semantic.c_str());
         if (weights[k] == 0 || target.is_null()) continue;
         if (!moved) {
-          auto base = reader_.floats(stored, 3, 3, place + ".attributes." + semantic);
+          auto base =
+              reader_.floats(it.value(), components, components, place + ".attributes." + semantic);
           if (!base.ok()) return base.failure();
           moved = *std::move(base);
           moved->is_worked_out = true;
         }
         const std::string here = place_of(place + ".targets", k) + "." + semantic;
-        const auto offset = reader_.floats(target, 3, 3, here);
+        const auto offset = reader_.floats(target, components, components, here);
         if (!offset.ok()) return offset.failure();
         if (offset->values.size() != moved->values.size()) {
           return fail_at_place(Error::BadValue, source_, here, "not a value for every vertex");
@@ -355,8 +366,14 @@ class MeshBuilder {
           moved->values[i] += static_cast<float>(weights[k]) * offset->values[i];
         }
       }
-      if (moved) reader_.give(*accessor, *std::move(moved));
+      if (!moved) continue;
+      if (semantic.starts_with("COLOR_")) {
+        for (float& x : moved->values) x = std::clamp(x, 0.0f, 1.0f);
+      }
+      all_moved.emplace_back(*accessor, *std::move(moved));
     }
+    // Only now, as attributes may share an accessor, which is moved once.
+    for (auto& [accessor, moved] : all_moved) reader_.give(accessor, std::move(moved));
     return Done{};
   }
 

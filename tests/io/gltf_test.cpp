@@ -265,6 +265,27 @@ TEST_CASE("glTF: morph targets are taken by the mesh's weights, or the node's") 
   CHECK(refusal_of(b.gltf(), "a.gltf").find("targets[1].POSITION") != std::string::npos);
 }
 
+TEST_CASE("glTF: morph targets move colours and texture coordinates as well") {
+  GltfBuilder b = triangle_at_a_node();
+  GltfBuilder::Json& primitive = b.json["meshes"][0]["primitives"][0];
+  const auto red = b.add<float>({1, 0, 0, 1, 0, 0, 1, 0, 0}, "VEC3");
+  const auto less_red = b.add<float>({-2, 0, 1, -2, 0, 1, -2, 0, 1}, "VEC3");
+  const auto uv = b.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
+  primitive["attributes"]["COLOR_0"] = red;
+  primitive["attributes"]["TEXCOORD_0"] = primitive["attributes"]["TEXCOORD_1"] = uv;
+  primitive["targets"] = {{{"COLOR_0", less_red}, {"TEXCOORD_0", uv}, {"TEXCOORD_1", uv}}};
+  b.json["meshes"][0]["weights"] = {1.0};
+  const Mesh mesh = import_text(b.gltf(), "a.gltf").mesh;
+  REQUIRE(mesh.layers.size() == 4);
+  CHECK(mesh.layers[1].name == "color");
+  CHECK(mesh.layers[1].values == std::vector<float>{0, 0, 1});  // kept within 0 and 1
+  for (const std::size_t layer : {2u, 3u}) {                    // once, though they share values
+    const AttributeLayer& uvs = mesh.layers[layer];
+    CHECK(uvs.role == AttributeRole::TexCoord);
+    CHECK(uvs.value(uvs.of_corner[1])[0] == 2);
+  }
+}
+
 // The sum is no number of the accessor's any more.
 TEST_CASE("glTF: what morph targets make of normalized integers is not divided once more") {
   GltfBuilder b = triangle_at_a_node();
