@@ -140,6 +140,9 @@ class MeshBuilder {
         return fail(Error::Interrupted, source_.name + ": interrupted");
       }
     }
+    if (raw_.triangles.empty() && unplaced_primitives_ > 0) {
+      return fail_at_place(Error::BadFormat, source_, first_missing_position_, "missing");
+    }
     if (!has_parts) raw_.part_of_triangle.clear();
     finish_materials();
     layers_.finish(raw_);
@@ -212,17 +215,18 @@ class MeshBuilder {
       return Done{};
     }
     if (mode > 6) return fail_at_place(Error::BadValue, source_, place + ".mode", "unknown");
+    const Json& attributes = at(primitive, "attributes");
+    const std::string attributes_place = place + ".attributes";
+    const std::string position_place = attributes_place + ".POSITION";
+    if (at(attributes, "POSITION").is_null()) {  // 3.7.2.1: to be skipped
+      if (unplaced_primitives_++ == 0) first_missing_position_ = position_place;
+      return Done{};
+    }
     reader_.forget_given();
     Status decompressed = decompress(primitive, place);
     if (!decompressed.ok()) return decompressed;
     Status morphed = morph(primitive, place, weights);
     if (!morphed.ok()) return morphed;
-    const Json& attributes = at(primitive, "attributes");
-    const std::string attributes_place = place + ".attributes";
-    const std::string position_place = attributes_place + ".POSITION";
-    if (at(attributes, "POSITION").is_null()) {
-      return fail_at_place(Error::BadFormat, source_, position_place, "missing");
-    }
     const auto positions = reader_.floats(at(attributes, "POSITION"), 3, 3, position_place);
     if (!positions.ok()) return positions.failure();
     const std::size_t vertex_count = positions->count();
@@ -429,6 +433,7 @@ class MeshBuilder {
       if (count > 0) raw_.report.notes.push_back(std::to_string(count) + " " + what);
     };
     note(point_and_line_primitives_, "primitives of points or lines ignored");
+    note(unplaced_primitives_, "primitives without POSITION ignored");
     note(morphed_primitives_,
          "primitives with morph targets taken as their weights are, at rest without");
     note(unweighted_primitives_,
@@ -462,7 +467,8 @@ class MeshBuilder {
   std::map<std::string, std::size_t> ignored_of_instances_;  // attribute: nodes that have it
   std::size_t work_ = 0, instanced_ = 0;
   std::size_t point_and_line_primitives_ = 0, morphed_primitives_ = 0, odd_runs_ = 0;
-  std::size_t unweighted_primitives_ = 0;
+  std::size_t unweighted_primitives_ = 0, unplaced_primitives_ = 0;
+  std::string first_missing_position_;  // of the latter
 };
 
 }  // namespace

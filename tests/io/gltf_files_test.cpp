@@ -67,6 +67,15 @@ TEST_CASE("glTF: what cannot be meant is refused, with its place") {
   refused("asset.version", [](GltfBuilder& b) { b.json["asset"]["version"] = "1.0"; });
 }
 
+TEST_CASE("glTF: a primitive without POSITION is skipped where there are others") {
+  GltfBuilder b = one_triangle();
+  b.primitive({{"NORMAL", b.add(kTriangle, "VEC3")}});
+  b.primitive({{"POSITION", b.add<float>({0, 0, 1, 1, 0, 1, 0, 1, 1}, "VEC3")}});
+  const Imported in = import_text(b.gltf(), "a.gltf");
+  CHECK(in.mesh.triangle_count() == 2);
+  CHECK(in.report.notes == std::vector<std::string>{"1 primitives without POSITION ignored"});
+}
+
 TEST_CASE("glTF: a file cut anywhere is refused") {
   const std::string whole = one_triangle().glb();
   for (std::size_t cut = 0; cut < whole.size(); ++cut) {
