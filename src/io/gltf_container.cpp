@@ -171,7 +171,12 @@ Result<GltfDocument> open_gltf(const Source& source) {
   const std::string version = as_text(at(at(json, "asset"), "version"));
   if (!version.empty() && !version.starts_with("2.")) {
     return fail_at_place(Error::NotSupported, source, "asset.version",
-                         "glTF " + version + "; only 2.0 is read");
+                         "glTF " + in_quotes(version) + "; only 2.0 is read");
+  }
+  const std::string least = as_text(at(at(json, "asset"), "minVersion"));
+  if (!least.empty() && least != "2.0" && !least.starts_with("1.")) {
+    return fail_at_place(Error::NotSupported, source, "asset.minVersion",
+                         "needs glTF " + in_quotes(least) + "; only 2.0 is read");
   }
   if (at(json, "meshes").is_object()) {  // glTF 1.0 had names where 2.0 has indices
     return fail_at_place(Error::NotSupported, source, "meshes",

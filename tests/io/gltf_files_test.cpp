@@ -65,6 +65,16 @@ TEST_CASE("glTF: what cannot be meant is refused, with its place") {
     b.json["extensionsRequired"] = {"KHR_texture_transform", "KHR_meshopt_compression"};
   });
   refused("asset.version", [](GltfBuilder& b) { b.json["asset"]["version"] = "1.0"; });
+  for (const char* least : {"2.1", "3.0", "10.0"}) {
+    refused("asset.minVersion: needs glTF",
+            [&](GltfBuilder& b) { b.json["asset"]["minVersion"] = least; });
+  }
+}
+
+TEST_CASE("glTF: the least version that a file needs may be what is read") {
+  GltfBuilder b = one_triangle();
+  b.json["asset"]["minVersion"] = "2.0";
+  CHECK(import_text(b.gltf(), "a.gltf").mesh.triangle_count() == 1);
 }
 
 TEST_CASE("glTF: a primitive without POSITION is skipped where there are others") {
