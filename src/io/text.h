@@ -152,7 +152,8 @@ class LineReader {
   std::string joined_;
 };
 
-// A piece of the file for a message: printable, quoted, not longer than 40 characters.
+// A piece of the file for a message: quoted, not longer than 40 characters. What is no UTF-8, and
+// control characters, are '?'.
 std::string in_quotes(std::string_view text);
 
 }  // namespace crease

@@ -3,6 +3,7 @@
 #include "crease/shading.h"
 #include "io/gltf_triangle.h"
 #include "io/polygon_model.h"
+#include "io/text.h"
 #include "support/shared_data.h"
 
 #include <doctest/doctest.h>
@@ -75,6 +76,19 @@ TEST_CASE("glTF: the least version that a file needs may be what is read") {
   GltfBuilder b = one_triangle();
   b.json["asset"]["minVersion"] = "2.0";
   CHECK(import_text(b.gltf(), "a.gltf").mesh.triangle_count() == 1);
+}
+
+TEST_CASE("glTF: names are in messages as they are, but for what a terminal would do") {
+  CHECK(refusal_of(one_triangle().gltf_beside("Füße 東.bin"), "a.gltf").find("'Füße 東.bin'") !=
+        std::string::npos);
+  CHECK(in_quotes("\x1b[2J\x7f\xc2\x9b.") == "'?[2J???.'");
+  CHECK(in_quotes("a\xc3") == "'a?'");                                  // cut off
+  CHECK(in_quotes("\xc0\xaf \xed\xa0\x80.") == "'?? ???.'");            // too long, a surrogate
+  CHECK(in_quotes("\xf4\x90\x80\x80 \xf0\x9f\x8c\x8d") == "'???? 🌍'");  // beyond the last
+  std::string forty;
+  for (int i = 0; i < 40; ++i) forty += "東";
+  CHECK(in_quotes(forty) == "'" + forty + "'");
+  CHECK(in_quotes(forty + "x") == "'" + forty + "...'");
 }
 
 TEST_CASE("glTF: a primitive without POSITION is skipped where there are others") {
