@@ -85,23 +85,32 @@ void place_others(const Source& source, const Json& nodes,
   }
 }
 
-// The nodes to begin with, and the place that names them.
-std::pair<std::vector<Json>, std::string> root_nodes(const Json& json) {
+struct Roots {
+  std::vector<Json> nodes;  // to begin with
+  std::string place;        // that names them
+};
+
+Result<Roots> root_nodes(const Source& source, const Json& json) {
   const Json& scenes = at(json, "scenes");
   if (size_of(scenes) > 0) {
-    const std::size_t scene = as_index(at(json, "scene")).value_or(0);
-    const Json& nodes = at(at(scenes, scene), "nodes");
-    std::vector<Json> roots;
-    for (std::size_t i = 0; i < size_of(nodes); ++i) roots.push_back(nodes[i]);
-    return {std::move(roots), place_of("scenes", scene) + ".nodes"};
+    const Json& chosen = at(json, "scene");
+    const std::size_t scene = chosen.is_null() ? 0 : as_index(chosen).value_or(size_of(scenes));
+    if (scene >= size_of(scenes)) {
+      return fail_at_place(Error::BadValue, source, "scene",
+                           "no such scene: the file has " + std::to_string(size_of(scenes)));
+    }
+    const Json& nodes = at(scenes[scene], "nodes");
+    Roots roots{{}, place_of("scenes", scene) + ".nodes"};
+    for (std::size_t i = 0; i < size_of(nodes); ++i) roots.nodes.push_back(nodes[i]);
+    return roots;
   }
   const Json& nodes = at(json, "nodes");
   const std::vector<std::optional<std::size_t>> parents = parents_of(nodes);
-  std::vector<Json> roots;
+  Roots roots{{}, "nodes"};
   for (std::size_t i = 0; i < parents.size(); ++i) {
-    if (!parents[i]) roots.push_back(i);
+    if (!parents[i]) roots.nodes.push_back(i);
   }
-  return {std::move(roots), "nodes"};
+  return roots;
 }
 
 // Meshes that are not in the scene, of which `reached` are the nodes.
@@ -204,10 +213,12 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
     }
     return Done{};
   };
-  const auto [roots, roots_place] = root_nodes(json);
-  if (Status s = push_all(roots, roots.size(), roots_place, {}, false); !s.ok()) return s.failure();
-  if (roots.empty()) {
-    return fail_at_place(Error::NoTriangles, source, roots_place,
+  const Result<Roots> roots = root_nodes(source, json);
+  if (!roots.ok()) return roots.failure();
+  Status begun = push_all(roots->nodes, roots->nodes.size(), roots->place, {}, false);
+  if (!begun.ok()) return begun.failure();
+  if (roots->nodes.empty()) {
+    return fail_at_place(Error::NoTriangles, source, roots->place,
                          "no node to begin with: the scene is empty or every node is a child");
   }
 

@@ -70,6 +70,10 @@ TEST_CASE("glTF: what cannot be meant is refused, with its place") {
     refused("asset.minVersion: needs glTF",
             [&](GltfBuilder& b) { b.json["asset"]["minVersion"] = least; });
   }
+  refused("scene: no such scene: the file has 1", [](GltfBuilder& b) {
+    b.json["scenes"] = {{{"nodes", {0}}}};
+    b.json["scene"] = 5;
+  });
 }
 
 TEST_CASE("glTF: the least version that a file needs may be what is read") {
