@@ -3,16 +3,14 @@
 #include "crease/export.h"
 #include "crease/import.h"
 #include "gltf_builder.h"
+#include "test_folder.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
-
-#include <unistd.h>
 
 namespace crease {
 namespace {
@@ -27,29 +25,6 @@ std::string jpeg(const std::string& inside) {
 std::string text_of(const ImageFile& image) {
   return {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()};
 }
-
-class Folder {
- public:
-  Folder()
-      : path(std::filesystem::temp_directory_path() /
-             ("crease_images_" + std::to_string(getpid()) + "_" + std::to_string(count++))) {
-    std::filesystem::remove_all(path);
-    std::filesystem::create_directories(path);
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-
-  void write(const std::string& name, const std::string& bytes) const {
-    std::filesystem::create_directories((path / name).parent_path());
-    std::ofstream(path / name, std::ios::binary) << bytes;
-  }
-  std::string read(const std::string& name) const {
-    std::ifstream file(path / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
-
-  static inline int count = 0;
-  const std::filesystem::path path;
-};
 
 // A triangle that is painted with image 0; `images` is the glTF's.
 GltfBuilder painted(GltfBuilder::Json images) {
