@@ -8,6 +8,7 @@
 #include "base/assert.h"
 #include "io/formats.h"
 #include "io/images.h"
+#include "io/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -215,6 +216,15 @@ void drop_unused_parts(Mesh& mesh) {
   for (PartId& p : mesh.part_of_triangle) p = PartId{new_of_old[index_of(p)]};
 }
 
+// Files say so of glass, and of everything where they mean the opposite.
+void note_invisible(const Mesh& mesh, ImportReport& report) {
+  std::vector<bool> is_invisible(mesh.materials.size(), false);
+  for (MaterialId m : mesh.material_of_triangle) {
+    is_invisible[index_of(m)] = mesh.materials[index_of(m)].base_color[3] <= 0;
+  }
+  note_materials(mesh.materials, is_invisible, "fully transparent", report.notes);
+}
+
 bool goes_on(const ImportOptions& options, const char* stage, double done) {
   return !options.progress || options.progress(stage, done);
 }
@@ -283,6 +293,16 @@ void Rounded::tell(const std::string& layer, std::vector<std::string>& notes) co
                   shortest(most) + " at most");
 }
 
+void note_materials(std::span<const Material> materials, const std::vector<bool>& which,
+                    const std::string& what, std::vector<std::string>& notes) {
+  const auto count = std::ranges::count(which, true);
+  if (count == 0) return;
+  const auto first = std::ranges::find(which, true) - which.begin();
+  notes.push_back(std::to_string(count) + (count == 1 ? " material is " : " materials are ") +
+                  what + " (" + in_quotes(materials[static_cast<std::size_t>(first)].name) +
+                  (count > 1 ? ", ...)" : ")"));
+}
+
 Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const std::string& name) {
   Imported imported;
   Mesh& mesh = imported.mesh;
@@ -341,6 +361,7 @@ Result<Imported> finish_import(RawMesh raw, const ImportOptions& options, const 
   weld_rounded(mesh, options.precision, report);
   drop_degenerate(mesh, raw, report);
   drop_unused_parts(mesh);
+  note_invisible(mesh, report);
   report.duplicate_triangles = count_duplicate_triangles(mesh);
   report.zero_area_triangles = count_zero_area_triangles(mesh);
   report.misoriented_edges = count_misoriented_edges(mesh);

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,10 @@ struct Rounded {
   // For the notes of an import, if there are any.
   void tell(const std::string& layer, std::vector<std::string>& notes) const;
 };
+
+// For the notes: "2 materials are WHAT ('brick', ...)"; nothing if `which` says so of none.
+void note_materials(std::span<const Material> materials, const std::vector<bool>& which,
+                    const std::string& what, std::vector<std::string>& notes);
 
 struct RawMesh {
   std::vector<Vec3d> positions;  // stored vertices, model units

@@ -59,6 +59,7 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
   for (Material& m : materials) by_name.emplace(m.name, &m);
   for (Material& m : materials) by_name.emplace(without_comment(m.name), &m);
   Material* current = nullptr;
+  bool has_dissolve = false;  // of the current one
   LineReader lines(text, true);
   for (Line line; lines.next(line);) {
     const std::string_view word = line.word();
@@ -67,6 +68,7 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
       auto found = by_name.find(name);
       if (found == by_name.end()) found = by_name.find(without_comment(name));
       current = found == by_name.end() ? nullptr : found->second;
+      has_dissolve = false;
       if (current) is_known[static_cast<std::size_t>(current - materials.data())] = true;
     } else if (current && word == "Kd") {
       double r, g, b;
@@ -74,8 +76,13 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
       g = b = r;  // one number stands for three
       if (line.number(g)) line.number(b);
       current->base_color = {share(r), share(g), share(b), current->base_color[3]};
-    } else if (current && (word == "d" || word == "Tr")) {
-      if (double x; line.number(x)) current->base_color[3] = share(word == "d" ? x : 1 - x);
+    } else if (current && word == "d") {
+      double x;
+      if (!line.number(x)) continue;
+      current->base_color[3] = share(x);
+      has_dissolve = true;
+    } else if (current && word == "Tr" && !has_dissolve) {
+      if (double x; line.number(x)) current->base_color[3] = share(1 - x);
     } else if (current && word == "map_Kd") {
       TexturePlacement& placement =
           placement_of_material[static_cast<std::size_t>(current - materials.data())] = {};

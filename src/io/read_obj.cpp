@@ -381,18 +381,10 @@ class ObjReader {
         raw_.report.notes.push_back("material library " + in_quotes(name) + " not found");
       }
     }
-    if (any_library_) note_unknown_materials();
-  }
-
-  // Where no library was read, all are, and each that is missing has a note of its own.
-  void note_unknown_materials() {
-    const auto count = std::ranges::count(is_known_material_, false);
-    if (count == 0) return;
-    const auto first = std::ranges::find(is_known_material_, false) - is_known_material_.begin();
-    const std::string& name = raw_.materials[static_cast<std::size_t>(first)].name;
-    raw_.report.notes.push_back(
-        std::to_string(count) + (count == 1 ? " material is" : " materials are") +
-        " in no library: white (" + in_quotes(name) + (count > 1 ? ", ...)" : ")"));
+    // Where no library was read, all are, and each that is missing has a note of its own.
+    if (!any_library_) return;
+    is_known_material_.flip();
+    note_materials(raw_.materials, is_known_material_, "in no library: white", raw_.report.notes);
   }
 
   // False if it is not there. One from elsewhere is passed over without a word.
