@@ -32,29 +32,18 @@ void rename(std::span<Material> materials, const std::string& from, const std::s
   }
 }
 
-// The path as written, then its last part in the folder itself: exporters write paths of their own
-// machines.
 Result<std::vector<std::byte>> read_image(const std::filesystem::path& folder,
                                           const std::string& name) {
-  std::string path = name;
-  std::ranges::replace(path, '\\', '/');
-  Result<std::vector<std::byte>> bytes = read_in_folder(folder, path, kMaxImageBytes);
-  const bool is_elsewhere = !bytes.ok() && (bytes.failure().error == Error::NotFound ||
-                                            bytes.failure().error == Error::BadValue);
-  const std::size_t slash = path.rfind('/');
-  if (is_elsewhere && slash != path.npos && slash + 1 < path.size()) {
-    const bool is_outside = bytes.failure().error == Error::BadValue;
-    bytes = read_in_folder(folder, path.substr(slash + 1), kMaxImageBytes);
-    if (is_outside && !bytes.ok() && bytes.failure().error == Error::NotFound) {
-      return fail(Error::NotFound,
-                  in_quotes(name) + " is outside the model's folder, where nothing is read, and " +
-                      in_quotes(path.substr(slash + 1)) + " is not in it (--textures DIR)");
-    }
+  Result<FileInFolder> file = find_in_folder(folder, name, kMaxImageBytes);
+  if (!file.ok()) {
+    const Failure& failure = file.failure();
+    const bool is_outside = failure.error == Error::BadValue;
+    return fail(failure.error, failure.message + (is_outside ? " (--textures DIR)" : ""));
   }
-  if (bytes.ok() && image_type(*bytes).empty()) {
+  if (image_type(file->bytes).empty()) {
     return fail(Error::NotSupported, in_quotes(name) + " is neither a PNG nor a JPEG");
   }
-  return bytes;
+  return std::move(file->bytes);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 namespace crease {
 
@@ -77,6 +78,32 @@ Result<std::vector<std::byte>> read_in_folder(const std::filesystem::path& folde
   file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
   return bytes;
+}
+
+std::string with_slashes(std::string path) {
+  std::ranges::replace(path, '\\', '/');
+  return path;
+}
+
+Result<FileInFolder> find_in_folder(const std::filesystem::path& folder, const std::string& name,
+                                    std::size_t max_bytes) {
+  std::string path = with_slashes(name);
+  Result<std::vector<std::byte>> bytes = read_in_folder(folder, path, max_bytes);
+  const bool is_elsewhere = !bytes.ok() && (bytes.failure().error == Error::NotFound ||
+                                            bytes.failure().error == Error::BadValue);
+  const std::size_t slash = path.rfind('/');
+  if (is_elsewhere && slash != path.npos && slash + 1 < path.size()) {
+    const bool is_outside = bytes.failure().error == Error::BadValue;
+    path.erase(0, slash + 1);
+    bytes = read_in_folder(folder, path, max_bytes);
+    if (is_outside && !bytes.ok() && bytes.failure().error == Error::NotFound) {
+      return fail(Error::BadValue,
+                  in_quotes(name) + " is outside the model's folder, where nothing is read, and " +
+                      in_quotes(path) + " is not in it");
+    }
+  }
+  if (!bytes.ok()) return bytes.failure();
+  return FileInFolder{std::move(path), *std::move(bytes)};
 }
 
 }  // namespace crease

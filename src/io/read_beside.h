@@ -17,4 +17,17 @@ namespace crease {
 Result<std::vector<std::byte>> read_in_folder(const std::filesystem::path& folder,
                                               const std::string& name, std::size_t max_bytes);
 
+// A path of another system with slashes.
+std::string with_slashes(std::string path);
+
+struct FileInFolder {
+  std::string path;  // in the folder, with slashes
+  std::vector<std::byte> bytes;
+};
+
+// `name` as written, but for backslashes, and where that is nothing to read its last part in the
+// folder itself: exporters write paths of their own machines.
+Result<FileInFolder> find_in_folder(const std::filesystem::path& folder, const std::string& name,
+                                    std::size_t max_bytes);
+
 }  // namespace crease

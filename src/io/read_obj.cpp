@@ -2,14 +2,13 @@
 // come before their vertices; then faces with the state that s, g, o and usemtl set.
 #include "io/face_sink.h"
 #include "io/formats.h"
-#include "io/read_mtl.h"
+#include "io/material_libraries.h"
 #include "io/text.h"
 
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -332,7 +331,6 @@ class ObjReader {
     // Before the first `o` or `usemtl` there were no faces, or they were given the name "".
     if (raw_.material_of_triangle.empty()) raw_.materials.clear();
     read_libraries();
-    if (!raw_.materials.empty()) place_textures();
     sink_.report();
     std::vector<std::string>& notes = raw_.report.notes;
     if (short_faces_ > 0) {
@@ -357,57 +355,25 @@ class ObjReader {
 
   void read_libraries() {
     if (raw_.materials.empty()) return;
-    placement_of_material_.resize(raw_.materials.size());
-    for (const Material& material : raw_.materials) {
-      is_known_material_.push_back(material.name.empty());  // of faces that name none
+    if (source_.folder == nullptr) {
+      if (libraries_.empty()) return;
+      raw_.report.notes.push_back("material libraries left out: there is no folder to look in");
+      return;
     }
-    for (const std::string& named : libraries_) {
-      if (!source_.folder || read_library(named)) continue;
-      // Not one name with blanks in it, then: several without, if any of these is there.
-      std::vector<std::string> missing;
-      std::size_t found = 0;
-      Line line{named.data(), named.data() + named.size(), 0};
-      while (!line.done()) {
-        const std::string name(line.word());
-        if (name.starts_with('#')) break;
-        if (name != named && read_library(name)) {
-          ++found;
-        } else {
-          missing.push_back(name);
-        }
-      }
-      if (found == 0) missing = {named};
-      for (const std::string& name : missing) {
-        raw_.report.notes.push_back("material library " + in_quotes(name) + " not found");
-      }
-    }
-    // Where no library was read, all are, and each that is missing has a note of its own.
-    if (!any_library_) return;
-    is_known_material_.flip();
-    note_materials(raw_.materials, is_known_material_, "in no library: white", raw_.report.notes);
-  }
-
-  // False if it is not there. One from elsewhere is passed over without a word.
-  bool read_library(const std::string& name) {
-    const std::filesystem::path relative(name);
-    if (relative.is_absolute() || name.find('\0') != name.npos) return true;
-    std::ifstream file(*source_.folder / relative, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (text.empty()) return false;
-    read_mtl(text, relative.parent_path().generic_string(), raw_.materials, placement_of_material_,
-             is_known_material_);
-    any_library_ = true;
-    return true;
+    MaterialLibraries libraries =
+        read_material_libraries(*source_.folder, libraries_, raw_.materials);
+    for (std::string& note : libraries.notes) raw_.report.notes.push_back(std::move(note));
+    place_textures(libraries.placement_of_material);
   }
 
   // Texture coordinates as the texture of their material lies on them, so that it needs no more.
-  void place_textures() {
+  void place_textures(std::span<const TexturePlacement> placement_of_material) {
     const auto uv = std::ranges::find(raw_.layers, AttributeRole::TexCoord, &RawLayer::role);
     if (uv == raw_.layers.end()) return;
     std::map<std::pair<MaterialId, std::uint32_t>, std::uint32_t> placed;
     for (std::size_t corner = 0; corner < uv->of_corner.size(); ++corner) {
       const MaterialId material = raw_.material_of_triangle[corner / 3];
-      const TexturePlacement& placement = placement_of_material_[index_of(material)];
+      const TexturePlacement& placement = placement_of_material[index_of(material)];
       std::uint32_t& value = uv->of_corner[corner];
       if (value == kNone || placement == TexturePlacement{}) continue;
       const auto [found, is_new] =
@@ -442,9 +408,6 @@ class ObjReader {
   bool part_is_known_ = false, names_parts_ = false;
   std::unordered_map<std::string, std::uint32_t> material_of_name_, part_of_name_;
   std::vector<std::string> libraries_;
-  std::vector<TexturePlacement> placement_of_material_;
-  std::vector<bool> is_known_material_;  // a library has it
-  bool any_library_ = false;             // was read
   std::map<std::string, std::size_t, std::less<>> ignored_;
 };
 

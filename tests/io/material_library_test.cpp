@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,87 @@ TEST_CASE("materials that are fully transparent are told, if anything has them")
         std::vector<std::string>{"1 material is fully transparent ('blue')"});
   CHECK(notes("blue", "red") ==
         std::vector<std::string>{"2 materials are fully transparent ('blue', ...)"});
+}
+
+const std::string kRed = "newmtl red\nKd 1 0 0\n", kBlue = "newmtl blue\nKd 0 0 1\n";
+
+// A model of a red and a blue triangle whose libraries are `named`: "red", "blue", "red blue" or ""
+// as their colours arrived, and the notes.
+struct Colors {
+  std::string arrived;
+  std::vector<std::string> notes;
+};
+Colors colors_of(const Folder& folder, const std::string& named) {
+  const Imported in =
+      import_obj(folder, named + kQuadCorners + "usemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\n");
+  Colors colors{"", in.report.notes};
+  if (in.mesh.materials[0].base_color == std::array<float, 4>{1, 0, 0, 1}) colors.arrived += "red";
+  if (in.mesh.materials[1].base_color == std::array<float, 4>{0, 0, 1, 1}) {
+    colors.arrived += colors.arrived.empty() ? "blue" : " blue";
+  }
+  return colors;
+}
+
+TEST_CASE("a library is found like an image: as written, in another case, by its last part") {
+  const Folder folder;
+  folder.write("both.mtl", kRed + kBlue);
+  folder.write("lib/my both.mtl", kRed + kBlue);
+  for (const char* name : {"both.mtl", "./both.mtl", ".\\both.mtl", "BOTH.MTL", "/home/me/both.mtl",
+                           "../both.mtl", "C:\\models\\both.mtl", "C:\\my models\\both.mtl",
+                           "/a/both.mtl # of CAD", "lib/my both.mtl", "LIB\\My Both.mtl"}) {
+    CAPTURE(std::string(name));
+    const Colors colors = colors_of(folder, std::string("mtllib ") + name + "\n");
+    CHECK(colors.arrived == "red blue");
+    CHECK(colors.notes.empty());
+  }
+}
+
+TEST_CASE("several libraries in a line or in lines, wherever they are") {
+  const Folder folder;
+  folder.write("red.mtl", kRed);
+  folder.write("lib/blue.mtl", kBlue);
+  folder.write("blue.mtl", "newmtl blue\n");
+  for (const char* lines :
+       {"mtllib red.mtl lib/blue.mtl\n", "mtllib ./red.mtl ./lib/blue.mtl\n",
+        "mtllib lib/red.mtl lib/blue.mtl\n", "mtllib red.mtl\nmtllib lib\\blue.mtl\n"}) {
+    CAPTURE(std::string(lines));
+    const Colors colors = colors_of(folder, lines);
+    CHECK(colors.arrived == "red blue");
+    CHECK(colors.notes.empty());
+  }
+}
+
+TEST_CASE("a library that is not there, or outside, is told once; so are materials without one") {
+  const Folder folder;
+  folder.write("red.mtl", kRed);
+  folder.write("in/none.txt", "");
+  const auto below = [&](const std::string& named) {
+    folder.write("in/a.obj", named + kQuadCorners + "usemtl red\nf 1 2 3\n");
+    const Result<Imported> in = import_mesh(folder.path / "in/a.obj", {});
+    REQUIRE(in.ok());
+    CHECK(in->mesh.materials[0].base_color == std::array<float, 4>{1, 1, 1, 1});
+    return in->report.notes;
+  };
+  using Notes = std::vector<std::string>;
+  CHECK(below("mtllib gone.mtl\nmtllib gone.mtl\n") ==
+        Notes{"material library left out: no file 'gone.mtl'"});
+  CHECK(
+      below("mtllib ../red.mtl\n") ==
+      Notes{"material library left out: '../red.mtl' is outside the model's folder, where nothing "
+            "is read, and 'red.mtl' is not in it"});
+  CHECK(below("") == Notes{"1 material is in no library: white ('red')"});
+  CHECK(colors_of(folder, "mtllib red.mtl gone.mtl\n").notes ==
+        Notes{"material library left out: no file 'gone.mtl'",
+              "1 material is in no library: white ('blue')"});
+}
+
+TEST_CASE("a line of names without end is no long search") {
+  const Folder folder;
+  std::string names = "mtllib";
+  for (int i = 0; i < 5000; ++i) names += " " + std::to_string(i) + ".mtl";
+  const Colors colors = colors_of(folder, names + "\n");
+  CHECK(colors.notes ==
+        std::vector<std::string>{"material libraries left out: more than 4096 names"});
 }
 
 }  // namespace

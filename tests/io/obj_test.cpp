@@ -169,10 +169,10 @@ TEST_CASE("one line may name several material libraries") {
   CHECK(both.mesh.materials[0].base_color == std::array<float, 4>{1, 0, 0, 1});
   CHECK(both.mesh.materials[1].base_color == std::array<float, 4>{0, 0, 1, 1});
   CHECK(import_with("a.mtl c.mtl").report.notes ==
-        std::vector<std::string>{"material library 'c.mtl' not found",
+        std::vector<std::string>{"material library left out: no file 'c.mtl'",
                                  "1 material is in no library: white ('blue')"});
   CHECK(import_with("c d.mtl").report.notes ==
-        std::vector<std::string>{"material library 'c d.mtl' not found"});
+        std::vector<std::string>{"material library left out: no file 'c d.mtl'"});
   std::filesystem::remove_all(folder);
 }
 
