@@ -142,7 +142,7 @@ Result<RawMesh> read_text(const Source& source) {
   if (in_facet || !closed) {
     return fail_at_line(Error::Truncated, source, line.line_number, "the file ends inside a solid");
   }
-  if (raw.parts.size() < 2) {
+  if (raw.parts.size() == 1 && raw.parts[0].empty()) {
     raw.parts.clear();
     raw.part_of_triangle.clear();
   }

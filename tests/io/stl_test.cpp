@@ -73,6 +73,16 @@ TEST_CASE("several solids in a text are parts; case and layout do not matter") {
   CHECK(mesh.vertex_count() == 3);
 }
 
+TEST_CASE("the only solid of a text is a part if it has a name") {
+  const std::string facet =
+      "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n";
+  const auto parts = [&](const std::string& solid) {
+    return import_text(solid + "\n" + facet + "endsolid\n", "a.stl").mesh.parts;
+  };
+  CHECK(parts("solid left wheel") == std::vector<std::string>{"left wheel"});
+  CHECK(parts("solid").empty());
+}
+
 TEST_CASE("every refusal names the line and the reason") {
   CHECK(refusal_of("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", "a.stl") ==
         "a.stl:4: vertex: not a number: ''");
