@@ -48,6 +48,67 @@ TEST_CASE("a face goes on in the next lines") {
   CHECK(mesh.triangle_count() == 3);
 }
 
+TEST_CASE("colours are whole numbers up to 255 or others up to 1, each kind by the most it has") {
+  const auto greens = [](const std::string& first, const std::string& second) {
+    const Mesh mesh = import_text("OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 " + first +
+                                      "\n3 0 2 3 " + second + "\n",
+                                  "a.off")
+                          .mesh;
+    REQUIRE(mesh.layers.size() == 2);
+    const AttributeLayer& color = mesh.layers[1];
+    return std::vector<float>{color.value(color.of_corner[0])[1],
+                              color.value(color.of_corner[3])[1]};
+  };
+  CHECK(greens("0 255 0", "0.0 1.0 0.0") == std::vector<float>{1, 1});
+  CHECK(greens("0 255 0", "0 1 0") == std::vector<float>{1, 1 / 255.0f});
+  CHECK(greens("0 1 0", "1 0 1 1") == std::vector<float>{1, 0});
+  CHECK(greens("0 255.0 0", "0 51.0 0 255") == std::vector<float>{1, 0.2f});
+}
+
+TEST_CASE("numbers run on over lines, up to a colour") {
+  for (const char* text :
+       {"OFF 4 1 0 0 0 0 1 0 0 1 1 0 0 1 0 4 0 1 2 3",
+        "OFF\n4 1 0\n0 0 0 1 0 0\n1 1 0 0 1 0\n4 0 1\n2 3\n",
+        "OFF\n4 1 0\n0 0\n0\n1 0 0\n1 1 0\n0 1 # y\n0\n4 0 1\n2 3 7\n",
+        "NOFF 4 1 0\n0 0 0 0 0 1 1 0\n0 0 0 1 1 1 0 0 0 1\n0 1 0 0 0 1 4 0 1 2 3\n",
+        "OFF4 1 0 # glued\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"}) {
+    CAPTURE(std::string(text));
+    const Imported in = import_text(text, "a.off");
+    CHECK(in.mesh.positions == std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    CHECK(in.mesh.triangle_count() == 2);
+    CHECK(in.report.notes.empty());
+  }
+  CHECK(refusal_of("OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2 0.5 0 0", "a.off") ==
+        "a.off:1: vertices and faces have no lines of their own, and more numbers than the header "
+        "says: '0.5'");
+}
+
+TEST_CASE("a file that is cut is refused as such, whatever its vertices hold") {
+  CHECK(refusal_of("COFF\n3 2 0\n0 0 0 1 1 1\n1 0 0 1 1 1\n0 1 0 1 1 1\n3 0 1 2\n", "a.off") ==
+        "a.off:6: the file ends; face 1 of 2 expected");
+  CHECK(refusal_of("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0.5 0 0\n", "a.off") ==
+        "a.off:6: the file ends; face 1 of 2 expected");
+  CHECK(refusal_of("COFF\n3 1 0\n0 0 0 1 1 1\n1 0 0 1 1 1\n", "a.off") ==
+        "a.off:4: the file ends; a vertex expected");
+}
+
+TEST_CASE("what the header says nothing of is told") {
+  const auto notes = [](const std::string& text) {
+    return import_text(text, "a.off").report.notes;
+  };
+  using Notes = std::vector<std::string>;
+  const std::string three = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
+  CHECK(notes(three + "3 0 1 2\n\n# end\n").empty());
+  CHECK(notes(three + "3 0 1 2\n3 0 2 1\n") == Notes{"lines after the last face ignored"});
+  CHECK(notes(three + "3 0 1 2\nfoo bar\n") == Notes{"lines after the last face ignored"});
+  CHECK(notes(three + "3 0 1 2 1 0 0 blue\n") ==
+        Notes{"1 faces have more behind them than a colour: ignored"});
+  CHECK(notes("OFF\n3 1 0\n0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 255 0 0\n3 0 1 2\n") ==
+        Notes{"3 vertices hold more numbers than 'OFF' says: ignored"});
+  CHECK(notes("NOFF\n3 1 0\n0 0 0 0 0 1 1 0 0\n1 0 0 0 0 1 1 0 0\n0 1 0 0 0 1 1 0 0\n3 0 1 2\n") ==
+        Notes{"3 vertices hold more numbers than 'NOFF' says: ignored"});
+}
+
 TEST_CASE("every refusal names the line and the reason") {
   const std::string three = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
   CHECK(refusal_of(three + "3 0 1 3\n", "a.off") == "a.off:6: face index 3 of 3 vertices");
@@ -63,8 +124,8 @@ TEST_CASE("every refusal names the line and the reason") {
             .starts_with("a.off:1: OFF of more than three dimensions"));
   CHECK(refusal_of("OFF\n353535235358 6 0\n0 0 0\n", "a.off")
             .starts_with("a.off:2: the header promises"));
-  CHECK(refusal_of("OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2", "a.off") ==
-        "a.off:1: vertices and faces have no lines of their own");
+  CHECK(refusal_of("OFF\n3 1 0\n0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.off") ==
+        "a.off:3: vertex 0 of 3 has too few numbers");
 }
 
 }  // namespace
