@@ -90,7 +90,7 @@ struct HeaderReader {
   }
 
   bool read() {
-    LineReader lines(source.text());
+    LineReader lines = LineReader::ending_like_first(source.text());
     Line line;
     bool has_format = false;
     while (lines.next(line)) {

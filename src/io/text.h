@@ -99,10 +99,15 @@ class LineReader {
  public:
   // With `backslash_continues`, a line whose last character is a backslash goes on in the next.
   explicit LineReader(std::string_view text, bool backslash_continues = false)
-      : at_(text.data()),
-        end_(text.data() + text.size()),
-        line_end_(text.find('\n') == text.npos ? '\r' : '\n'),
-        continues_(backslash_continues) {}
+      : LineReader(text, text.find('\n') == text.npos ? '\r' : '\n', backslash_continues) {}
+
+  // For text that something else follows: lines end as the first one does.
+  static LineReader ending_like_first(std::string_view text) {
+    const std::size_t end = text.find_first_of("\r\n");
+    const std::size_t behind = text.find_first_not_of('\r', end);
+    const bool has_newline = end == text.npos || (behind != text.npos && text[behind] == '\n');
+    return LineReader(text, has_newline ? '\n' : '\r', false);
+  }
 
   bool next(Line& line) {
     if (at_ == end_) return false;
@@ -116,6 +121,12 @@ class LineReader {
   const char* position() const { return at_; }
 
  private:
+  LineReader(std::string_view text, char line_end, bool backslash_continues)
+      : at_(text.data()),
+        end_(text.data() + text.size()),
+        line_end_(line_end),
+        continues_(backslash_continues) {}
+
   const char* take() {
     const void* found = std::memchr(at_, line_end_, static_cast<std::size_t>(end_ - at_));
     const char* line_end = found ? static_cast<const char*>(found) : end_;

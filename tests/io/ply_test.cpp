@@ -82,6 +82,24 @@ TEST_CASE("a binary file cut anywhere is refused with the byte") {
   }
 }
 
+TEST_CASE("a header's lines end as its first, whatever bytes follow") {
+  std::string binary = binary_ply(false);
+  REQUIRE(binary.find("end_header\n") != std::string::npos);
+  const std::size_t body = binary.find("end_header\n") + 11;
+  const auto with = [&](const std::string& line_end) {
+    std::string out;
+    for (char c : binary.substr(0, body)) out += c == '\n' ? line_end : std::string(1, c);
+    std::string bytes = binary.substr(body);
+    bytes[8] = '\n';  // somewhere in y of the first vertex
+    bytes[9] = '\r';
+    return out + bytes;
+  };
+  const Mesh expected = import_text(with("\n"), "a.ply").mesh;
+  for (const char* line_end : {"\r", "\r\n", "\r\r\n"}) {
+    CHECK(import_text(with(line_end), "a.ply").mesh.positions == expected.positions);
+  }
+}
+
 TEST_CASE("unknown properties are kept: linear per vertex, categorical per face if integer") {
   const Mesh mesh =
       import_text(header("property float heat\n", "property uchar label\nproperty float wear\n") +
