@@ -20,6 +20,10 @@ std::optional<std::size_t> find_scalar(const PlyElement& element, std::string_vi
   return std::nullopt;
 }
 
+bool is_index_list(const PlyProperty& property) {
+  return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
 namespace {
 
 struct NamedGroup {
@@ -107,9 +111,7 @@ constexpr std::size_t kVerticesOfCategory = 4;
 
 PlyTarget::Kind list_target(const PlyProperty& property, bool is_face,
                             std::vector<std::string>& notes) {
-  if (is_face && (property.name == "vertex_indices" || property.name == "vertex_index")) {
-    return PlyTarget::Kind::Indices;
-  }
+  if (is_face && is_index_list(property)) return PlyTarget::Kind::Indices;
   if (is_face && property.name == "texcoord") return PlyTarget::Kind::CornerTexCoords;
   notes.push_back("list '" + property.name + "' ignored");
   return PlyTarget::Kind::Ignored;

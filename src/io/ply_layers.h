@@ -54,6 +54,9 @@ struct PlyLayers {
 // The first property of this name that is no list.
 std::optional<std::size_t> find_scalar(const PlyElement& element, std::string_view name);
 
+// The corners of a face, or a strip.
+bool is_index_list(const PlyProperty& property);
+
 // By the names of its properties; `notes` says which lists have no place. Integers of faces are
 // categories, and whatever of vertices has a name that says so, until settle_categories().
 // Comments of ours go before names.

@@ -210,14 +210,26 @@ class PlyReader {
     return true;
   }
 
+  // Lists may be of floats.
+  bool take_vertex(double item, std::uint32_t& vertex) {
+    if (!(item >= 0) || item >= static_cast<double>(raw_.positions.size())) {
+      return refuse(body_.refuse(Error::BadValue, "vertex index " + shown(item) + " of " +
+                                                      std::to_string(raw_.positions.size()) +
+                                                      " vertices"));
+    }
+    if (item != std::floor(item)) {
+      return refuse(
+          body_.refuse(Error::BadValue, "vertex index " + shown(item) + " is no whole number"));
+    }
+    vertex = static_cast<std::uint32_t>(item);
+    return true;
+  }
+
   bool take_corners() {
     for (double item : list_) {
-      if (!(item >= 0) || item >= static_cast<double>(raw_.positions.size())) {
-        return refuse(body_.refuse(Error::BadValue, "vertex index " + shown(item) + " of " +
-                                                        std::to_string(raw_.positions.size()) +
-                                                        " vertices"));
-      }
-      corners_.push_back(static_cast<std::uint32_t>(item));
+      std::uint32_t vertex = 0;
+      if (!take_vertex(item, vertex)) return false;
+      corners_.push_back(vertex);
     }
     return true;
   }
@@ -236,39 +248,48 @@ class PlyReader {
     }
   }
 
-  // Strips in lists, cut by -1; every other triangle is turned round.
+  // Strips in one list, cut by -1.
   bool read_strips(const PlyElement& element) {
+    const std::vector<PlyProperty>& properties = element.properties;
+    if (std::none_of(properties.begin(), properties.end(), is_index_list) && element.count > 0) {
+      return refuse(body_.refuse(Error::BadFormat, "strips have no vertex_indices"));
+    }
+    for (const PlyProperty& property : properties) {
+      if (is_index_list(property)) continue;
+      raw_.report.notes.push_back("'" + property.name + "' of '" + element.name + "' ignored");
+    }
+    const auto take_list = [&](std::size_t p) {
+      return !is_index_list(properties[p]) || take_strips();
+    };
     for (std::size_t i = 0; i < element.count; ++i) {
-      const auto take_list = [&](std::size_t) {
-        std::size_t in_strip = 0;
-        for (std::size_t k = 0; k < list_.size(); ++k) {
-          if (list_[k] == -1) {
-            in_strip = 0;
-            continue;
-          }
-          if (!(list_[k] >= 0) || list_[k] >= static_cast<double>(raw_.positions.size())) {
-            return refuse(body_.refuse(Error::BadValue, "strip index " + shown(list_[k]) + " of " +
-                                                            std::to_string(raw_.positions.size()) +
-                                                            " vertices"));
-          }
-          if (++in_strip < 3) continue;
-          const std::size_t flip = in_strip % 2 == 0 ? 1 : 0;
-          const auto at = [&](std::size_t back) {
-            return static_cast<std::uint32_t>(list_[k - back]);
-          };
-          const std::array<std::uint32_t, 3> triangle{at(1 + (flip ^ 1)), at(1 + flip), at(0)};
-          // Strips turn corners by repeating a vertex; that is no ugliness to be counted.
-          if (triangle[0] == triangle[1] || triangle[1] == triangle[2] ||
-              triangle[2] == triangle[0]) {
-            continue;
-          }
-          sink_.add_face(triangle);
-        }
-        return true;
-      };
       if (!read_row(
               element, i, [](std::size_t, double) { return true; }, take_list))
         return false;
+    }
+    return true;
+  }
+
+  // Every other triangle of a strip is turned round.
+  bool take_strips() {
+    corners_.clear();
+    for (double item : list_) {
+      if (item == -1) {
+        corners_.clear();
+        continue;
+      }
+      std::uint32_t vertex = 0;
+      if (!take_vertex(item, vertex)) return false;
+      corners_.push_back(vertex);
+      if (corners_.size() < 3) continue;
+      const std::uint32_t* const last = &corners_.back() - 2;
+      const bool is_turned = corners_.size() % 2 == 0;
+      const std::array<std::uint32_t, 3> triangle{last[is_turned ? 1 : 0], last[is_turned ? 0 : 1],
+                                                  last[2]};
+      // Strips turn corners by repeating a vertex; that is no ugliness to be counted.
+      if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
+        continue;
+      }
+      sink_.add_face(triangle);
     }
     return true;
   }

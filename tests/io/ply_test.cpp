@@ -326,6 +326,23 @@ TEST_CASE("triangle strips turn every other triangle and break at -1") {
   }
 }
 
+TEST_CASE("of several lists of strips the indices are read") {
+  const Imported in = import_text(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement tristrips 1\nproperty list int int other\n"
+      "property list int int vertex_index\nproperty int color\nend_header\n"
+      "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 99 4 0 1 3 2 7\n",
+      "a.ply");
+  CHECK(in.mesh.triangle_count() == 2);
+  CHECK(in.report.notes == std::vector<std::string>{"'other' of 'tristrips' ignored",
+                                                    "'color' of 'tristrips' ignored"});
+  CHECK(refusal_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                   "property float z\nelement tristrips 1\nproperty list int int other\n"
+                   "end_header\n0 0 0\n1 0\n",
+                   "a.ply")
+            .ends_with("strips have no vertex_indices"));
+}
+
 TEST_CASE("unknown elements and lists are passed over") {
   const Imported in = import_text(
       "ply\nformat ascii 1.0\nelement camera 1\nproperty float focus\nproperty list uchar float k\n"
@@ -381,6 +398,11 @@ TEST_CASE("every refusal names the place and the reason") {
         "a.ply:13: vertex index 3 of 3 vertices");
   CHECK(refusal_of(header("", "") + kThreePoints + "3 0 1 -1\n", "a.ply") ==
         "a.ply:13: vertex index -1 of 3 vertices");
+  std::string floats = header("", "") + kThreePoints + "3 0.0 1e0 1.5\n";
+  floats.replace(floats.find("uchar int"), 9, "int float");
+  CHECK(refusal_of(floats, "a.ply") == "a.ply:13: vertex index 1.5 is no whole number");
+  floats.replace(floats.find("1.5"), 3, "2.0");
+  CHECK(import_text(floats, "a.ply").mesh.triangle_count() == 1);
   CHECK(refusal_of(header("", "") + "0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "a.ply") ==
         "a.ply:11: vertex 1 is not finite");
   CHECK(refusal_of("ply\nformat ascii 1.0\nelement face 1\n"
