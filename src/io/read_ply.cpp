@@ -133,6 +133,7 @@ class PlyReader {
         return false;
       }
     }
+    rows_with_more_ = 0;  // all of them are ignored
     return true;
   }
 
@@ -161,19 +162,19 @@ class PlyReader {
       raw_.positions.push_back(position);
       vertices_.keep_row();
     }
-    note_long_rows(element, vertices_);
+    if (note_long_rows(element)) vertices_.layers.clear();
     return true;
   }
 
   // A row that holds more numbers than the header says: which of them are meant is not known. What
   // comes before is kept: positions of vertices, corners of faces.
-  void note_long_rows(const PlyElement& element, PlyLayers& layers) {
-    if (rows_with_more_ == 0) return;
+  bool note_long_rows(const PlyElement& element) {
+    if (rows_with_more_ == 0) return false;
     raw_.report.notes.push_back(std::to_string(rows_with_more_) + " rows of '" + element.name +
                                 "' hold more numbers than the header says: their other properties "
                                 "are ignored");
-    layers.layers.clear();
     rows_with_more_ = 0;
+    return true;
   }
 
   bool read_faces(const PlyElement& element) {
@@ -206,7 +207,7 @@ class PlyReader {
       faces_.keep_row();
       keep_corner_uv();
     }
-    note_long_rows(element, faces_);
+    if (note_long_rows(element)) faces_.layers.clear();
     return true;
   }
 
@@ -266,6 +267,7 @@ class PlyReader {
               element, i, [](std::size_t, double) { return true; }, take_list))
         return false;
     }
+    note_long_rows(element);
     return true;
   }
 

@@ -374,6 +374,15 @@ TEST_CASE("rows that hold more than the header says keep what is certain") {
   CHECK(in.report.notes.size() == 1);
 }
 
+TEST_CASE("rows of an element that is ignored say nothing of the next one") {
+  std::string text =
+      header("property float heat\n", "") + "1 2\n0 0 0 5\n1 0 0 5\n0 1 0 5\n3 0 1 2\n";
+  text.insert(text.find("element vertex"), "element camera 1\nproperty float focus\n");
+  const Imported in = import_text(text, "a.ply");
+  CHECK(layer_named(in.mesh, "heat") != nullptr);
+  CHECK(in.report.notes == std::vector<std::string>{"element 'camera' ignored"});
+}
+
 TEST_CASE("colours in floats, in shorts and per face") {
   const std::string three = "property float red\nproperty float green\nproperty float blue\n";
   const Mesh floats =
