@@ -43,6 +43,9 @@ class PlyBody {
   // Whether the row holds more than was read from it.
   bool row_has_more() { return is_text() && !line_.done(); }
 
+  // Whether anything but blank lines follows the last row.
+  bool has_more_rows() { return is_text() ? begin_row() : left() > 0; }
+
   bool number(PlyType type, double& x) {
     if (is_text()) return line_.number(x);
     const std::size_t size = size_of(type);

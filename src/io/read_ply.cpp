@@ -43,6 +43,10 @@ class PlyReader {
       if (element.properties.empty()) continue;
       if (!fits(element) || !read_element(element)) return *failure_;
     }
+    if (body_.has_more_rows()) {
+      raw_.report.notes.push_back(body_.is_text() ? "lines after the last row ignored"
+                                                  : "bytes after the last row ignored");
+    }
     finish();
     return std::move(raw_);
   }

@@ -383,6 +383,17 @@ TEST_CASE("rows of an element that is ignored say nothing of the next one") {
   CHECK(in.report.notes == std::vector<std::string>{"element 'camera' ignored"});
 }
 
+TEST_CASE("what follows the last row is told") {
+  using Notes = std::vector<std::string>;
+  const std::string text = header("", "") + kThreePoints + "3 0 1 2\n";
+  CHECK(import_text(text + "\n \n", "a.ply").report.notes.empty());
+  CHECK(import_text(text + "3 0 2 1\n", "a.ply").report.notes ==
+        Notes{"lines after the last row ignored"});
+  CHECK(import_text(binary_ply(true), "a.ply").report.notes.empty());
+  CHECK(import_text(binary_ply(true) + "x", "a.ply").report.notes ==
+        Notes{"bytes after the last row ignored"});
+}
+
 TEST_CASE("colours in floats, in shorts and per face") {
   const std::string three = "property float red\nproperty float green\nproperty float blue\n";
   const Mesh floats =
