@@ -59,9 +59,9 @@ CornerChanges AttributeRejoiner::rejoin(const UnfoldedBlock& block,
     all.derived_of[i] = since(first_derived, all.derived.size());
     for (std::size_t l = 0; l < layers_.size(); ++l) {
       find_values(block, patch, first, l, wedges[l]);
-      join(patch, vanished, first, second, l);
+      join(block, patch, vanished, first, second, l);
       if (is_last) {
-        go_to_coarse(block, first, l);
+        go_to_coarse(block, l);
       } else if (are_known(wedges[l])) {
         go_to_best(wedges[l], l);
       } else {
@@ -183,9 +183,19 @@ void AttributeRejoiner::find_values(const UnfoldedBlock& block, const Contractin
   }
 }
 
-// A collapsed triangle joins what it has at the two children.
-void AttributeRejoiner::join(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
-                             std::uint32_t first, std::uint32_t second, std::size_t layer) {
+// A collapsed triangle joins what it has at the two children, unless the coarse end has both apart:
+// what is joined does not part again.
+void AttributeRejoiner::join(const UnfoldedBlock& block, const ContractingPatch& patch,
+                             std::span<const std::uint32_t> vanished, std::uint32_t first,
+                             std::uint32_t second, std::size_t layer) {
+  const std::vector<CodedValue>& coarse = block.coarse_values[layer];
+  const auto wanted_of = [&](std::uint32_t joined) {
+    std::uint32_t wanted = kNone;
+    for (const AtVertex& value : at_vertex_) {
+      if (value.joined == joined && value.wanted != kNone) wanted = value.wanted;
+    }
+    return wanted;
+  };
   for (const std::uint32_t t : vanished) {
     if (is_hidden(layer, t)) continue;
     const std::array<std::uint32_t, 3>& ids = at_corners_[layer][t].ids;
@@ -193,14 +203,15 @@ void AttributeRejoiner::join(const ContractingPatch& patch, std::span<const std:
     const AtVertex* b = find(ids[corner_of(patch.corners(t), second)]);
     if (a == nullptr || b == nullptr || a->joined == b->joined) continue;
     const std::uint32_t low = std::min(a->joined, b->joined), high = std::max(a->joined, b->joined);
+    const std::uint32_t of_low = wanted_of(low), of_high = wanted_of(high);
+    if (of_low != kNone && of_high != kNone && coarse[of_low] != coarse[of_high]) continue;
     for (AtVertex& value : at_vertex_) {
       if (value.joined == high) value.joined = low;
     }
   }
 }
 
-void AttributeRejoiner::go_to_coarse(const UnfoldedBlock& block, std::uint32_t v,
-                                     std::size_t layer) {
+void AttributeRejoiner::go_to_coarse(const UnfoldedBlock& block, std::size_t layer) {
   ValuePool& pool = pools_[layer];
   const std::vector<CodedValue>& coarse = block.coarse_values[layer];
   // Those that vanish in this block have no value at its coarse end; they go with their neighbours.
@@ -232,11 +243,11 @@ void AttributeRejoiner::go_to_coarse(const UnfoldedBlock& block, std::uint32_t v
       if (goes_to[k] != kNone) goes_to[i] = goes_to[k];
     }
     if (goes_to[i] == kNone) {
-      const std::uint32_t to = pool.intern(wanted, is_flat ? ValuePool::kFlat : block.vertices[v]);
+      goes_to[i] = is_flat ? pool.intern(wanted, ValuePool::kFlat) : kNone;
       // What is not joined stays apart, even if its value is the same.
-      const bool is_taken =
-          find(to) != nullptr || std::count(goes_to.begin(), goes_to.end(), to) > 0;
-      goes_to[i] = is_taken ? pool.add(wanted) : to;
+      const bool is_taken = goes_to[i] == kNone || find(goes_to[i]) != nullptr ||
+                            std::count(goes_to.begin(), goes_to.end(), goes_to[i]) > 1;
+      if (is_taken) goes_to[i] = pool.add(wanted);
     }
     value.to = goes_to[i];
   }
@@ -303,14 +314,17 @@ void AttributeRejoiner::go_to_best(const WedgeValues& wedges, std::size_t layer)
   ValuePool& pool = pools_[layer];
   const std::size_t dimension = layers_[layer].dimension;
   for (std::size_t i = 0; i < at_vertex_.size(); ++i) {
-    const std::uint32_t wedge = at_vertex_[i].wedge;
+    const std::uint32_t wedge = at_vertex_[i].wedge, joined = at_vertex_[i].joined;
+    const auto goes_along = [&](const AtVertex& value) {
+      return value.wedge == wedge && value.joined == joined;
+    };
     const std::span<const float> best = std::span(wedges.value[wedge]).first(dimension);
     std::size_t members = 0;
     bool is_done = false;
     std::uint32_t nearest = kNone;
     double nearest_away2 = 0;
     for (std::size_t k = 0; k < at_vertex_.size(); ++k) {
-      if (at_vertex_[k].wedge != wedge) continue;
+      if (!goes_along(at_vertex_[k])) continue;
       is_done = is_done || k < i;
       ++members;
       const std::span<const float> value = pool.value(at_vertex_[k].id);
@@ -328,7 +342,7 @@ void AttributeRejoiner::go_to_best(const WedgeValues& wedges, std::size_t layer)
     std::uint32_t to = nearest;
     if (!(nearest_away2 <= same * same)) to = pool.add(pool.nearest_code(best));
     for (AtVertex& value : at_vertex_) {
-      if (value.wedge == wedge) value.to = to;
+      if (goes_along(value)) value.to = to;
     }
   }
 }

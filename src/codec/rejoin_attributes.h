@@ -1,12 +1,13 @@
 // What corners carry between the two ends of a block, as the attribute changes of its contractions.
 //
 // A block has values at both ends. Attributes at the two children that a collapsed triangle links
-// become one (G03 3.3); while the vertex will be contracted further in the same block, that is what
-// is best for the triangles that they stand for (codec/wedge_quadrics.h), or where that is not
-// known, what they are at where the parent stands between the children; with its last contraction
-// every corner gets what it has at the coarse end. Triangles that show their geometric normal at
-// the coarse end do so from the first contraction that touches them; so do those that show it at
-// the fine end already, where that is not the model's.
+// become one (G03 3.3), unless the coarse end has them apart; while the vertex will be contracted
+// further in the same block, that is what is best for the triangles that they stand for
+// (codec/wedge_quadrics.h), or where that is not known, what they are at where the parent stands
+// between the children; with its last contraction every corner gets what it has at the coarse end.
+// Triangles that show their geometric normal at the coarse end do so from the first contraction
+// that touches them; so do those that show it at the fine end already, where that is not the
+// model's.
 #pragma once
 
 #include "codec/contracting_patch.h"
@@ -79,9 +80,10 @@ class AttributeRejoiner {
               std::vector<TriangleId>& derived);
   void find_values(const UnfoldedBlock& block, const ContractingPatch& patch, std::uint32_t v,
                    std::size_t layer, const WedgeValues& wedges);
-  void join(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
-            std::uint32_t first, std::uint32_t second, std::size_t layer);
-  void go_to_coarse(const UnfoldedBlock& block, std::uint32_t v, std::size_t layer);
+  void join(const UnfoldedBlock& block, const ContractingPatch& patch,
+            std::span<const std::uint32_t> vanished, std::uint32_t first, std::uint32_t second,
+            std::size_t layer);
+  void go_to_coarse(const UnfoldedBlock& block, std::size_t layer);
   // `second_share`: where the parent stands on the way from the first child to the second.
   void blend(std::size_t layer, double second_share);
   bool are_known(const WedgeValues& wedges) const;                // all at the vertex

@@ -57,6 +57,7 @@ void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& v
   std::vector<std::uint32_t> first_corner;  // per wedge
   WedgeValues& all = layer.values;
   all.of_corner.assign(codes.size(), kNone);
+  layer.coarse = block.coarse_values[l];
   for (std::uint32_t t = 0; t < block.end.triangles.size(); ++t) {
     if (is_normal && block.end.derived[t]) continue;
     const CodedValue* code = &codes[3 * std::size_t(t)];
@@ -77,6 +78,9 @@ void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& v
       }
       layer.wedges[w].is_pinned = layer.wedges[w].is_pinned || is_constant;
       all.of_corner[3 * std::size_t(t) + c] = w;
+      const bool is_wanted =
+          t < block.coarse_triangle_count() && !(is_normal && block.coarse_derived[t]);
+      if (is_wanted && layer.wedges[w].wanted == kNone) layer.wedges[w].wanted = 3 * t + c;
     }
   }
   layer.wedge_of_corner = all.of_corner;
@@ -166,8 +170,10 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
   return cost;
 }
 
-// Two values that faces show do not become one.
+// Two values that faces show do not become one, nor do two that the coarse end has.
 bool WedgeQuadrics::keep_apart(const Layer& layer, std::uint32_t a, std::uint32_t b) const {
+  const std::uint32_t of_a = layer.wedges[a].wanted, of_b = layer.wedges[b].wanted;
+  if (of_a != kNone && of_b != kNone && layer.coarse[of_a] != layer.coarse[of_b]) return true;
   return layer.wedges[a].is_pinned && layer.wedges[b].is_pinned &&
          layer.values.value[a] != layer.values.value[b];
 }
@@ -240,6 +246,7 @@ CREASE_WIDE double WedgeQuadrics::join(std::span<const std::uint32_t> members, c
   for (std::size_t i = 0; i < members.size(); ++i) {
     const Wedge& member = layer.wedges[members[i]];
     if (i > 0) sum.add(layer.quadrics[member.quadric], layer.dimension);
+    if (wedge.wanted == kNone) wedge.wanted = member.wanted;
     if (member.is_pinned) {
       wedge.is_pinned = is_known = true;
       value = all.value[members[i]];

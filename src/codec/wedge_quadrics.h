@@ -38,7 +38,7 @@ struct WedgeValues {
 class WedgeQuadrics {
  public:
   // Points are about the geometry's origin. `values`: one a layer. `is_contracted`: per vertex,
-  // whether it may be one of those of contract().
+  // whether it may be one of those of contract(). `block` must outlive it.
   WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSchema> layers,
                 std::span<const LayerValues> values, const PatchGeometry& geometry,
                 std::span<const char> is_contracted);
@@ -64,14 +64,16 @@ class WedgeQuadrics {
 
  private:
   struct Wedge {
-    std::uint32_t quadric = 0;  // in Layer::quadrics; kNone: of no vertex that is contracted
-    bool is_pinned = false;     // a triangle has it at all three corners: it does not change
+    std::uint32_t quadric = 0;     // in Layer::quadrics; kNone: of no vertex that is contracted
+    bool is_pinned = false;        // a triangle has it at all three corners: it does not change
+    std::uint32_t wanted = kNone;  // corner whose value at the coarse end it gets
   };
   struct Layer {
     int dimension = 1;
     bool is_direction = false;
     AttributeRole role = AttributeRole::Other;
-    double scale = 0;  // squared grid units that one unit of error is worth
+    double scale = 0;                    // squared grid units that one unit of error is worth
+    std::span<const CodedValue> coarse;  // of the block's coarse end
     WedgeValues values;
     std::vector<std::uint32_t> wedge_of_corner;  // as it is
     std::vector<Wedge> wedges;

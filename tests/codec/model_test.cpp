@@ -6,6 +6,7 @@
 #include "crease/import.h"
 #include "crease/threads.h"
 #include "support/described_mesh.h"
+#include "support/mesh_builder.h"
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
 #include "support/shared_data.h"
@@ -100,6 +101,8 @@ void check_bands(const EncodedCase& c) {
   REQUIRE(hierarchy.ok());
   const Status sound = check_hierarchy(*hierarchy);
   CHECK_MESSAGE(sound.ok(), (sound.ok() ? "" : sound.failure().message));
+  const Result<HardEdges> edges = check_hard_edges(*hierarchy);
+  CHECK_MESSAGE(edges.ok(), (edges.ok() ? "" : edges.failure().message));
 }
 
 void check_subsets(const EncodedCase& c, std::uint64_t seed) {
@@ -142,6 +145,64 @@ TEST_CASE("a file has every band's mesh, corner for corner") {
       check_bands(simplified_case(zoo.mesh, 200, 14, deering));
     }
   }
+}
+
+std::size_t normals_at(const Mesh& mesh, const Vec3d& position) {
+  std::set<std::vector<float>> normals;
+  for (std::size_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
+    const VertexId v = mesh.triangles[corner / 3][corner % 3];
+    if (length(mesh.positions[index_of(v)] - position) > 0.1) continue;
+    const auto normal = mesh.layers[0].value(mesh.layers[0].of_corner[corner]);
+    normals.insert({normal.begin(), normal.end()});
+  }
+  return normals.size();
+}
+
+//   w----u----v    p-q-u links what p and q have, but the record leaves it apart. Then s comes to
+//   them,
+//    \  / \  /     and what stands there is what it is at the coarse end.
+//     p--q--s
+//        d--v
+TEST_CASE("normals that a collapsed triangle links and the coarse end has apart stay apart") {
+  MeshBuilder b;
+  const VertexId p = b.vertex({0, 0, 0}), q = b.vertex({1, 0, 0}), s = b.vertex({2, 0, 0}),
+                 u = b.vertex({1, 2, 0.5}), d = b.vertex({1, -2, 0.5}), v = b.vertex({4, 0, 1}),
+                 w = b.vertex({-2, 1, 0});
+  const AttributeId at_p = b.normal({0, 0.2, 1}), at_q = b.normal({0, -0.2, 1}),
+                    at_s = b.normal({0.3, -0.2, 1}), at_u = b.normal({0, 0.3, 1}),
+                    at_d = b.normal({0, -0.3, 1}), at_v = b.normal({0.4, 0, 1}),
+                    at_w = b.normal({-0.4, 0, 1});
+  b.triangle({p, q, u}, {at_p, at_q, at_u});
+  b.triangle({q, s, u}, {at_q, at_s, at_u});
+  b.triangle({w, p, u}, {at_w, at_p, at_u});
+  b.triangle({d, v, q}, {at_d, at_v, at_q});
+  b.triangle({s, v, u}, {at_s, at_v, at_u});
+  Mesh mesh = b.take();
+  ContractionSequence sequence;
+  sequence.grid = make_grid(mesh, {.bits = 8});
+  snap(mesh, sequence.grid);
+  sequence.new_values.resize(1);
+  for (const VertexId removed : {q, s}) {
+    Contraction c;
+    c.kept = p;
+    c.removed = removed;
+    c.position = sequence.grid.nearest(mesh.positions[index_of(p)]);
+    sequence.contractions.push_back(c);
+  }
+  sequence.contractions[1].change_count = 1;
+  sequence.changes = {{0, at_s, at_q}};
+  make_one_band(mesh, sequence);
+  const std::vector<LayerCoding> codings = codings_of(mesh, kExactPrecision);
+  const EncodedCase c = encoded_case(std::move(mesh), std::move(sequence), codings);
+  check_bands(c);
+  const DecodedModel model = decoded(opened(c.bytes));
+  const Mesh between =
+      mesh_of_level(model.mesh, model.sequence, apply_contractions(model.mesh, model.sequence, 1));
+  CHECK(normals_at(between, {0, 0, 0}) == 2);
+  const auto coarse = [](const Mesh& finest, const ContractionSequence& all) {
+    return described(mesh_of_level(finest, all, apply_contractions(finest, all, 2)));
+  };
+  CHECK((coarse(model.mesh, model.sequence) == coarse(c.mesh, c.sequence)));
 }
 
 TEST_CASE("any closed subset of blocks is the cut that the definition has there") {

@@ -59,6 +59,7 @@ UnfoldedBlock random_block(std::mt19937_64& random) {
   }
   block.vertices.resize(mesh.positions.size());
   block.triangles.resize(triangles);
+  block.coarse_values.resize(block.end.values.size());
   return block;
 }
 
