@@ -49,7 +49,7 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
   Result<ContractionSequence> sequence = simplify(mesh, grid, simplify_options, &built.statistics);
   if (!sequence.ok()) return sequence.failure();
   snap_new_values(*sequence, mesh, codings);
-  join_equal_values(*sequence, mesh);
+  join_equal_values(*sequence, mesh, codings);
   if (!goes_on(options, "encode", 0)) return interrupted;
   MemorySink sink;
   const Result<EncodedModel> encoded = run_on(options.simplify.threads, [&] {

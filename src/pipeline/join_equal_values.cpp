@@ -1,11 +1,13 @@
 #include "pipeline/join_equal_values.h"
 
 #include "codec/triangle_lists.h"
+#include "crease/vec.h"
 #include "hierarchy/attribute_values.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -17,6 +19,12 @@ namespace crease {
 namespace {
 
 constexpr std::uint32_t kNowhere = 0xffffffffu;
+
+// Where a free code is looked for: in rings about a direction that are a code's size apart, or so.
+constexpr int kMostRings = 32;
+constexpr double kExactStep = 1e-6;
+constexpr std::array<std::pair<double, double>, 8> kAround{
+    {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
 
 // Numbers by attribute: a hash table that is filled anew for every vertex.
 class NumberOfAttribute {
@@ -49,14 +57,21 @@ class NumberOfAttribute {
 
 class ValueJoiner {
  public:
-  ValueJoiner(ContractionSequence& sequence, const Mesh& mesh)
+  ValueJoiner(ContractionSequence& sequence, const Mesh& mesh, std::span<const LayerCoding> codings)
       : sequence_(sequence),
         mesh_(mesh),
+        codings_(codings),
+        quantizers_(codings.begin(), codings.end()),
         corners_(mesh.triangles),
         is_alive_(mesh.triangle_count(), 1),
         is_derived_(mesh.triangle_count(), 0) {
     for (const AttributeLayer& layer : mesh.layers) of_corner_.push_back(layer.of_corner);
     planned_ = of_corner_;
+    for (std::uint32_t l = 0; l < mesh.layers.size(); ++l) {
+      is_flat_.emplace_back(mesh.layers[l].value_count() +
+                            new_value_count(mesh.layers[l], sequence, l));
+      for (std::uint32_t t = 0; t < corners_.size(); ++t) note_flat(l, t);
+    }
     around_.resize(mesh.vertex_count());
     for (std::uint32_t t = 0; t < corners_.size(); ++t) {
       for (const VertexId v : corners_[t]) around_.add(static_cast<std::uint32_t>(v), t);
@@ -161,27 +176,47 @@ class ValueJoiner {
     return false;
   }
 
-  // What was equal at the two ends goes on as one. What only becomes equal keeps the value that it
-  // had, so that a hard edge between stays one; or where that is another's, goes on as one as well.
+  // What only becomes equal keeps a value that it had, so that a hard edge between stays one; or
+  // where those are others', gets one beside. Only what is no direction goes on as one as well.
   void join(std::uint32_t layer) {
     constexpr std::size_t kFew = 16;  // no more are looked at in pairs without need
     if (at_vertex_.size() < 2) return;
     const bool pairs = at_vertex_.size() <= kFew || several_are_equal(layer);
-    if (pairs) join_equal(layer);
-    for (AtVertex& value : at_vertex_) {
-      if (value.to != value.from && is_taken(layer, value, value.to)) {
-        if (!is_taken(layer, value, value.from)) value.to = value.from;
+    if (pairs) join_flat(layer);
+    for (const bool joins_another : {false, true}) {
+      for (const AtVertex& value : at_vertex_) {
+        if (value.to == value.from || is_there(value.to) != joins_another) continue;
+        if (is_taken(layer, value, value.to)) part(layer, value.to);
       }
     }
     if (pairs) follow_equal(layer);
   }
-  void join_equal(std::uint32_t layer) {
+  // What is flat and was equal at the two ends goes on as one: a reader has it as one.
+  void join_flat(std::uint32_t layer) {
+    const auto is_flat = [&](const AtVertex& value) {
+      return is_flat_[layer][static_cast<std::uint32_t>(value.from)] != 0;
+    };
     for (AtVertex& value : at_vertex_) {
+      if (!is_flat(value)) continue;
       for (AtVertex& other : at_vertex_) {
-        if (other.to == value.to || !equal(layer, other.from, value.from)) continue;
+        if (other.to == value.to || !is_flat(other)) continue;
+        if (!equal(layer, other.from, value.from)) continue;
         AtVertex& follower = other.to == other.from ? value : other;
         follower.to = follower.to == value.to ? other.to : value.to;
       }
+    }
+  }
+  // What becomes `to` still becomes one: a reader sees that triangles link it.
+  void part(std::uint32_t layer, AttributeId to) {
+    AttributeId apart = to;
+    for (const AtVertex& member : at_vertex_) {
+      if (member.to != to || member.from == to || is_taken(layer, member, member.from)) continue;
+      apart = member.from;
+      break;
+    }
+    if (apart == to) apart = free_value(layer, to);
+    for (AtVertex& value : at_vertex_) {
+      if (value.to == to && value.from != to) value.to = apart;
     }
   }
   void follow_equal(std::uint32_t layer) {
@@ -194,13 +229,47 @@ class ValueJoiner {
       }
     }
   }
+  bool is_there(AttributeId a) const { return value_from_.find(a) != kNowhere; }
 
-  // Whether another attribute has, or had, that value.
+  // Whether another attribute gets that value.
   bool is_taken(std::uint32_t layer, const AtVertex& value, AttributeId wanted) const {
     return std::any_of(at_vertex_.begin(), at_vertex_.end(), [&](const AtVertex& other) {
-      if (&other == &value || other.to == value.to) return false;
-      return equal(layer, other.to, wanted) || equal(layer, other.from, wanted);
+      return other.to != value.to && (other.from == wanted || equal(layer, other.to, wanted));
     });
+  }
+
+  // A new attribute next to one, with a code that nothing gets; or itself, if there is none.
+  AttributeId free_value(std::uint32_t layer, AttributeId near) {
+    const AttributeLayer& source = mesh_.layers[layer];
+    if (source.interpolation != Interpolation::Direction || source.dimension != 3) return near;
+    const auto value = attribute_value(source, sequence_, layer, near);
+    const Vec3d n{value[0], value[1], value[2]};
+    const Vec3d across = std::abs(n.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    const Vec3d u = normalized(cross(n, across)), v = cross(n, u);
+    const LayerCoding& coding = codings_[layer];
+    const double step =
+        coding.kind == LayerCoding::Kind::Exact ? kExactStep : std::ldexp(1.0, -coding.bits);
+    for (int ring = 1; ring <= kMostRings; ++ring) {
+      for (const auto& [a, b] : kAround) {
+        const Vec3d moved = normalized(n + u * (a * ring * step) + v * (b * ring * step));
+        std::array<float, 3> candidate{float(moved.x), float(moved.y), float(moved.z)};
+        quantizers_[layer].snap(candidate);
+        const bool is_free =
+            std::none_of(at_vertex_.begin(), at_vertex_.end(), [&](const AtVertex& other) {
+              const auto taken = attribute_value(source, sequence_, layer, other.to);
+              return std::memcmp(taken.data(), candidate.data(), sizeof candidate) == 0;
+            });
+        if (is_free) return add_value(layer, candidate);
+      }
+    }
+    return near;
+  }
+  AttributeId add_value(std::uint32_t layer, std::span<const float> value) {
+    const auto id = static_cast<std::uint32_t>(is_flat_[layer].size());
+    std::vector<float>& values = sequence_.new_values[layer];
+    values.insert(values.end(), value.begin(), value.end());
+    is_flat_[layer].push_back(0);
+    return AttributeId{id};
   }
 
   bool equal(std::uint32_t layer, AttributeId a, AttributeId b) const {
@@ -209,20 +278,31 @@ class ValueJoiner {
     return std::memcmp(x.data(), y.data(), x.size_bytes()) == 0;
   }
 
+  // A reader has a value that all corners of some triangle have as one wherever it is.
+  void note_flat(std::uint32_t layer, std::uint32_t t) {
+    const AttributeId* ids = &of_corner_[layer][3 * std::size_t(t)];
+    if (!equal(layer, ids[0], ids[1]) || !equal(layer, ids[1], ids[2])) return;
+    for (std::size_t c = 0; c < 3; ++c) is_flat_[layer][static_cast<std::uint32_t>(ids[c])] = 1;
+  }
+
   void apply(VertexId v, std::uint32_t layer) {
     for (const std::uint32_t t : around_[static_cast<std::uint32_t>(v)]) {
       if (!is_shown(layer, t)) continue;
       AttributeId& now = of_corner_[layer][corner(t, v)];
       now = at_vertex_[value_from_.find(now)].to;
+      note_flat(layer, t);
     }
   }
 
   ContractionSequence& sequence_;
   const Mesh& mesh_;
+  const std::span<const LayerCoding> codings_;
+  const std::vector<LayerQuantizer> quantizers_;
   std::vector<Triangle> corners_;
   codec::TriangleLists around_;                      // per vertex
   std::vector<char> is_alive_, is_derived_;          // per triangle
   std::vector<std::vector<AttributeId>> of_corner_;  // per layer, joined
+  std::vector<std::vector<char>> is_flat_;           // per layer and attribute
   std::vector<std::vector<AttributeId>> planned_;    // per layer, as the sequence had it
   // Scratch.
   std::vector<AtVertex> at_vertex_;
@@ -233,13 +313,14 @@ class ValueJoiner {
 
 }  // namespace
 
-void join_equal_values(ContractionSequence& sequence, const Mesh& snapped) {
+void join_equal_values(ContractionSequence& sequence, const Mesh& snapped,
+                       std::span<const LayerCoding> codings) {
   if (snapped.layers.empty()) {
     sequence.changes.clear();
     for (Contraction& c : sequence.contractions) c.first_change = c.change_count = 0;
     return;
   }
-  ValueJoiner(sequence, snapped).run();
+  ValueJoiner(sequence, snapped, codings).run();
 }
 
 }  // namespace crease

@@ -26,7 +26,7 @@ struct EncodedCase {
 inline EncodedCase encoded_case(Mesh mesh, ContractionSequence sequence,
                                 const std::vector<LayerCoding>& codings) {
   snap_to_codings(mesh, codings);
-  join_equal_values(sequence, mesh);
+  join_equal_values(sequence, mesh, codings);
   MemorySink sink;
   const Result<EncodedModel> encoded = encode_model(mesh, sequence, codings, sink);
   REQUIRE_MESSAGE(encoded.ok(), (encoded.ok() ? "" : encoded.failure().message));

@@ -62,7 +62,7 @@ SizedModel simplify_sized(Mesh mesh, Placement placement, bool with_normals) {
 
 std::vector<std::byte> encode_sized(SizedModel model) {
   snap_new_values(model.sequence, model.mesh, model.codings);
-  join_equal_values(model.sequence, model.mesh);
+  join_equal_values(model.sequence, model.mesh, model.codings);
   MemorySink sink;
   if (!encode_model(model.mesh, model.sequence, model.codings, sink).ok()) return {};
   return sink.take();
