@@ -16,6 +16,10 @@ constexpr double kThin = 1e-4;
 // a faceted sphere every edge is hard, and none of them is a feature.
 constexpr double kFlatLineCosine = 0.866;  // 30 degrees
 
+// Where two surfaces touch or cross none ends, and their planes hold the edge. Whole lines spend
+// the triangles of solids that share a wall on it, none lets the edge wander over coplanar sheets.
+constexpr double kTouchingLine = 0.03;
+
 // Two triangles on the same side of their edge, folded onto each other or doubled: the planes
 // agree, so only a line can hold the edge.
 constexpr double kFoldCosine = 0.5;
@@ -290,9 +294,10 @@ inline double PatchSimplifier::square_of_difference(const Wedge& a, const Wedge&
   return sum;
 }
 
-// How much of a line an edge is, 0 to 1: a border, a crease, or where more than two sheets meet.
+// How much of a line an edge is, 0 to 1: a border, a crease, where a sheet ends on others, and a
+// little where sheets only touch or cross.
 inline double PatchSimplifier::line_weight(Index v, const Edge& edge) const {
-  if (edge.triangle_count != 2) return 1;
+  if (edge.triangle_count != 2) return edge.triangle_count % 2 == 0 ? kTouchingLine : 1;
   const Index w = edge.other, t = triangle_of(edge.corner[0]), u = triangle_of(edge.corner[1]);
   if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) return 1;
   // Sides that run through the edge in the same direction are inside out to each other.

@@ -33,6 +33,10 @@ constexpr double kCoarseShare = 0.1, kCoarseLeavesPair = 0.9;
 // while.
 constexpr double kFirstPairs = 0.45;
 
+// What normals weigh falls with this power of the share of the triangles that is left: where
+// triangles become as large as what is shown the surface goes wrong before its shading does.
+constexpr double kNormalPower = 0.1;
+
 // Below this many triangles one last band goes all the way.
 constexpr std::size_t kLastBand = 64;
 
@@ -203,12 +207,14 @@ class Simplifier {
           });
       const double triangle_area = std::max(extent.area / double(before), 1e-9);
       const double edge = std::sqrt(triangle_area * 2.3);  // of an equilateral triangle
-      set_scales(work_, extent, options_.normal_weight, edge);
+      const double left = double(before) / double(input_triangles);
+      const double normal_weight = options_.normal_weight * std::pow(left, kNormalPower);
+      set_scales(work_, extent, normal_weight, edge);
 
       Steering steering;
       steering.placement = options_.placement;
-      steering.normal_scale = options_.normal_weight * edge;
-      if (double(before) < kCoarseShare * double(input_triangles)) {
+      steering.normal_scale = normal_weight * edge;
+      if (left < kCoarseShare) {
         steering.leaves_ends = 1;
         steering.leaves_pair = kCoarseLeavesPair;
       }

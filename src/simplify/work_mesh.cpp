@@ -217,7 +217,7 @@ void find_inside_out(WorkMesh& work) {
 }
 
 // Of so many triangles one. Coarse levels always have some: a house that became flat.
-constexpr std::size_t kManyCopies = 10;
+constexpr std::size_t kManyCopies = 100;
 
 void find_copies(const Mesh& mesh, WorkMesh& work) {
   work.has_copies = kManyCopies * count_duplicate_triangles(mesh) > mesh.triangle_count();
