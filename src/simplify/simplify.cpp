@@ -133,10 +133,10 @@ Extent measure_extent(const WorkMesh& work) {
 }
 
 // What an attribute error is worth as a distance. A texture that slides costs what the slide is
-// long; a normal or a colour costs in proportion to the triangles' size, so that the balance with
-// distance is the same at every level: distance falls with the square of the size, shading with
-// the size.
-void set_scales(WorkMesh& work, const Extent& extent, double normal_weight, double edge) {
+// long; a normal or a colour costs in proportion to the triangles' size, since distance falls with
+// the square of the size, shading with the size; a normal less in coarse levels (kNormalPower).
+void set_scales(WorkMesh& work, const Extent& extent, double normal_weight, double color_weight,
+                double edge) {
   for (std::size_t l = 0; l < work.layers.size(); ++l) {
     WorkLayer& layer = work.layers[l];
     if (layer.source->role == AttributeRole::Other) layer.same = same_number(layer.range);
@@ -147,7 +147,7 @@ void set_scales(WorkMesh& work, const Extent& extent, double normal_weight, doub
       layer.length_per_unit = 0.3 * length_per_unit;
       layer.same = same_texture(edge / length_per_unit);
     } else {
-      layer.length_per_unit = 0.5 * normal_weight * edge * layer.importance;
+      layer.length_per_unit = color_weight * edge * layer.importance;
     }
   }
 }
@@ -209,7 +209,7 @@ class Simplifier {
       const double edge = std::sqrt(triangle_area * 2.3);  // of an equilateral triangle
       const double left = double(before) / double(input_triangles);
       const double normal_weight = options_.normal_weight * std::pow(left, kNormalPower);
-      set_scales(work_, extent, normal_weight, edge);
+      set_scales(work_, extent, normal_weight, 0.5 * options_.normal_weight, edge);
 
       Steering steering;
       steering.placement = options_.placement;
