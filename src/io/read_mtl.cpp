@@ -59,7 +59,9 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
   for (Material& m : materials) by_name.emplace(m.name, &m);
   for (Material& m : materials) by_name.emplace(without_comment(m.name), &m);
   Material* current = nullptr;
-  bool has_dissolve = false;  // of the current one
+  bool has_dissolve = false;   // of the current one
+  bool tells_opacity = false;  // by d, or by a Tr that is not 1
+  std::vector<Material*> of_tr;
   LineReader lines(text, true);
   for (Line line; lines.next(line);) {
     const std::string_view word = line.word();
@@ -76,13 +78,18 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
       g = b = r;  // one number stands for three
       if (line.number(g)) line.number(b);
       current->base_color = {share(r), share(g), share(b), current->base_color[3]};
-    } else if (current && word == "d") {
+    } else if (word == "d") {
       double x;
       if (!line.number(x)) continue;
-      current->base_color[3] = share(x);
-      has_dissolve = true;
-    } else if (current && word == "Tr" && !has_dissolve) {
-      if (double x; line.number(x)) current->base_color[3] = share(1 - x);
+      has_dissolve = tells_opacity = true;
+      if (current) current->base_color[3] = share(x);
+    } else if (word == "Tr" && !has_dissolve) {
+      double x;
+      if (!line.number(x)) continue;
+      tells_opacity = tells_opacity || x != 1;
+      if (!current) continue;
+      current->base_color[3] = share(1 - x);
+      of_tr.push_back(current);
     } else if (current && word == "map_Kd") {
       TexturePlacement& placement =
           placement_of_material[static_cast<std::size_t>(current - materials.data())] = {};
@@ -93,6 +100,8 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
               : (std::filesystem::path(folder) / name).lexically_normal().generic_string();
     }
   }
+  if (tells_opacity) return;
+  for (Material* m : of_tr) m->base_color[3] = 1;
 }
 
 }  // namespace crease

@@ -19,7 +19,8 @@ struct TexturePlacement {
 
 // Fills in the base colour (Kd, d or Tr) and texture (map_Kd) of the materials that `text` names,
 // and how it lies; others stay as they are. Tr is 1 - d; where both stand, some exporters write the
-// same number for both, and d is what is meant. `folder`: where the library lies, relative to the
+// same number for both, and d is what is meant. Tr 1 alone for all that tells any is MeshLab's
+// way to say opaque. `folder`: where the library lies, relative to the
 // OBJ; a texture's path gets it in front. Lines that make no sense are passed over: nothing depends
 // on them. `is_known` becomes true for those that it names; where a name as a whole is not one,
 // what follows " #" is a comment.

@@ -35,6 +35,21 @@ TEST_CASE("d goes before Tr, in either order; Tr alone is 1 - d") {
   CHECK(alpha_of("Kd 1 0 0\n") == 1);
 }
 
+TEST_CASE("a library that says Tr 1 of everything, and d of nothing, is opaque") {
+  const Folder folder;
+  const auto alpha_of = [&](const std::string& library) {
+    folder.write("a.mtl", library);
+    return import_obj(folder, "mtllib a.mtl\n" + kQuadCorners + "usemtl red\nf 1 2 3\n")
+        .mesh.materials[0]
+        .base_color[3];
+  };
+  const std::string red = "newmtl red\nKd 1 0 0\nTr 1.000000\n", other = "newmtl other\nTr ";
+  CHECK(alpha_of(red) == 1);
+  CHECK(alpha_of(red + other + "1\n") == 1);
+  CHECK(alpha_of(red + other + "0\n") == 0);
+  CHECK(alpha_of(red + "newmtl other\nd 1\n") == 0);
+}
+
 TEST_CASE("materials that are fully transparent are told, if anything has them") {
   const Folder folder;
   folder.write("a.mtl", "newmtl red\nd 0\nnewmtl blue\nTr 1\nnewmtl green\n");
