@@ -74,7 +74,8 @@ void count_losses(const Json& json, const Json& entry, Losses& losses) {
   const Json& extensions = at(entry, "extensions");
   const Json& model = at(entry, "pbrMetallicRoughness");
   const bool has_other_model = has(extensions, "KHR_materials_unlit") ||
-                               (!model.is_object() && has(extensions, kOlderModel));
+                               (!model.is_object() && (has(extensions, kOlderModel) ||
+                                                       has(extensions, "KHR_techniques_webgl")));
   losses.add("metallic and roughness", !has_other_model && !is_plain(model));
   losses.add("normalTexture", has(entry, "normalTexture"));
   losses.add("occlusionTexture", has(entry, "occlusionTexture"));

@@ -21,15 +21,16 @@
 namespace crease {
 namespace {
 
-// Extensions that a file may require although nothing here depends on them: materials, textures
-// and lights change no triangle. KHR_mesh_quantization, CESIUM_RTC, the two compressions, instances
-// and what is visible are read.
+// Extensions that a file may require although nothing here depends on them: materials (techniques
+// are glTF 1.0's), textures and lights change no triangle. KHR_mesh_quantization, CESIUM_RTC, the
+// two compressions, instances and what is visible are read.
 bool is_harmless(const std::string& extension) {
   static constexpr std::array kPrefixes = {"KHR_materials_",
                                            "KHR_texture_",
                                            "EXT_texture_",
                                            "MSFT_texture_",
                                            "KHR_lights_",
+                                           "KHR_techniques_webgl",
                                            "KHR_xmp",
                                            "KHR_mesh_quantization",
                                            "CESIUM_RTC",

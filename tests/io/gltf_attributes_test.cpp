@@ -222,6 +222,16 @@ TEST_CASE("glTF: what materials say beyond a base colour is told, kind by kind")
               "a material loses magFilter NEAREST"});
 }
 
+TEST_CASE("glTF: techniques of glTF 1.0 may be required, and are lost like other materials") {
+  GltfBuilder b = one_triangle();
+  b.json["extensionsUsed"] = b.json["extensionsRequired"] = {"KHR_techniques_webgl"};
+  b.json["materials"] = {{{"extensions", {{"KHR_techniques_webgl", {{"technique", 0}}}}}}};
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  const Imported in = import_text(b.gltf(), "m.gltf");
+  CHECK(in.mesh.triangle_count() == 1);
+  CHECK(in.report.notes == std::vector<std::string>{"a material loses 'KHR_techniques_webgl'"});
+}
+
 TEST_CASE("glTF: alpha counts where it blends") {
   for (const auto& [mode, alpha] :
        {std::pair("OPAQUE", 1.0f), std::pair("MASK", 1.0f), std::pair("BLEND", 0.25f)}) {
