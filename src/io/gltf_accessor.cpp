@@ -19,8 +19,6 @@ enum ComponentType : std::size_t {
   kFloat = 5126,
 };
 
-constexpr const char* kMeshopt = "EXT_meshopt_compression";
-
 std::size_t bytes_of_component(std::size_t type) {
   switch (type) {
     case kByte:
@@ -218,7 +216,7 @@ Result<std::span<const std::byte>> GltfReader::view_bytes(const Json& view_index
   }
   const Json& json = views[*index];
   const std::string here = place_of("bufferViews", *index);
-  const Json& compressed = at(at(json, "extensions"), kMeshopt);
+  const Json& compressed = meshopt_of(json);
   if (!compressed.is_object()) return bytes_of(json, here);
   const auto known = decoded_views_.find(*index);
   if (known != decoded_views_.end()) return std::span<const std::byte>(known->second);
@@ -254,7 +252,7 @@ Result<GltfReader::View> GltfReader::view_of(const Json& owner, const std::strin
   const Json& json = at(at(document_.json, "bufferViews"), *as_index(index));
   const std::string here = place_of("bufferViews", *as_index(index));
   View view;
-  const Json& compressed = at(at(json, "extensions"), kMeshopt);
+  const Json& compressed = meshopt_of(json);
   const Json& layout = compressed.is_object() ? compressed : json;
   view.stride = as_index(at(layout, "byteStride")).value_or(value_bytes);
   const std::size_t offset = as_index(at(owner, "byteOffset")).value_or(0);

@@ -1,5 +1,5 @@
-// Compressed glTF: buffer views of EXT_meshopt_compression and primitives of
-// KHR_draco_mesh_compression. The files that include the two libraries.
+// Compressed glTF: buffer views of EXT_meshopt_compression and KHR_meshopt_compression, and
+// primitives of KHR_draco_mesh_compression. The files that include the two libraries.
 #pragma once
 
 #include "crease/result.h"
@@ -14,8 +14,12 @@
 
 namespace crease {
 
-// The bytes of a buffer view, out of `encoded`. `extension` is its object of that name. Fails if
-// they are not what it says. Takes no more memory than a small multiple of `encoded`.
+// The object of either name that a buffer view has, or null.
+const Json& meshopt_of(const Json& buffer_view);
+
+// The bytes of a buffer view, out of `encoded`. `extension` is meshopt_of() it. Fails if they are
+// not what it says. Takes no more memory than a small multiple of `encoded`, or, of version 1, of
+// 1024 times and half a gigabyte the lesser.
 Result<std::vector<std::byte>> decode_meshopt(const Source& source, const std::string& place,
                                               const Json& extension,
                                               std::span<const std::byte> encoded);

@@ -40,6 +40,7 @@ bool is_harmless(const std::string& extension) {
                                            "KHR_node_visibility",
                                            "EXT_structural_metadata",
                                            "EXT_meshopt_compression",
+                                           "KHR_meshopt_compression",
                                            "KHR_draco_mesh_compression"};
   return std::ranges::any_of(kPrefixes, [&](const char* p) { return extension.starts_with(p); });
 }
@@ -53,7 +54,7 @@ Status check_required_extensions(const Source& source, const Json& json) {
     return fail_at_place(
         Error::NotSupported, source, place_of("extensionsRequired", i),
         in_quotes(extension) + " is not supported" +
-            (compressed ? "; EXT_meshopt_compression and KHR_draco_mesh_compression are" : ""));
+            (compressed ? "; KHR_meshopt_compression and KHR_draco_mesh_compression are" : ""));
   }
   return Done{};
 }

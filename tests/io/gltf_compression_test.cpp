@@ -114,6 +114,15 @@ TEST_CASE("buffer views that meshoptimizer compressed") {
   const DescribedMesh expected = described_import(plain(wave));
   CHECK(described_import(meshopt_compressed(wave, "TRIANGLES")) == expected);
   CHECK(described_import(meshopt_compressed(wave, "INDICES")) == expected);
+
+  GltfBuilder renamed = meshopt_compressed(wave, "TRIANGLES");  // nothing else is different
+  renamed.json["extensionsRequired"] = {"KHR_meshopt_compression"};
+  for (Json& view : renamed.json["bufferViews"]) {
+    if (!view.contains("extensions")) continue;
+    const Json extension = view["extensions"]["EXT_meshopt_compression"];
+    view["extensions"] = {{"KHR_meshopt_compression", extension}};
+  }
+  CHECK(described_import(renamed) == expected);
 }
 
 TEST_CASE("normals through meshoptimizer's octahedral filter") {
