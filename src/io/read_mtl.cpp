@@ -26,7 +26,8 @@ std::string texture_name(Line& line, TexturePlacement& placement) {
     const std::string_view option = probe.word();
     if (option.size() < 2 || option[0] != '-') break;
     const bool takes_word = option == "-blendu" || option == "-blendv" || option == "-clamp" ||
-                            option == "-cc" || option == "-imfchan" || option == "-type";
+                            option == "-cc" || option == "-imfchan" || option == "-type" ||
+                            option == "-colorspace";
     if (takes_word) {
       probe.word();
     } else if (option == "-s") {

@@ -153,7 +153,8 @@ TEST_CASE("OBJ: images are beside the library, or beside the file after all") {
 TEST_CASE("OBJ: scale and offset of a texture are in the coordinates") {
   const Folder folder;
   folder.write("quad.obj", kQuad);
-  folder.write("quad.mtl", "newmtl wood\nmap_Kd -s 2 3 1 -clamp on -o 0.5 red tex.png\n");
+  folder.write("quad.mtl",
+               "newmtl wood\nmap_Kd -s 2 3 1 -clamp on -colorspace sRGB -o 0.5 red tex.png\n");
   const Result<Imported> in = import_mesh(folder.path / "quad.obj", {});
   REQUIRE(in.ok());
   const Mesh& mesh = in->mesh;
