@@ -4,6 +4,7 @@
 #include "io/read_beside.h"
 #include "io/text.h"
 
+#include <cctype>
 #include <cstddef>
 #include <optional>
 #include <set>
@@ -26,6 +27,27 @@ std::vector<std::string> words_of(std::string_view named) {
     words.emplace_back(word);
   }
   return words;
+}
+
+// Of a line of names with blanks in them: each goes up to its ending.
+std::vector<std::string> names_of(const std::vector<std::string>& words) {
+  const auto is_end = [](const std::string& word) {
+    if (word.size() < 4) return false;
+    std::string ending = word.substr(word.size() - 4);
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return ending == ".mtl";
+  };
+  std::vector<std::string> names;
+  bool goes_on = false;
+  for (const std::string& word : words) {
+    if (goes_on) {
+      names.back() += ' ' + word;
+    } else {
+      names.push_back(word);
+    }
+    goes_on = !is_end(word);
+  }
+  return names;
 }
 
 class LibraryReader {
@@ -61,12 +83,15 @@ class LibraryReader {
 
  private:
   // A path as written is surer than its last part alone, and one name than several.
-  void read_line(const std::string& whole, const std::vector<std::string>& words) {
+  void read_line(const std::string& whole, std::vector<std::string> words) {
     if (take_as_written(whole)) return;
     std::optional<Failure> no_whole;
     if (!is_any_there(words)) {
       no_whole = take(whole);
       if (!no_whole) return;
+      if (std::vector<std::string> names = names_of(words); is_any_there(names)) {
+        words = std::move(names);
+      }
     }
     std::vector<Failure> missing;
     for (const std::string& word : words) {

@@ -112,6 +112,16 @@ TEST_CASE("several libraries in a line or in lines, wherever they are") {
   }
 }
 
+TEST_CASE("several libraries in a line whose names have blanks in them") {
+  const Folder folder;
+  folder.write("my red.mtl", kRed);
+  folder.write("my blue.MTL", kBlue);
+  CHECK(colors_of(folder, "mtllib my red.mtl my blue.MTL\n").arrived == "red blue");
+  const Colors colors = colors_of(folder, "mtllib my red.mtl gone.mtl\n");
+  CHECK(colors.arrived == "red");
+  CHECK(colors.notes[0] == "material library left out: no file 'gone.mtl'");
+}
+
 TEST_CASE("a library that is not there, or outside, is told once; so are materials without one") {
   const Folder folder;
   folder.write("red.mtl", kRed);
