@@ -1,5 +1,6 @@
 #include "io/gltf_materials.h"
 
+#include "io/losses.h"
 #include "io/text.h"
 
 #include <algorithm>
@@ -12,33 +13,6 @@ namespace {
 
 constexpr std::size_t kRepeat = 10497, kNearest = 9728;  // samplers (5.26)
 constexpr const char* kOlderModel = "KHR_materials_pbrSpecularGlossiness";
-
-// How many materials lose a thing, by its name, in the order of the first.
-class Losses {
- public:
-  void add(const std::string& what, bool is_lost) {
-    if (!is_lost) return;
-    const auto found = std::ranges::find(counts_, what, &Count::first);
-    if (found != counts_.end()) {
-      ++found->second;
-    } else if (counts_.size() < kMostNames) {
-      counts_.emplace_back(what, 1);
-    }
-  }
-  std::vector<std::string> notes() const {
-    std::vector<std::string> notes;
-    for (const auto& [what, count] : counts_) {
-      notes.push_back(count == 1 ? "a material loses " + what
-                                 : std::to_string(count) + " materials lose " + what);
-    }
-    return notes;
-  }
-
- private:
-  static constexpr std::size_t kMostNames = 32;  // extensions have any
-  using Count = std::pair<std::string, std::size_t>;
-  std::vector<Count> counts_;
-};
 
 bool has(const Json& object, const char* key) {
   return at(object, key).is_object();

@@ -73,6 +73,7 @@ class LibraryReader {
       }
       read_line(names, words);
     }
+    for (std::string& note : losses_.notes()) libraries_.notes.push_back(std::move(note));
     // Where libraries were named and none was read, all are, and each has a note of its own.
     if (any_ || named.empty()) {
       is_known_.flip();
@@ -129,13 +130,14 @@ class LibraryReader {
     const std::string_view text(reinterpret_cast<const char*>(file.bytes.data()),
                                 file.bytes.size());
     read_mtl(text, std::filesystem::path(file.path).parent_path().generic_string(), materials_,
-             libraries_.placement_of_material, is_known_);
+             libraries_.placement_of_material, is_known_, losses_);
     any_ = true;
   }
 
   const std::filesystem::path& folder_;
   std::span<Material> materials_;
   MaterialLibraries libraries_;
+  Losses losses_;
   std::vector<bool> is_known_;  // a library has it
   std::size_t name_count_ = 0;
   bool any_ = false;  // was read

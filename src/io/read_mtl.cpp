@@ -2,8 +2,10 @@
 
 #include "io/text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <unordered_map>
 
@@ -48,6 +50,20 @@ std::string_view without_comment(std::string_view name) {
   return name.substr(0, name.find_last_not_of(" \t") + 1);
 }
 
+// What a line says that no material here has; empty: nothing.
+std::string lost_by(std::string_view word, Line& line) {
+  if (word == "bump" || word == "map_bump" || word == "map_Bump") return "'map_bump'";
+  if (word == "Ke") {
+    double most = 0;
+    for (double x; line.number(x);) most = std::max(most, x);
+    return most > 0 ? "emission" : "";
+  }
+  // Ambient light is nobody's but old programs', which name the texture of map_Kd again.
+  const bool is_other_texture = (word.starts_with("map_") && word != "map_Ka") || word == "norm" ||
+                                word == "disp" || word == "decal" || word == "refl";
+  return is_other_texture ? in_quotes(word) : "";
+}
+
 float share(double x) {
   return std::isfinite(x) ? static_cast<float>(std::fmin(std::fmax(x, 0), 1)) : 1;
 }
@@ -55,7 +71,8 @@ float share(double x) {
 }  // namespace
 
 void read_mtl(std::string_view text, const std::string& folder, std::span<Material> materials,
-              std::span<TexturePlacement> placement_of_material, std::vector<bool>& is_known) {
+              std::span<TexturePlacement> placement_of_material, std::vector<bool>& is_known,
+              Losses& losses) {
   std::unordered_map<std::string_view, Material*> by_name;
   for (Material& m : materials) by_name.emplace(m.name, &m);
   for (Material& m : materials) by_name.emplace(without_comment(m.name), &m);
@@ -63,6 +80,7 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
   bool has_dissolve = false;   // of the current one
   bool tells_opacity = false;  // by d, or by a Tr that is not 1
   std::vector<Material*> of_tr;
+  std::set<std::string> lost;  // of the current one
   LineReader lines(text, true);
   for (Line line; lines.next(line);) {
     const std::string_view word = line.word();
@@ -72,6 +90,7 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
       if (found == by_name.end()) found = by_name.find(without_comment(name));
       current = found == by_name.end() ? nullptr : found->second;
       has_dissolve = false;
+      lost.clear();
       if (current) is_known[static_cast<std::size_t>(current - materials.data())] = true;
     } else if (current && word == "Kd") {
       double r, g, b;
@@ -99,6 +118,9 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
           folder.empty() || name.empty()
               ? name
               : (std::filesystem::path(folder) / name).lexically_normal().generic_string();
+    } else if (current) {
+      const std::string what = lost_by(word, line);
+      if (!what.empty()) losses.add(what, lost.insert(what).second);
     }
   }
   if (tells_opacity) return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "crease/mesh.h"
+#include "io/losses.h"
 
 #include <array>
 #include <span>
@@ -23,8 +24,9 @@ struct TexturePlacement {
 // way to say opaque. `folder`: where the library lies, relative to the
 // OBJ; a texture's path gets it in front. Lines that make no sense are passed over: nothing depends
 // on them. `is_known` becomes true for those that it names; where a name as a whole is not one,
-// what follows " #" is a comment.
+// what follows " #" is a comment. `losses`: textures of other kinds than map_Kd, and emission.
 void read_mtl(std::string_view text, const std::string& folder, std::span<Material> materials,
-              std::span<TexturePlacement> placement_of_material, std::vector<bool>& is_known);
+              std::span<TexturePlacement> placement_of_material, std::vector<bool>& is_known,
+              Losses& losses);
 
 }  // namespace crease

@@ -122,6 +122,17 @@ TEST_CASE("several libraries in a line whose names have blanks in them") {
   CHECK(colors.notes[0] == "material library left out: no file 'gone.mtl'");
 }
 
+TEST_CASE("what materials lose of a library is told, of those that the model has") {
+  const Folder folder;
+  folder.write("a.mtl",
+               "newmtl red\nKe 0 0 0\nmap_Ka red.png\nmap_d holes.png\nbump -bm 2 b.png\n"
+               "map_Bump b.png\nnewmtl blue\nKe 0 0.5 0\nmap_d holes.png\n"
+               "newmtl other\nmap_Ks s.png\n");
+  CHECK(colors_of(folder, "mtllib a.mtl\n").notes ==
+        std::vector<std::string>{"2 materials lose 'map_d'", "a material loses 'map_bump'",
+                                 "a material loses emission"});
+}
+
 TEST_CASE("a library that is not there, or outside, is told once; so are materials without one") {
   const Folder folder;
   folder.write("red.mtl", kRed);
