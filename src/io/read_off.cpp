@@ -1,4 +1,6 @@
-// OFF with its prefixes ST, C and N (any combination, in this order), polygons, comments, colours.
+// OFF with its prefixes ST, C and N (any combination, in this order), polygons, comments, colours,
+// as text and binary.
+#include "io/binary_off.h"
 #include "io/face_sink.h"
 #include "io/formats.h"
 #include "io/off_colors.h"
@@ -24,7 +26,10 @@ class OffReader {
 
   Result<RawMesh> read() {
     raw_.report.format = "OFF";
-    if (!read_header() || !read_vertices() || !read_faces() || !read_end()) return *failure_;
+    if (!next_line("OFF") || !read_keyword()) return *failure_;
+    const bool is_read =
+        is_binary_ ? read_binary() : read_counts() && read_vertices() && read_faces() && read_end();
+    if (!is_read) return *failure_;
     add_vertex_layers();
     add_face_colors();
     sink_.report();
@@ -115,15 +120,64 @@ class OffReader {
     if (!prefix.empty()) {
       return refuse(Error::NotSupported, "OFF of more than three dimensions: " + in_quotes(prefix));
     }
-    if (Line rest = line_; rest.word() == "BINARY") {
-      return refuse(Error::NotSupported, "binary OFF; convert it to text");
-    }
+    Line rest = line_;
+    is_binary_ = rest.word() == "BINARY";
     return true;
   }
 
-  bool read_header() {
+  bool read_binary() {
+    const auto begin = static_cast<std::size_t>(lines_.position() - source_.text().data());
+    const std::size_t normal_end = has_normals_ ? 6 : 3;
+    const std::size_t color_end = normal_end + (has_colors_ ? 4 : 0);
+    std::vector<float> row(color_end + (has_texcoords_ ? 2 : 0));
+    BinaryOff rows(source_.bytes.subspan(begin), row.size());
+    const auto refuse_at = [&](std::size_t offset, Error error, const std::string& reason) {
+      failure_ = fail_at_byte(error, source_, begin + offset, reason);
+      return false;
+    };
+    if (!rows.open()) {
+      return refuse_at(0, Error::Truncated,
+                       "vertices and faces of a binary OFF do not fit into the " +
+                           std::to_string(source_.bytes.size() - begin) + " bytes that are left");
+    }
+    vertex_count_ = rows.vertex_count();
+    face_count_ = rows.face_count();
+    raw_.positions.reserve(vertex_count_);
+    for (std::size_t v = 0; v < vertex_count_; ++v) {
+      const std::size_t offset = rows.offset();
+      rows.take_vertex(row);
+      const Vec3d p{row[0], row[1], row[2]};
+      if (!is_position(p)) {
+        return refuse_at(offset, Error::BadValue,
+                         "vertex " + std::to_string(v) + " is " + fault_of(p));
+      }
+      raw_.positions.push_back(p);
+      normals_.insert(normals_.end(), row.begin() + 3, row.begin() + std::ptrdiff_t(normal_end));
+      row_.assign(row.begin() + std::ptrdiff_t(normal_end),
+                  row.begin() + std::ptrdiff_t(color_end));
+      if (has_colors_) colors_.add(row_, false);
+      texcoords_.insert(texcoords_.end(), row.begin() + std::ptrdiff_t(color_end), row.end());
+    }
+    raw_.triangles.reserve(face_count_);
+    for (std::size_t f = 0; f < face_count_; ++f) {
+      const std::size_t offset = rows.offset();
+      rows.take_face(corners_, row_);
+      for (std::uint32_t v : corners_) {
+        if (v < vertex_count_) continue;
+        return refuse_at(offset, Error::BadValue, index_of_many(v));
+      }
+      add_face([&] { keep_face_color(false); });
+    }
+    if (!rows.at_end()) raw_.report.notes.push_back("bytes after the last face ignored");
+    return true;
+  }
+
+  std::string index_of_many(std::int64_t v) const {
+    return "face index " + std::to_string(v) + " of " + std::to_string(vertex_count_) + " vertices";
+  }
+
+  bool read_counts() {
     std::size_t unused_edges = 0;
-    if (!next_line("OFF") || !read_keyword()) return false;
     if (!read_count(vertex_count_, "vertices") || !read_count(face_count_, "faces")) return false;
     if (!line_.done() && !read_count(unused_edges, "edges")) return false;
     // A vertex takes at least the six characters "0 0 0\n", a face "3 0 0 0\n" or "0\n".
@@ -251,35 +305,46 @@ class OffReader {
                         corner_of_face(c, count) + ": not an index: " + in_quotes(line_.word()));
         }
         if (v < 0 || static_cast<std::size_t>(v) >= vertex_count_) {
-          return refuse(Error::BadValue, "face index " + std::to_string(v) + " of " +
-                                             std::to_string(vertex_count_) + " vertices");
+          return refuse(Error::BadValue, index_of_many(v));
         }
         corners_.push_back(static_cast<std::uint32_t>(v));
       }
-      if (corners_.size() < 3) {
-        ++short_faces_;
-        continue;
-      }
-      sink_.add_face(corners_);
-      if (rows_are_lines_) keep_face_color();
+      add_face([&] {
+        if (rows_are_lines_) read_face_color();
+      });
     }
     return true;
   }
 
-  // What follows the corners in their line: nothing, an index into a colour table, or three or four
-  // components.
-  void keep_face_color() {
+  // `keep_color` is called if it is one.
+  template <typename KeepColor>
+  void add_face(KeepColor keep_color) {
+    if (corners_.size() < 3) {
+      ++short_faces_;
+      return;
+    }
+    sink_.add_face(corners_);
+    keep_color();
+  }
+
+  // What follows the corners in their line.
+  void read_face_color() {
     clear_row();
     while (row_.size() < 4 && take_number()) {
     }
     if (!line_.done() || row_.size() == 2) ++long_faces_;
+    keep_face_color(std::ranges::find(row_is_whole_, false) == row_is_whole_.end());
+  }
+
+  // The row in hand: nothing, an index into a colour table, or three or four components.
+  void keep_face_color(bool is_whole) {
     const std::size_t before = sink_.face_count() - 1;
     if (row_.size() == 1 || row_.size() == 2) {
       face_categories_.resize(before, 0.0f);
       face_categories_.push_back(static_cast<float>(row_[0]));
     } else if (row_.size() >= 3) {
       face_colors_.fill(before);
-      add_color(face_colors_, 0, row_.size());
+      face_colors_.add(row_, is_whole);
     }
   }
 
@@ -347,7 +412,7 @@ class OffReader {
   FaceSink sink_;
   std::optional<Failure> failure_;
   std::string keyword_ = "OFF";
-  bool has_texcoords_ = false, has_colors_ = false, has_normals_ = false;
+  bool has_texcoords_ = false, has_colors_ = false, has_normals_ = false, is_binary_ = false;
   // OFF is free of lines but behind a face, where they end a colour. Rows have lines of their own
   // where there are enough for all, or, since a file may be cut, where the first is such a line.
   bool rows_are_lines_ = true;

@@ -1,6 +1,14 @@
 #include "io/polygon_model.h"
+#include "support/described_mesh.h"
 
 #include <doctest/doctest.h>
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace crease {
 namespace {
@@ -119,13 +127,71 @@ TEST_CASE("every refusal names the line and the reason") {
   CHECK(refusal_of(three, "a.off") == "a.off:5: the file ends; face 0 of 1 expected");
   CHECK(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n", "a.off") ==
         "a.off:5: vertex 2 of 3 is not finite");
-  CHECK(refusal_of("OFF BINARY\n", "a.off") == "a.off:1: binary OFF; convert it to text");
+  CHECK(refusal_of("OFF BINARY\n", "a.off") ==
+        "a.off: byte 11: vertices and faces of a binary OFF do not fit into the 0 bytes that are "
+        "left");
   CHECK(refusal_of("4OFF\n1 1 0\n", "a.off")
             .starts_with("a.off:1: OFF of more than three dimensions"));
   CHECK(refusal_of("OFF\n353535235358 6 0\n0 0 0\n", "a.off")
             .starts_with("a.off:2: the header promises"));
   CHECK(refusal_of("OFF\n3 1 0\n0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.off") ==
         "a.off:3: vertex 0 of 3 has too few numbers");
+}
+
+// A square of a triangle and a triangle that is red, and its rows as text.
+struct BinarySquare {
+  bool is_big_endian = true, has_colors = true;
+  std::string bytes = "NOFF BINARY\n";
+
+  void word(std::uint32_t x) {
+    for (int i = 0; i < 4; ++i) {
+      bytes += static_cast<char>(x >> (is_big_endian ? 24 - 8 * i : 8 * i) & 0xff);
+    }
+  }
+  void number(float x) { word(std::bit_cast<std::uint32_t>(x)); }
+
+  BinarySquare(bool big, bool colors) : is_big_endian(big), has_colors(colors) {
+    for (std::uint32_t count : {4, 2, 5}) word(count);
+    for (auto [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+      for (int c : {x, y, 0, 0, 0, 1}) number(static_cast<float>(c));
+    }
+    for (std::uint32_t c : {3, 0, 1, 2}) word(c);
+    if (has_colors) word(0);
+    for (std::uint32_t c : {3, 0, 2, 3}) word(c);
+    if (!has_colors) return;
+    word(3);
+    for (float c : {1.0f, 0.5f, 0.0f}) number(c);
+  }
+  static constexpr const char* kText =
+      "NOFF\n4 2 5\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n3 0 2 3";
+};
+
+TEST_CASE("binary, as Geomview writes it, and as others do: in any byte order, without colours") {
+  for (const bool big : {true, false}) {
+    for (const bool colors : {true, false}) {
+      CAPTURE(big);
+      CAPTURE(colors);
+      const std::string text = std::string(BinarySquare::kText) + (colors ? " 1 0.5 0.0\n" : "\n");
+      const Imported in = import_text(BinarySquare(big, colors).bytes, "a.off");
+      CHECK(described(in.mesh) == described(import_text(text, "a.off").mesh));
+      CHECK(in.report.notes.empty());
+    }
+  }
+}
+
+TEST_CASE("binary: what is cut off, goes on or has no such vertex") {
+  const std::string whole = BinarySquare(true, true).bytes;
+  for (std::size_t size = 12; size < whole.size(); ++size) {
+    const Result<Imported> in = import_bytes(
+        std::as_bytes(std::span(std::string_view(whole).substr(0, size))), "a.off", {});
+    REQUIRE(!in.ok());
+    CHECK(in.failure().error == Error::Truncated);
+  }
+  CHECK(import_text(whole + "more", "a.off").report.notes ==
+        std::vector<std::string>{"bytes after the last face ignored"});
+  std::string wrong = whole;
+  wrong[wrong.size() - 17] = 9;  // the last corner
+  CHECK(refusal_of(wrong, "a.off") == "a.off: byte 140: face index 9 of 4 vertices");
 }
 
 }  // namespace
