@@ -20,6 +20,8 @@ namespace {
 enum ValueKind { kPosition, kTexCoord, kNormal };
 constexpr std::array<const char*, 3> kValueNames{"vertices", "texture coordinates", "normals"};
 
+constexpr std::string_view kPaint = "#MRGB";
+
 class ObjReader {
  public:
   explicit ObjReader(const Source& source) : source_(source), sink_(raw_) {}
@@ -40,6 +42,7 @@ class ObjReader {
     if (raw_.positions.size() >= kNone) {
       return fail(Error::OverLimit, source_.name + ": more than 4 294 967 294 vertices");
     }
+    take_paint();
     scale_colors();
     raw_.triangles.reserve(face_lines_);
     count_ = {};
@@ -61,7 +64,7 @@ class ObjReader {
       line_number_ = line.line_number;
       if ((line_number_ & 0xffff) == 0 && !goes_on()) return false;
       const std::string_view word = line.word();
-      if (word.empty() || word[0] == '#') continue;
+      if (word.empty() || (word[0] == '#' && word != kPaint)) continue;
       if (!visit(word, line)) return false;
     }
     return true;
@@ -88,6 +91,7 @@ class ObjReader {
     if (word == "v") return read_position(line);
     if (word == "vn") return read_normal(line);
     if (word == "vt") return read_texcoord(line);
+    if (word == kPaint) read_paint(line.rest());
     if (word == "f" || word == "fo") {
       ++known_lines_;
       ++face_lines_;
@@ -134,6 +138,29 @@ class ObjReader {
     return true;
   }
 
+  // ZBrush writes colours of vertices as a comment: eight digits each, a mask, red, green and blue.
+  void read_paint(std::string_view digits) {
+    for (; digits.size() >= 8; digits.remove_prefix(8)) {
+      std::uint32_t color = 0;
+      const auto got = std::from_chars(digits.data(), digits.data() + 8, color, 16);
+      if (got.ptr != digits.data() + 8) return;
+      for (int shift : {16, 8, 0}) {
+        paint_.push_back(static_cast<float>(color >> shift & 0xff) / 255.0f);
+      }
+    }
+  }
+
+  void take_paint() {
+    if (paint_.empty()) return;
+    if (colors_.empty() && paint_.size() == 3 * raw_.positions.size()) {
+      colors_ = std::move(paint_);
+    } else {
+      raw_.report.notes.push_back(std::to_string(paint_.size() / 3) +
+                                  " colours in comments ignored, as they are not those of the " +
+                                  std::to_string(raw_.positions.size()) + " vertices");
+    }
+  }
+
   // Colours after coordinates are 0..1 mostly; some programs write 0..255.
   void scale_colors() {
     if (colors_.empty()) return;
@@ -174,7 +201,7 @@ class ObjReader {
       material_ = material_named(std::string(line.rest()));
     } else if (word == "mtllib") {
       libraries_.emplace_back(line.rest());
-    } else {
+    } else if (word != kPaint) {
       ++(ignored_.size() < kMaxIgnoredWords || ignored_.contains(word) ? ignored_[std::string(word)]
                                                                        : ignored_["other words"]);
     }
@@ -394,7 +421,7 @@ class ObjReader {
   std::size_t line_number_ = 0;
   std::size_t known_lines_ = 0, face_lines_ = 0, short_faces_ = 0, texcoords_with_depth_ = 0;
 
-  std::vector<float> colors_, normals_, texcoords_;
+  std::vector<float> colors_, paint_, normals_, texcoords_;
   std::vector<std::uint32_t> texcoord_of_corner_, normal_of_corner_;
   std::array<bool, 3> has_orphans_{};                 // by kind
   std::array<std::size_t, 3> count_{};                // by kind: values before the line in hand

@@ -186,6 +186,20 @@ TEST_CASE("colours after the coordinates of vertices") {
   CHECK(colors.value(colors.of_corner[1])[1] == 1);
 }
 
+TEST_CASE("colours that ZBrush paints, in comments") {
+  const std::string corners = "v 0 0 0\nv 1 0 0\n", more = "v 0 1 0\nf 1 2 3\n";
+  const Imported in =
+      import_text(corners + more + "#MRGB ffff0000ff00ff00\n#MRGB ff3366cc\n#\n", "a.obj");
+  CHECK(in.report.notes.empty());
+  const auto color = std::ranges::find(in.mesh.layers, AttributeRole::Color, &AttributeLayer::role);
+  REQUIRE(color != in.mesh.layers.end());
+  CHECK(color->value(color->of_corner[1])[1] == 1);
+  CHECK(color->value(color->of_corner[2])[2] == doctest::Approx(0.8));
+  CHECK(import_text(corners + "#MRGB ff000000\n" + more, "a.obj").report.notes ==
+        std::vector<std::string>{
+            "1 colours in comments ignored, as they are not those of the 3 vertices"});
+}
+
 TEST_CASE("every refusal names the line and the reason") {
   CHECK(refusal_of("v 0 0\nf 1 1 1\n", "a.obj") == "a.obj:1: vertex has too few numbers");
   CHECK(refusal_of("v 0 0 x\n", "a.obj") == "a.obj:1: vertex: not a number: 'x'");
