@@ -98,6 +98,14 @@ Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
+// What files are packed with that is not read here; empty: nothing.
+std::string_view foreign_packing_of(std::string_view text) {
+  if (text.starts_with("\x1f\x8b")) return "gzip";
+  if (text.starts_with("PK\x03\x04")) return "zip";
+  if (text.starts_with("BZh")) return "bzip2";
+  return {};
+}
+
 Result<RawMesh> read_raw(std::span<const std::byte> bytes, const std::string& name,
                          const ImportOptions& options, const std::filesystem::path* folder) {
   if (bytes.empty()) return fail(Error::BadFormat, name + ": byte 0: empty file");
@@ -110,6 +118,10 @@ Result<RawMesh> read_raw(std::span<const std::byte> bytes, const std::string& na
     if (bytes.empty()) return fail(Error::BadFormat, name + ": byte 0: empty file when unpacked");
   }
   const Source source{bytes, name, folder, &options.progress};
+  if (const std::string_view packing = foreign_packing_of(source.text()); !packing.empty()) {
+    return fail(Error::NotSupported, name + ": byte 0: packed with " + std::string(packing) +
+                                         "; unpack it first (.zst and .xz need not be)");
+  }
   Reader read = reader_by_name(name);
   if (!read) read = reader_by_first_bytes(source.text());
   if (!read && source.text().starts_with(kCreaseMagic)) {

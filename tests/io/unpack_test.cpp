@@ -45,6 +45,15 @@ TEST_CASE("packed files are told by their bytes and imported whatever their name
   CHECK(without_packing("city.obj.zst") == "city.obj");
 }
 
+TEST_CASE("other packings are refused by their names, whatever the file's") {
+  for (const char* name : {"a.glb", "a.obj", "a.json", "a.3mf"}) {
+    CHECK(refusal_of("\x1f\x8b\b", name) ==
+          std::string(name) +
+              ": byte 0: packed with gzip; unpack it first (.zst and .xz need not be)");
+    CHECK(refusal_of("PK\x03\x04", name).find("packed with zip") != std::string::npos);
+  }
+}
+
 TEST_CASE("large content and several streams in a row come out whole") {
   std::string text;
   for (long i = 0; i < 400'000; ++i) text += std::to_string(i * 7919);
