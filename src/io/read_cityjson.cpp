@@ -74,7 +74,11 @@ class CityBuilder {
   Status begin(const Json& json) {
     const std::string version = as_text(at(json, "version"));
     if (as_text(at(json, "type")) != "CityJSON") {
-      return fail_at_place(Error::BadFormat, source_, "type", "not \"CityJSON\"");
+      const bool is_tileset = at(json, "root").is_object() && at(json, "asset").is_object();
+      return fail_at_place(Error::BadFormat, source_, "type",
+                           is_tileset ? "not \"CityJSON\": a tileset of 3D Tiles, which has no "
+                                        "triangles itself; its tiles (.b3dm, .glb) have"
+                                      : "not \"CityJSON\"");
     }
     if (version != "1.0" && version != "1.1" && version != "2.0" && !version.starts_with("1.0.") &&
         !version.starts_with("1.1.") && !version.starts_with("2.0.")) {

@@ -154,6 +154,8 @@ TEST_CASE("CityJSON: what cannot be meant is refused, with its place") {
   place_in(object(R"({"type":"GeometryInstance","template":0,"boundaries":[0]})"), "geometry[0]");
   place_in(R"({"type":"CityJSON","version":"2.0","vertices":[[0,0]],"CityObjects":{}})",
            "vertices[0]");
+  place_in(R"({"asset":{"version":"1.0"},"geometricError":9,"root":{"content":{"uri":"a.b3dm"}}})",
+           "a tileset of 3D Tiles");
   place_in(R"({"type":"CityJSON","version":"0.8","vertices":[],"CityObjects":{}})", "version");
   place_in(R"({"type":"CityJSON","version":"2.0","vertices":[])", "byte 48");
   place_in(R"({"type":"CityJSON","version":"2.0","vertices":[]})", "CityObjects");
