@@ -329,10 +329,10 @@ Result<std::vector<T>> GltfReader::read(const Json& accessor, const Layout& layo
   return values;
 }
 
-// Stored numbers as what the accessor says they are.
+// Stored numbers as what the accessor says they are, however many it says.
 Result<GltfReader::Floats> GltfReader::given_as(const Floats& given, const Layout& layout,
                                                 const std::string& place) const {
-  if (given.components != layout.components || given.count() != layout.count) {
+  if (given.components != layout.components) {
     return fail_at_place(Error::BadValue, source_, place,
                          "decoded are " + std::to_string(given.count()) + " values of " +
                              std::to_string(given.components) + " components");
@@ -401,10 +401,6 @@ Result<std::vector<std::uint32_t>> GltfReader::indices(const Json& accessor_inde
     return fail_at_place(Error::BadFormat, source_, here, "not an accessor of indices");
   }
   if (const auto given = given_indices_.find(*index); given != given_indices_.end()) {
-    if (given->second.size() != layout->count) {
-      return fail_at_place(Error::BadValue, source_, here,
-                           "decoded are " + std::to_string(given->second.size()) + " indices");
-    }
     return given->second;
   }
   return read<std::uint32_t>(accessors[*index], *layout, here);

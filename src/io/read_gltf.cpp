@@ -327,12 +327,19 @@ class MeshBuilder {
     }
     Result<DracoPrimitive> decoded = decode_draco(source_, here, *encoded, ids, most_values());
     if (!decoded.ok()) return decoded.failure();
+    bool is_miscounted = false;
+    const auto compare = [&](std::size_t accessor, std::size_t count) {
+      is_miscounted |= as_index(at(at(accessors, accessor), "count")) != count;
+    };
     for (std::size_t i = 0; i < targets.size(); ++i) {
+      compare(targets[i], decoded->vertex_count);
       reader_.give(targets[i], std::move(decoded->attributes[i]));
     }
     if (const auto indices = as_index(at(primitive, "indices"))) {
+      compare(*indices, decoded->indices.size());
       reader_.give(*indices, std::move(decoded->indices));
     }
+    if (is_miscounted) ++miscounted_primitives_;
     return Done{};
   }
 
@@ -436,6 +443,8 @@ class MeshBuilder {
     };
     note(point_and_line_primitives_, "primitives of points or lines ignored");
     note(unplaced_primitives_, "primitives without POSITION ignored");
+    note(miscounted_primitives_,
+         "primitives whose accessors' counts are not those of what Draco holds, which is taken");
     note(morphed_primitives_,
          "primitives with morph targets taken as their weights are, at rest without");
     note(unweighted_primitives_,
@@ -469,7 +478,7 @@ class MeshBuilder {
   std::map<std::string, std::size_t> ignored_of_instances_;  // attribute: nodes that have it
   std::size_t work_ = 0, instanced_ = 0;
   std::size_t point_and_line_primitives_ = 0, morphed_primitives_ = 0, odd_runs_ = 0;
-  std::size_t unweighted_primitives_ = 0, unplaced_primitives_ = 0;
+  std::size_t unweighted_primitives_ = 0, unplaced_primitives_ = 0, miscounted_primitives_ = 0;
   std::string first_missing_position_;  // of the latter
 };
 

@@ -229,6 +229,17 @@ TEST_CASE("primitives that Draco compressed") {
   CHECK(described_import(draco_compressed(wave)) == described_import(plain(wave)));
 }
 
+TEST_CASE("what Draco holds counts, whatever accessors say of it, which is told") {
+  const Wave wave;
+  for (const std::size_t accessor : {0, 2}) {  // indices, positions
+    GltfBuilder b = draco_compressed(wave);
+    b.json["accessors"][accessor]["count"] = 17;
+    CHECK(described_import(b) == described_import(plain(wave)));
+    CHECK(imported(b)->report.notes[0] ==
+          "1 primitives whose accessors' counts are not those of what Draco holds, which is taken");
+  }
+}
+
 TEST_CASE("primitives that are compressed wrongly are refused") {
   const Wave wave;
   const auto refused = [&](const std::string& words, auto harm) {
@@ -242,8 +253,11 @@ TEST_CASE("primitives that are compressed wrongly are refused") {
   refused("no such bufferView", [](GltfBuilder&, Json& e) { e["bufferView"] = 9; });
   refused("no attribute 77", [](GltfBuilder&, Json& e) { e["attributes"]["NORMAL"] = 77; });
   refused("'TANGENT'", [](GltfBuilder&, Json& e) { e["attributes"]["TANGENT"] = 0; });
-  refused("values of", [](GltfBuilder& b, Json&) { b.json["accessors"][2]["count"] = 17; });
-  refused("indices", [](GltfBuilder& b, Json&) { b.json["accessors"][0]["count"] = 17; });
+  refused("values of", [](GltfBuilder& b, Json&) { b.json["accessors"][1]["type"] = "VEC3"; });
+  refused("values for", [](GltfBuilder& b, Json& e) {  // colours outside of Draco
+    b.json["accessors"][1]["count"] = 17;
+    e["attributes"].erase("COLOR_0");
+  });
   for (std::size_t length = 0; length < 200; length += 7) {
     refused("Draco",
             [&](GltfBuilder& b, Json&) { b.json["bufferViews"][0]["byteLength"] = length; });
