@@ -193,6 +193,15 @@ PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
   return plan;
 }
 
+void scale_float_colors(RawLayer& layer, std::vector<std::string>& notes) {
+  if (layer.role != AttributeRole::Color) return;
+  const bool bytes = std::any_of(layer.values.begin(), layer.values.end(),
+                                 [](float c) { return c > 1.5f && c <= 255.0f; });
+  if (!bytes) return;
+  for (float& c : layer.values) c /= 255.0f;
+  notes.push_back("colours divided by 255");
+}
+
 void settle_categories(RawLayer& layer, std::vector<std::string>& notes) {
   if (layer.interpolation != Interpolation::Categorical) return;
   std::vector<float> values = layer.values;

@@ -63,6 +63,9 @@ bool is_index_list(const PlyProperty& property);
 PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
                       std::span<const std::string> comments, std::vector<std::string>& notes);
 
+// Colours in floats are 0..1; some programs write 0..255.
+void scale_float_colors(RawLayer& layer, std::vector<std::string>& notes);
+
 // Of a layer of the vertices that is complete: numbers that are not whole, in floats or not, and of
 // which nearly every vertex has its own, an id of each, are no categories. Notes those that are.
 void settle_categories(RawLayer& layer, std::vector<std::string>& notes);

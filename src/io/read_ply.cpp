@@ -79,6 +79,14 @@ class PlyReader {
     }
     if (is_face) return read_faces(element);
     if (is_strip) return read_strips(element);
+    if (element.name == "multi_texture_vertex" && uv_.empty() && find_scalar(element, "u") &&
+        find_scalar(element, "v")) {
+      return read_texture_vertices(element);
+    }
+    if (element.name == "multi_texture_face" && !uv_.empty() && uv_of_corner_.empty() &&
+        every_face_is_a_triangle()) {
+      return read_texture_faces(element);
+    }
     raw_.report.notes.push_back("element '" + element.name + "' ignored");
     return skip_rows(element);
   }
@@ -253,6 +261,58 @@ class PlyReader {
     }
   }
 
+  // Scanners' programs write texture coordinates as vertices of their own, and their corners, with
+  // the texture's number, for each face `tn`.
+  bool read_texture_vertices(const PlyElement& element) {
+    const std::size_t u = *find_scalar(element, "u"), v = *find_scalar(element, "v");
+    for (std::size_t i = 0; i < element.count; ++i) {
+      std::array<float, 2> uv{};
+      const auto take = [&](std::size_t p, double x) {
+        if (p == u || p == v) uv[p == u ? 0 : 1] = static_cast<float>(x);
+        return true;
+      };
+      if (!read_row(element, i, take, [](std::size_t) { return true; })) return false;
+      uv_.insert(uv_.end(), uv.begin(), uv.end());
+    }
+    note_long_rows(element);
+    return true;
+  }
+
+  bool every_face_is_a_triangle() const {
+    return raw_.report.polygons == 0 && short_faces_ == 0 &&
+           sink_.face_count() == raw_.triangles.size();
+  }
+
+  bool read_texture_faces(const PlyElement& element) {
+    const auto number = find_scalar(element, "tn"), texture = find_scalar(element, "tx");
+    uv_of_corner_.resize(3 * raw_.triangles.size(), kNone);
+    texture_of_face_.resize(raw_.triangles.size());
+    for (std::size_t i = 0; i < element.count; ++i) {
+      auto face = static_cast<double>(i), of_face = 0.0;
+      const auto take = [&](std::size_t p, double x) {
+        if (p == number) face = x;
+        if (p == texture) of_face = x;
+        return true;
+      };
+      corner_uv_.clear();
+      const auto take_list = [&](std::size_t p) {
+        if (element.properties[p].name == "texture_vertex_indices") corner_uv_ = list_;
+        return true;
+      };
+      if (!read_row(element, i, take, take_list)) return false;
+      if (!(face >= 0 && face < static_cast<double>(raw_.triangles.size()))) continue;
+      const auto triangle = static_cast<std::size_t>(face);
+      texture_of_face_[triangle] = static_cast<float>(of_face);
+      for (std::size_t c = 0; c < 3 && corner_uv_.size() == 3; ++c) {
+        const double index = corner_uv_[c];
+        if (!(index >= 0 && index < static_cast<double>(uv_.size() / 2))) continue;
+        uv_of_corner_[3 * triangle + c] = static_cast<std::uint32_t>(index);
+      }
+    }
+    note_long_rows(element);
+    return true;
+  }
+
   // Strips in one list, cut by -1.
   bool read_strips(const PlyElement& element) {
     const std::vector<PlyProperty>& properties = element.properties;
@@ -300,16 +360,6 @@ class PlyReader {
     return true;
   }
 
-  // Colours in floats are 0..1; some programs write 0..255.
-  void scale_float_colors(RawLayer& layer) {
-    if (layer.role != AttributeRole::Color) return;
-    const bool bytes = std::any_of(layer.values.begin(), layer.values.end(),
-                                   [](float c) { return c > 1.5f && c <= 255.0f; });
-    if (!bytes) return;
-    for (float& c : layer.values) c /= 255.0f;
-    raw_.report.notes.push_back("colours divided by 255");
-  }
-
   static void tell_rounded(const PlyLayers& from, ImportReport& report) {
     for (std::size_t l = 0; l < from.layers.size(); ++l) {
       if (from.layers[l].role != AttributeRole::Other) continue;
@@ -324,7 +374,7 @@ class PlyReader {
     for (std::size_t l = 0; l < vertices_.layers.size(); ++l) {
       RawLayer& layer = vertices_.layers[l];
       if (!vertices_.is_told[l]) {
-        scale_float_colors(layer);
+        scale_float_colors(layer, raw_.report.notes);
         settle_categories(layer, raw_.report.notes);
       }
       raw_.layers.push_back(std::move(layer));
@@ -336,7 +386,7 @@ class PlyReader {
     const bool has_normals = is_there(AttributeRole::Normal),
                has_colors = is_there(AttributeRole::Color);
     for (RawLayer& layer : faces_.layers) {
-      scale_float_colors(layer);
+      scale_float_colors(layer, raw_.report.notes);
       layer.values.resize(std::size_t(layer.dimension) * sink_.face_count(), 0.0f);
       if ((layer.role == AttributeRole::Normal && has_normals) ||
           (layer.role == AttributeRole::Color && has_colors)) {
@@ -346,7 +396,22 @@ class PlyReader {
       if (take_index(layer)) continue;
       raw_.layers.push_back(std::move(layer));
     }
-    if (!uv_.empty()) {
+    if (!texture_of_face_.empty()) {
+      sink_.keep_faces();
+      RawLayer texture{std::string(kTextureIndex),
+                       AttributeRole::Other,
+                       Interpolation::Categorical,
+                       RawLayer::Per::Face,
+                       1,
+                       std::move(texture_of_face_),
+                       {}};
+      const bool is_one = std::ranges::count(texture.values, texture.values[0]) ==
+                          static_cast<std::ptrdiff_t>(texture.values.size());
+      if (!take_index(texture) && !is_one) raw_.layers.push_back(std::move(texture));
+    }
+    if (!uv_.empty() && uv_of_corner_.empty()) {
+      raw_.report.notes.push_back("element 'multi_texture_vertex' ignored");
+    } else if (!uv_.empty()) {
       uv_of_corner_.resize(3 * raw_.triangles.size(), kNone);
       RawLayer uv = texcoord_layer(is_there(AttributeRole::TexCoord) ? "corner_uv" : "uv",
                                    RawLayer::Per::Corner);
@@ -414,7 +479,7 @@ class PlyReader {
   std::size_t rows_with_more_ = 0, short_faces_ = 0;
   std::vector<double> list_, corner_uv_;
   std::vector<std::uint32_t> corners_;
-  std::vector<float> uv_;
+  std::vector<float> uv_, texture_of_face_;
   std::vector<std::uint32_t> uv_of_corner_;
 };
 
