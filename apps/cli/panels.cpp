@@ -2,6 +2,7 @@
 
 #include "cli/console.h"
 #include "cli/text.h"
+#include "cli/up_option.h"
 #include "cli/view.h"
 #include "crease/build_progressive_arrays.h"
 #include "crease/compare.h"
@@ -113,6 +114,7 @@ void Panels::add(Source source, const std::string& title, Json json, const Panel
   if (options.titles) panel.title = title;
   panel.level_share = share;
   panel.model = file_count_;
+  if (up_ != UpAxis::Unknown) panel.up = up_direction(options.up, up_);
   panel.error_of_position = kept.errors;
   panel.level_of_position = kept.levels;
   panels_.push_back(std::move(panel));

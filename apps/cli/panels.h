@@ -28,6 +28,7 @@ struct PanelOptions {
   bool file_names = false;  // in titles of levels; those of views have them anyway
   // For Coloring::Error: measured distances; of a view, pixels on its screen. For Coloring::Level.
   bool errors_of_positions = false, levels_of_positions = false;
+  std::string up = "auto";  // --up
   ReadOptions read;
 
   std::size_t level_count() const { return std::max<std::size_t>(1, ratios.size()); }
@@ -44,7 +45,7 @@ class Panels {
   std::span<const Panel> list() const { return panels_; }
   const Json& json() const { return json_; }                // one object a panel
   std::uint64_t bytes_read() const { return bytes_read_; }  // of .crease files
-  UpAxis up() const { return up_; }                         // of the first file that knows
+  UpAxis up() const { return first_up_; }                   // of the first file that knows
 
  private:
   // What a panel's views point into.
@@ -63,7 +64,8 @@ class Panels {
   void add_control(const Mesh& level, const std::string& name, const PanelOptions& options,
                    float level_share);
   void learn_up(UpAxis up) {
-    if (up_ == UpAxis::Unknown) up_ = up;
+    up_ = up;
+    if (first_up_ == UpAxis::Unknown) first_up_ = up;
   }
   void add(Source source, const std::string& title, Json json, const PanelOptions& options,
            float level_share);
@@ -72,7 +74,7 @@ class Panels {
   std::vector<Panel> panels_;
   Json json_ = Json::array();
   std::uint64_t bytes_read_ = 0;
-  UpAxis up_ = UpAxis::Unknown;
+  UpAxis up_ = UpAxis::Unknown, first_up_ = UpAxis::Unknown;  // of the file in hand; up()
   std::uint32_t file_count_ = 0;
 };
 

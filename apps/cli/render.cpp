@@ -114,6 +114,7 @@ Result<Report> run_render(RenderArguments options, const Common& common) {
   }
 
   options.panels.file_names = options.files.size() > 1;
+  options.panels.up = options.up;
   Panels panels;
   for (const std::filesystem::path& file : options.files) {
     const Status added = panels.add_file(file, options.panels, common);

@@ -49,7 +49,9 @@ struct Panel {
   DrawList list{};
   std::string title;        // drawn at the panel's top; empty: nothing
   std::uint32_t model = 0;  // panels of one are seen by one camera
-  float level_share = 0;    // for Coloring::Level: 0 full resolution .. 1 base
+  // For a fitted camera, instead of RenderOptions::up. Where panels share one, the first's holds.
+  std::optional<Vec3d> up{};
+  float level_share = 0;  // for Coloring::Level: 0 full resolution .. 1 base
   // The same for each position of the list, where levels differ; or empty.
   std::span<const float> level_of_position{};
   // For Coloring::Error: one value per position of the list, in RenderOptions::error_unit; or

@@ -290,11 +290,11 @@ std::vector<PointSet> at_place(Scene scene, std::span<const std::size_t> places,
 }
 
 // What is seen of all places on the average, from afar.
-double aspect_of(Scene scene, std::span<const std::size_t> places, const Vec3d& up) {
+double aspect_of(Scene scene, std::span<const std::size_t> places, std::span<const Vec3d> ups) {
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     if (places[i] != i) continue;
-    sum += std::log(projected_aspect(at_place(scene, places, i), up));
+    sum += std::log(projected_aspect(at_place(scene, places, i), ups[i]));
     ++count;
   }
   return count > 0 ? std::exp(sum / count) : 1;
@@ -302,7 +302,8 @@ double aspect_of(Scene scene, std::span<const std::size_t> places, const Vec3d& 
 
 // One camera for each panel.
 std::vector<Camera> choose_cameras(Scene scene, std::span<const std::size_t> places,
-                                   const RenderOptions& options, const PixelRect& size) {
+                                   std::span<const Vec3d> ups, const RenderOptions& options,
+                                   const PixelRect& size) {
   std::vector<Camera> cameras;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     if (places[i] != i) {
@@ -312,8 +313,7 @@ std::vector<Camera> choose_cameras(Scene scene, std::span<const std::size_t> pla
     } else if (options.frustum) {
       cameras.push_back(fit_outside(scene, *options.frustum, size.width, size.height));
     } else {
-      cameras.push_back(
-          fit_camera_to(at_place(scene, places, i), options.up, size.width, size.height));
+      cameras.push_back(fit_camera_to(at_place(scene, places, i), ups[i], size.width, size.height));
     }
   }
   return cameras;
@@ -335,9 +335,11 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
   for (const Panel& panel : panels) points.push_back(used_positions(panel.list));
   std::vector<PointSet> scene;
   std::vector<std::uint32_t> models;
+  std::vector<Vec3d> ups;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     scene.push_back({panels[i].list.origin, points[i]});
     models.push_back(panels[i].model);
+    ups.push_back(panels[i].up.value_or(options.up));
   }
   const bool has_titles =
       std::ranges::any_of(panels, [](const Panel& p) { return !p.title.empty(); });
@@ -346,10 +348,10 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
                                               ? std::vector<std::size_t>(panels.size(), 0)
                                               : places_of(scene, models);
   const Result<Layout> layout =
-      lay_out_panels(panels.size(), has_titles, aspect_of(scene, places, options.up), options);
+      lay_out_panels(panels.size(), has_titles, aspect_of(scene, places, ups), options);
   if (!layout.ok()) return layout.failure();
   const PixelRect& size = layout->views.front();
-  const std::vector<Camera> cameras = choose_cameras(scene, places, options, size);
+  const std::vector<Camera> cameras = choose_cameras(scene, places, ups, options, size);
   if (options.on_note && std::ranges::count(places, 0) < std::ptrdiff_t(places.size())) {
     options.on_note(
         "models that lie apart, or differ in size by more than twice, are each seen from near");

@@ -109,6 +109,28 @@ TEST_CASE("models that lie apart are each seen from near, levels of one from one
   CHECK(count_surface(*asked, layout.views[1]) == 0);
 }
 
+TEST_CASE("models with cameras of their own stand upright, each as its own axis is up") {
+  Mesh z_up = hard_cylinder(24, 4);
+  for (Vec3d& p : z_up.positions) p.z *= 3;
+  Mesh y_up = z_up;
+  for (Vec3d& p : y_up.positions) p = Vec3d{p.x + 1e4, p.z, -p.y};
+  const DrawArrays left(z_up), right(y_up);
+  Panel panels[] = {{.list = left.list(), .title = "", .model = 0, .up = Vec3d{0, 0, 1}},
+                    {.list = right.list(), .title = "", .model = 1, .up = Vec3d{0, 1, 0}}};
+  RenderOptions options = size(400, 200);
+  options.columns = 2;
+  const Layout layout =
+      make_layout({.panel_count = 2, .width_px = 400, .height_px = 200, .columns = 2});
+  const auto apart = [&] {
+    const Result<Image> image = render_panels(panels, options);
+    REQUIRE(image.ok());
+    return count_surface(*image, layout.views[0]) - count_surface(*image, layout.views[1]);
+  };
+  CHECK(std::abs(apart()) < 100);
+  panels[1].up.reset();  // else the picture's
+  CHECK(std::abs(apart()) > 2000);
+}
+
 TEST_CASE("a legend stands below where colours mean something") {
   const DrawArrays cylinder(hard_cylinder(16, 3));
   for (const Coloring coloring : {Coloring::Kind, Coloring::Level, Coloring::Error}) {
