@@ -153,6 +153,19 @@ void write_part_comments(ByteSink& out, std::span<const std::string> parts) {
   for (std::size_t p = 0; p < parts.size(); ++p) write_comment(out, kPart, p, parts[p]);
 }
 
+void write_up_comment(ByteSink& out, UpAxis up) {
+  if (up != UpAxis::Unknown) out.text(up == UpAxis::Y ? "comment up y\n" : "comment up z\n");
+}
+
+UpAxis up_in(std::span<const std::string> comments) {
+  UpAxis up = UpAxis::Unknown;
+  for_each(comments, "up", [&](Line& line) {
+    const std::string_view axis = line.rest();
+    if (axis == "y" || axis == "z") up = axis == "y" ? UpAxis::Y : UpAxis::Z;
+  });
+  return up;
+}
+
 std::vector<Material> materials_in(std::span<const std::string> comments) {
   std::vector<Material> materials;
   for (std::string& name : names_in(comments, kMaterial)) {

@@ -1,6 +1,7 @@
-// What a PLY has no place for, in comments: materials and parts, with an index a face, and what
-// layers are that properties' names do not tell.
+// What a PLY has no place for, in comments: the axis that is up, materials and parts, with an index
+// a face, and what layers are that properties' names do not tell.
 //
+//   comment up z                                  or y
 //   comment material 0 brick                      the name of each
 //   comment material_color 0 0.5 0.25 0.125 1     where it is not white; linear RGBA
 //   comment material_texture 0 brick.png          where there is one
@@ -52,10 +53,12 @@ std::vector<PlyNamedLayer> layers_in(std::span<const std::string> comments);
 void write_material_comments(ByteSink& out, std::span<const Material> materials,
                              const PlyTextures& textures);
 void write_part_comments(ByteSink& out, std::span<const std::string> parts);
+void write_up_comment(ByteSink& out, UpAxis up);
 
 // Out of a header's comments, as far as they count on from 0.
 std::vector<Material> materials_in(std::span<const std::string> comments);
 std::vector<std::string> parts_in(std::span<const std::string> comments);
+UpAxis up_in(std::span<const std::string> comments);
 // A material for each TextureFile.
 std::vector<Material> textures_in(std::span<const std::string> comments);
 

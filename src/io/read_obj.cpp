@@ -64,10 +64,16 @@ class ObjReader {
       line_number_ = line.line_number;
       if ((line_number_ & 0xffff) == 0 && !goes_on()) return false;
       const std::string_view word = line.word();
+      if (word == "#") read_comment(line.rest());
       if (word.empty() || (word[0] == '#' && word != kPaint)) continue;
       if (!visit(word, line)) return false;
     }
     return true;
+  }
+
+  // As write_obj() writes it.
+  void read_comment(std::string_view text) {
+    if (text == "up y" || text == "up z") raw_.up = text == "up y" ? UpAxis::Y : UpAxis::Z;
   }
 
   bool goes_on() {

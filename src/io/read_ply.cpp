@@ -36,6 +36,7 @@ class PlyReader {
     raw_.report.format = header_.encoding == PlyEncoding::Text           ? "text PLY"
                          : header_.encoding == PlyEncoding::LittleEndian ? "binary PLY"
                                                                          : "big-endian binary PLY";
+    raw_.up = up_in(header_.comments);
     for (const std::string& word : header_.unknown_words) {
       raw_.report.notes.push_back("line of the header ignored that begins with " + in_quotes(word));
     }

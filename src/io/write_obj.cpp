@@ -82,6 +82,8 @@ std::vector<std::byte> write_obj(const Mesh& mesh, std::string_view mtl_name) {
       colors ? std::vector<const AttributeLayer*>{colors} : std::vector<const AttributeLayer*>{};
   const SplitVertices split = split_vertices(mesh, splitting);
 
+  // OBJ has no word for it; read_obj() knows the comment.
+  if (mesh.up != UpAxis::Unknown) out.text(mesh.up == UpAxis::Y ? "# up y\n" : "# up z\n");
   if (!mtl_name.empty()) {
     out.text("mtllib ");
     out.text(mtl_name);

@@ -166,6 +166,7 @@ std::vector<std::byte> write_ply(const Mesh& mesh) {
   ByteSink out;
   out.reserve(1024 + split.count() * 48 + mesh.triangle_count() * 17);
   out.text("ply\nformat binary_little_endian 1.0\ncomment written by crease\n");
+  write_up_comment(out, mesh.up);
   if (has_materials) write_material_comments(out, mesh.materials, textures);
   if (has_parts) write_part_comments(out, mesh.parts);
   write_layer_comments(out, "vertex", of_vertex);

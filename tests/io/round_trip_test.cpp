@@ -121,6 +121,22 @@ TEST_CASE("colours, texture coordinates and materials come back") {
   }
 }
 
+TEST_CASE("OBJ and PLY say in a comment what is up, where it is known") {
+  for (const char* ending : {".obj", ".ply"}) {
+    CAPTURE(std::string(ending));
+    Mesh mesh = cone(24, 6);  // stands along z
+    for (const UpAxis up : {UpAxis::Y, UpAxis::Z, UpAxis::Unknown}) {
+      mesh.up = up;
+      const Result<std::vector<std::byte>> bytes = export_bytes(mesh, ending);
+      REQUIRE(bytes.ok());
+      const Result<Imported> in = import_bytes(*bytes, std::string("a") + ending, {});
+      REQUIRE(in.ok());
+      CHECK(in->mesh.up == (up == UpAxis::Unknown ? UpAxis::Z : up));
+      CHECK(in->report.up_is_guessed == (up == UpAxis::Unknown));
+    }
+  }
+}
+
 TEST_CASE("a PLY holds parts, base colours and which texture each material has") {
   Mesh mesh = coloured_square();
   mesh.parts = {"north wall", "\\ 2\nlines"};
