@@ -160,7 +160,12 @@ Result<GltfDocument> open_gltf(const Source& source) {
   } else if (magic == kB3dmMagic) {
     document = open_b3dm(source);
   } else {
-    Result<Json> json = parse_json(source, source.text(), 0);
+    const std::string_view text = source.text();
+    const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+    if (first == text.npos || text[first] != '{') {
+      return fail_at_byte(Error::BadFormat, source, 0, "neither GLB nor b3dm nor a JSON object");
+    }
+    Result<Json> json = parse_json(source, text, 0);
     if (!json.ok()) return json.failure();
     document->json = *std::move(json);
     document->format = "glTF";

@@ -76,6 +76,14 @@ TEST_CASE("glTF: what cannot be meant is refused, with its place") {
   });
 }
 
+TEST_CASE("glTF: what is none of its three forms is told so") {
+  for (const std::string text : {"error\x01", "  ", "[]"}) {
+    CHECK(refusal_of(text, "tile.b3dm") ==
+          "tile.b3dm: byte 0: neither GLB nor b3dm nor a JSON object");
+  }
+  CHECK(refusal_of("{\"asset\":", "a.gltf") == "a.gltf: byte 9: JSON ends early");
+}
+
 TEST_CASE("glTF: the least version that a file needs may be what is read") {
   GltfBuilder b = one_triangle();
   b.json["asset"]["minVersion"] = "2.0";
