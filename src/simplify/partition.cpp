@@ -46,8 +46,8 @@ class Divider {
     // Near the leaves an uneven cut only makes patches smaller than they need to be.
     const double share = n > 4 * patch_triangles_ ? cut_ : 0.5;
     const Axis axis = axis_to_cut(cell, share);
-    const std::size_t left = static_cast<std::size_t>(share * static_cast<double>(n));
-    separate(cell, axis, left, offset);
+    const std::size_t wanted = static_cast<std::size_t>(share * static_cast<double>(n));
+    const std::size_t left = separate(cell, axis, wanted, offset);
     parallel_both([&] { divide(cell.first(left), offset); },
                   [&] { divide(cell.subspan(left), offset + left); });
   }
@@ -115,9 +115,20 @@ class Divider {
     return count;
   }
 
-  // Puts the `left` centroids that are lowest on the axis first, both sides in their old order. A
-  // histogram finds the bucket with the border in it, only that bucket is looked at closely.
-  void separate(std::span<Centroid> cell, const Axis& axis, std::size_t left, std::size_t offset) {
+  // How many of a cell's centroids go left where `wanted` should, but all from `none` to `all` are
+  // at one place: these stay together, unless they are the whole cell.
+  static std::size_t without_parting(std::size_t cell_size, std::size_t wanted, std::size_t none,
+                                     std::size_t all) {
+    if (none == 0 && all == cell_size) return wanted;
+    if (none == 0) return all;
+    return all == cell_size || wanted - none < all - wanted ? none : all;
+  }
+
+  // Puts about `left` centroids that are lowest on the axis first, both sides in their old order;
+  // returns how many. A histogram finds the bucket with the border in it, only that bucket is
+  // looked at closely.
+  std::size_t separate(std::span<Centroid> cell, const Axis& axis, std::size_t left,
+                       std::size_t offset) {
     constexpr std::size_t kBuckets = 1024;
     std::array<std::uint32_t, kBuckets> count{};
     const double extent = double(axis.high) - double(axis.low);
@@ -143,6 +154,12 @@ class Divider {
         rank - static_cast<std::size_t>(std::count_if(close.begin(), at_rank,
                                                       [&](std::int32_t x) { return x < border; }));
 
+    const std::size_t none = left - on_border_left;
+    const std::size_t all =
+        none + static_cast<std::size_t>(std::count(close.begin(), close.end(), border));
+    left = without_parting(cell.size(), left, none, all);
+    on_border_left = left - none;
+
     Centroid* to_left = cell.data();
     Centroid* to_right = &scratch_[offset];
     for (const Centroid& c : cell) {
@@ -155,6 +172,7 @@ class Divider {
       to_right += !goes_left;
     }
     std::copy(&scratch_[offset], to_right, to_left);
+    return left;
   }
 
   std::span<const Vec3i> positions_;
@@ -165,12 +183,45 @@ class Divider {
   std::vector<char> is_first_;
 };
 
+// The triangles of a part that a patch can hold all lie where its middle is.
+void keep_parts_whole(std::span<Centroid> centroids,
+                      std::span<const std::uint32_t> vertices_of_triangle,
+                      std::span<const std::uint32_t> part_of_vertex,
+                      std::uint32_t patch_triangles) {
+  struct Part {
+    std::int64_t sum[3] = {0, 0, 0};
+    std::int64_t count = 0;
+  };
+  std::vector<Part> parts;
+  std::vector<std::uint32_t> number(part_of_vertex.size(), kNone);  // by a part's name
+  std::vector<std::uint32_t> part_of_centroid;
+  part_of_centroid.reserve(centroids.size());
+  for (const Centroid& c : centroids) {
+    const std::uint32_t name = part_of_vertex[vertices_of_triangle[3 * std::size_t(c.triangle)]];
+    if (number[name] == kNone) {
+      number[name] = static_cast<std::uint32_t>(parts.size());
+      parts.emplace_back();
+    }
+    part_of_centroid.push_back(number[name]);
+    Part& part = parts[number[name]];
+    ++part.count;
+    for (int i = 0; i < 3; ++i) part.sum[i] += c.sum[i];
+  }
+  for (std::size_t k = 0; k < centroids.size(); ++k) {
+    const Part& part = parts[part_of_centroid[k]];
+    if (part.count > patch_triangles) continue;
+    for (int i = 0; i < 3; ++i) {
+      centroids[k].sum[i] = static_cast<std::int32_t>(part.sum[i] / part.count);
+    }
+  }
+}
+
 }  // namespace
 
 Patches partition_triangles(std::span<const Vec3i> positions,
                             std::span<const std::uint32_t> vertices_of_triangle,
                             std::vector<std::uint32_t> triangles, std::uint32_t patch_triangles,
-                            int band) {
+                            int band, std::span<const std::uint32_t> part_of_vertex) {
   Patches patches;
   patches.triangles = std::move(triangles);
   const std::size_t n = patches.triangles.size();
@@ -193,6 +244,9 @@ Patches partition_triangles(std::span<const Vec3i> positions,
     }
   });
 
+  if (!part_of_vertex.empty()) {
+    keep_parts_whole(centroids, vertices_of_triangle, part_of_vertex, patch_triangles);
+  }
   Divider divider(positions, vertices_of_triangle, patch_triangles, band, n);
   divider.divide(centroids, 0);
   for (std::size_t i = 0; i < n; ++i) {

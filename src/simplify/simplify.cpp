@@ -196,15 +196,11 @@ class Simplifier {
       }
       Extent extent;
       bool parts_join = false;
-      parallel_both(
-          [&] {
-            extent = measure_extent(work_);
-            if (work_.part_count > 1)
-              parts_join = before < kFewTriangles * count_part_triangles(work_);
-          },
-          [&] {
-            if (!limits || limits->begins_band()) start_band(band);
-          });
+      if (work_.part_count > 1) parts_join = before < kFewTriangles * count_part_triangles(work_);
+      parallel_both([&] { extent = measure_extent(work_); },
+                    [&] {
+                      if (!limits || limits->begins_band()) start_band(band);
+                    });
       const double triangle_area = std::max(extent.area / double(before), 1e-9);
       const double edge = std::sqrt(triangle_area * 2.3);  // of an equilateral triangle
       const double left = double(before) / double(input_triangles);
@@ -286,8 +282,10 @@ class Simplifier {
 
   // Who owns a vertex holds for the whole band: a block knows its border by it.
   void start_band(int number) {
-    patches_ = partition_triangles(work_.positions, work_.vertex_of_corner, work_.live,
-                                   patch_triangles(), number);
+    patches_ = partition_triangles(
+        work_.positions, work_.vertex_of_corner, work_.live, patch_triangles(), number,
+        work_.part_count > 1 ? std::span<const std::uint32_t>(work_.part_of_vertex)
+                             : std::span<const std::uint32_t>());
     find_owners(work_, patches_);
     contractions_in_band_ = 0;
     if (!options_.record_bands) return;

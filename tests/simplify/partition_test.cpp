@@ -80,3 +80,42 @@ TEST_CASE("rods in a layer below a tower are not sliced lengthwise") {
     CHECK(count_shared(mesh, patches) < mesh.positions.size() / 20);
   }
 }
+
+TEST_CASE("parts that a patch can hold are not cut") {
+  // Long rods that lie side by side, of which no plane cuts few, and one that is too large.
+  MeshBuilder b;
+  for (int i = 0; i < 40; ++i) b.box({0.5 * (i % 3), 0.2 * i, 0}, {12, 0.2 * i + 0.1, 0.1}, 6);
+  b.box({0, 0, 1}, {12, 8, 2}, 16);
+  const OnGrid mesh = on_grid(b.take());
+  const std::uint32_t most = 1000, rod_triangles = 6 * 6 * 6 * 2;
+  std::vector<std::uint32_t> part_of_vertex(mesh.positions.size());
+  std::iota(part_of_vertex.begin(), part_of_vertex.end(), 0u);
+  const auto part_of = [&](std::uint32_t t) { return std::min(t / rod_triangles, 40u); };
+  std::vector<std::uint32_t> name(41, kNone);
+  for (const std::uint32_t t : mesh.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = mesh.corners[3 * t + c];
+      std::uint32_t& of_part = name[part_of(t)];
+      of_part = std::min(of_part, v);
+      part_of_vertex[v] = of_part;
+    }
+  }
+  for (std::uint32_t& v : part_of_vertex) v = part_of_vertex[v];
+  for (int band = 0; band < 5; ++band) {
+    const Patches patches = partition_triangles(mesh.positions, mesh.corners, mesh.triangles, most,
+                                                band, part_of_vertex);
+    std::vector<std::uint32_t> seen = patches.triangles;
+    std::sort(seen.begin(), seen.end());
+    CHECK(seen == mesh.triangles);
+    std::vector<std::uint32_t> patch_of_part(40, kNone);
+    for (std::uint32_t p = 0; p < patches.count(); ++p) {
+      CHECK(patches.of(p).size() <= most);
+      for (const std::uint32_t t : patches.of(p)) {
+        if (part_of(t) == 40) continue;
+        std::uint32_t& patch = patch_of_part[part_of(t)];
+        if (patch == kNone) patch = p;
+        CHECK(patch == p);
+      }
+    }
+  }
+}
