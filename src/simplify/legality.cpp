@@ -31,6 +31,9 @@ constexpr double kMinor = 0.01;
 // by a radian.
 constexpr double kCategoryShare = 1;
 
+// Where it changes hands between parts of one material nothing is to be seen: this much of it.
+constexpr double kPartShare = 0.1;
+
 // What the area of a part that disappears counts: quadrics count it at each of its three corners.
 constexpr double kPartWeight = 3;
 
@@ -198,15 +201,11 @@ inline double PatchSimplifier::coincidence_cost(Index a, Index b) {
 double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
   if (work_->category_of_triangle.empty()) return 0;
   if (category_around_[a] == category_around_[b] && category_around_[a] != kNone) return 0;
-  changed_area_.clear();
+  by_category_.clear();
+  by_material_.clear();
   const auto change = [&](Index t, double area) {
-    const Index category = category_of(t);
-    for (auto& [other, sum] : changed_area_) {
-      if (other != category) continue;
-      sum += area;
-      return;
-    }
-    changed_area_.emplace_back(category, area);
+    by_category_.add(category_of(t), area);
+    by_material_.add(material_of_category(category_of(t)), area);
   };
   for (const auto& [t, third] : vanishing_) change(t, -facing_[t].area);
   for (std::size_t i = 0; i < ring_.size(); ++i) {
@@ -214,9 +213,9 @@ double PatchSimplifier::category_cost(Index a, Index b, const Vec3d& target) {
     const Index t = ring_[i].triangle;
     change(t, 0.5 * length(normal_if_moved(ring_[i], target)) - facing_[t].area);
   }
-  double gained = 0, lost = 0;
-  for (const auto& [category, area] : changed_area_) (area > 0 ? gained : lost) += std::abs(area);
-  return kCategoryShare * steering_.normal_scale * steering_.normal_scale * std::min(gained, lost);
+  const double area =
+      kPartShare * by_category_.exchanged() + (1 - kPartShare) * by_material_.exchanged();
+  return kCategoryShare * steering_.normal_scale * steering_.normal_scale * area;
 }
 
 // What does not depend on where the vertex goes.

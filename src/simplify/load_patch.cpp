@@ -20,6 +20,9 @@ constexpr double kFlatLineCosine = 0.866;  // 30 degrees
 // the triangles of solids that share a wall on it, none lets the edge wander over coplanar sheets.
 constexpr double kTouchingLine = 0.03;
 
+// Where parts of one material meet nothing is to be seen: less than a line.
+constexpr double kPartLine = 0.1;
+
 // Two triangles on the same side of their edge, folded onto each other or doubled: the planes
 // agree, so only a line can hold the edge.
 constexpr double kFoldCosine = 0.5;
@@ -299,7 +302,13 @@ inline double PatchSimplifier::square_of_difference(const Wedge& a, const Wedge&
 inline double PatchSimplifier::line_weight(Index v, const Edge& edge) const {
   if (edge.triangle_count != 2) return edge.triangle_count % 2 == 0 ? kTouchingLine : 1;
   const Index w = edge.other, t = triangle_of(edge.corner[0]), u = triangle_of(edge.corner[1]);
-  if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) return 1;
+  double weight = 0;
+  if (!work_->category_of_triangle.empty() && category_of(t) != category_of(u)) {
+    const bool is_seen =
+        material_of_category(category_of(t)) != material_of_category(category_of(u));
+    if (is_seen) return 1;
+    weight = kPartLine;
+  }
   // Sides that run through the edge in the same direction are inside out to each other.
   const auto runs_to_w = [&](int side) {
     const Index from = edge.corner[side], to = edge.other_corner[side];
@@ -307,8 +316,7 @@ inline double PatchSimplifier::line_weight(Index v, const Edge& edge) const {
   };
   const double bend = dot(facing_[t].normal, facing_[u].normal);
   if (runs_to_w(0) == runs_to_w(1) ? bend > kFoldCosine : bend < -kFoldCosine) return 1;
-  if (!several_wedges_[v] && !several_wedges_[w]) return 0;
-  double weight = 0;
+  if (!several_wedges_[v] && !several_wedges_[w]) return weight;
   for (std::size_t l = 0; l < layer_count(); ++l) {
     const WorkLayer& layer = work_->layers[l];
     const Index *at = wedge_of_corner_[l].data(), *from = edge.corner, *to = edge.other_corner;

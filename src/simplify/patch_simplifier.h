@@ -11,6 +11,7 @@
 
 #include "hierarchy/quadric.h"
 #include "hierarchy/witnesses.h"
+#include "simplify/area_changes.h"
 #include "simplify/cost_heap.h"
 #include "simplify/flat_shading.h"
 #include "simplify/ring_block.h"
@@ -295,6 +296,7 @@ class PatchSimplifier {
   Slice& wedges_of(std::size_t layer, Index v) { return wedge_slices_[layer][v]; }
   Slice wedges_of(std::size_t layer, Index v) const { return wedge_slices_[layer][v]; }
   Index category_of(Index t) const { return work_->category_of_triangle[global_triangle_[t]]; }
+  Index material_of_category(Index category) const { return category % work_->material_count; }
   std::size_t layer_count() const { return work_->layers.size(); }
 
   WorkMesh* work_ = nullptr;
@@ -331,8 +333,8 @@ class PatchSimplifier {
   std::vector<std::vector<Slice>> wedge_slices_;                   // per layer and vertex
   std::vector<std::vector<Index>> wedge_of_corner_;
 
-  std::vector<Index> category_around_;  // by vertex; kNone: several
-  std::vector<std::pair<Index, double>> changed_area_;
+  std::vector<Index> category_around_;     // by vertex; kNone: several
+  AreaChanges by_category_, by_material_;  // of one contraction
 
   std::vector<std::pair<Index, Index>> pairs_;  // edges, then virtual pairs
   // Those that cost little enough. Contractions make pairs the same: the first that is looked at

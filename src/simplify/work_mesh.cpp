@@ -105,13 +105,13 @@ void add_layers(const Mesh& mesh, WorkMesh& work) {
 
 void find_categories(const Mesh& mesh, WorkMesh& work) {
   if (mesh.material_of_triangle.empty() && mesh.part_of_triangle.empty()) return;
-  const std::uint32_t materials =
+  work.material_count =
       std::max<std::uint32_t>(1, static_cast<std::uint32_t>(mesh.materials.size()));
   work.category_of_triangle.assign(mesh.triangle_count(), 0);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     std::uint32_t& category = work.category_of_triangle[t];
     if (!mesh.part_of_triangle.empty()) {
-      category = static_cast<std::uint32_t>(mesh.part_of_triangle[t]) * materials;
+      category = static_cast<std::uint32_t>(mesh.part_of_triangle[t]) * work.material_count;
     }
     if (!mesh.material_of_triangle.empty()) {
       category += static_cast<std::uint32_t>(mesh.material_of_triangle[t]);

@@ -60,13 +60,15 @@ struct WorkMesh {
                                                 // grid units
   std::vector<std::uint32_t> owner_of_vertex;   // patch, or kShared, or kNone; of the present band
   std::vector<std::uint32_t> vertex_of_corner;  // 3 a triangle
-  std::vector<std::uint32_t> category_of_triangle;  // material and part as one; empty: all the same
-  std::vector<char> derived;                        // per triangle: shows its geometric normal
-  std::vector<Represented> represented;             // per triangle; empty: nothing is flat
-  std::vector<char> inside_out;                     // per triangle: wound against its normals, as
-                                                    // most of its part; empty: none is
-  std::vector<std::uint32_t> part_of_vertex;        // a vertex of the part: equal for vertices that
-                                                    // triangles or contractions connect
+  std::vector<std::uint32_t> category_of_triangle;  // part * material_count + material; empty: all
+                                                    // the same
+  std::uint32_t material_count = 1;
+  std::vector<char> derived;                  // per triangle: shows its geometric normal
+  std::vector<Represented> represented;       // per triangle; empty: nothing is flat
+  std::vector<char> inside_out;               // per triangle: wound against its normals, as
+                                              // most of its part; empty: none is
+  std::vector<std::uint32_t> part_of_vertex;  // a vertex of the part: equal for vertices that
+                                              // triangles or contractions connect
   std::size_t part_count = 0;
   bool has_copies = false;                       // many of the input's triangles are there twice
   std::vector<std::uint32_t> triangles_of_part;  // by the part's vertex, at the pass's start
