@@ -9,6 +9,7 @@
 #include "simplify/partition.h"
 #include "simplify/pass_limits.h"
 #include "simplify/patch_simplifier.h"
+#include "simplify/scales.h"
 #include "simplify/work_mesh.h"
 
 #include <algorithm>
@@ -32,10 +33,6 @@ constexpr double kCoarseShare = 0.1, kCoarseLeavesPair = 0.9;
 // borders show in levels of half the triangles, with fewer the first band is hardly worth a file's
 // while.
 constexpr double kFirstPairs = 0.45;
-
-// What normals weigh falls with this power of the share of the triangles that is left: where
-// triangles become as large as what is shown the surface goes wrong before its shading does.
-constexpr double kNormalPower = 0.1;
 
 // Below this many triangles one last band goes all the way.
 constexpr std::size_t kLastBand = 64;
@@ -103,55 +100,6 @@ std::size_t count_part_triangles(WorkMesh& work) {
   return live_parts;
 }
 
-// Area of the live triangles in space and, by layer, of their texture coordinates.
-struct Extent {
-  double area = 0;                    // grid units squared
-  std::vector<double> area_of_layer;  // texture units squared; 0 for other layers
-};
-
-Extent measure_extent(const WorkMesh& work) {
-  Extent extent;
-  extent.area_of_layer.assign(work.layers.size(), 0);
-  for (std::uint32_t t : work.live) {
-    const std::uint32_t* v = &work.vertex_of_corner[3 * t];
-    const auto at = [&](int c) {
-      const Vec3i& p = work.positions[v[c]];
-      return Vec3d{double(p.x), double(p.y), double(p.z)};
-    };
-    extent.area += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
-    for (std::size_t l = 0; l < work.layers.size(); ++l) {
-      const WorkLayer& layer = work.layers[l];
-      if (layer.source->role != AttributeRole::TexCoord || layer.dimension < 2) continue;
-      const float* a = layer.value(layer.of_corner[3 * t]);
-      const float* b = layer.value(layer.of_corner[3 * t + 1]);
-      const float* c = layer.value(layer.of_corner[3 * t + 2]);
-      extent.area_of_layer[l] += 0.5 * std::abs(double(b[0] - a[0]) * double(c[1] - a[1]) -
-                                                double(c[0] - a[0]) * double(b[1] - a[1]));
-    }
-  }
-  return extent;
-}
-
-// What an attribute error is worth as a distance. A texture that slides costs what the slide is
-// long; a normal or a colour costs in proportion to the triangles' size, since distance falls with
-// the square of the size, shading with the size; a normal less in coarse levels (kNormalPower).
-void set_scales(WorkMesh& work, const Extent& extent, double normal_weight, double color_weight,
-                double edge) {
-  for (std::size_t l = 0; l < work.layers.size(); ++l) {
-    WorkLayer& layer = work.layers[l];
-    if (layer.source->role == AttributeRole::Other) layer.same = same_number(layer.range);
-    if (layer.is_normal) {
-      layer.length_per_unit = normal_weight * edge;
-    } else if (extent.area_of_layer[l] > 0) {
-      const double length_per_unit = std::sqrt(extent.area / extent.area_of_layer[l]);
-      layer.length_per_unit = 0.3 * length_per_unit;
-      layer.same = same_texture(edge / length_per_unit);
-    } else {
-      layer.length_per_unit = color_weight * edge * layer.importance;
-    }
-  }
-}
-
 void find_owners(WorkMesh& work, const Patches& patches) {
   work.owner_of_vertex.assign(work.positions.size(), kNone);
   for (std::size_t p = 0; p < patches.count(); ++p) {
@@ -201,15 +149,12 @@ class Simplifier {
                     [&] {
                       if (!limits || limits->begins_band()) start_band(band);
                     });
-      const double triangle_area = std::max(extent.area / double(before), 1e-9);
-      const double edge = std::sqrt(triangle_area * 2.3);  // of an equilateral triangle
+      const double triangle_area = extent.triangle_area();
       const double left = double(before) / double(input_triangles);
-      const double normal_weight = options_.normal_weight * std::pow(left, kNormalPower);
-      set_scales(work_, extent, normal_weight, 0.5 * options_.normal_weight, edge);
 
       Steering steering;
       steering.placement = options_.placement;
-      steering.normal_scale = normal_weight * edge;
+      steering.normal_scale = set_scales(work_, extent, options_.normal_weight, left);
       if (left < kCoarseShare) {
         steering.leaves_ends = 1;
         steering.leaves_pair = kCoarseLeavesPair;
