@@ -25,9 +25,10 @@ namespace crease {
 namespace simplification {
 namespace {
 
-// Below this share of the input's triangles places are chosen for their cost rather than for the
-// bits that a file takes: these vertices are few.
+// Below this share of the input's triangles, or this many, places are chosen for their cost rather
+// than for the bits that a file takes: these vertices are few.
 constexpr double kCoarseShare = 0.1, kCoarseLeavesPair = 0.9;
+constexpr std::size_t kCoarse = 2000;
 
 // The first pass contracts pairs that cost no more than this share of all do: with more of them its
 // borders show in levels of half the triangles, with fewer the first band is hardly worth a file's
@@ -155,7 +156,7 @@ class Simplifier {
       Steering steering;
       steering.placement = options_.placement;
       steering.normal_scale = set_scales(work_, extent, options_.normal_weight, left);
-      if (left < kCoarseShare) {
+      if (left < kCoarseShare || before < kCoarse) {
         steering.leaves_ends = 1;
         steering.leaves_pair = kCoarseLeavesPair;
       }
