@@ -6,6 +6,8 @@
 // Triangles are those of the base and what is brought by all that is refined; so counts of sets of
 // blocks, of clusters or of single vertices can be compared, whether or not they are a cut.
 #include "crease/block_streamer.h"
+#include "crease/decode_model.h"
+#include "crease/file.h"
 #include "flight.h"
 #include "runtime/block_mesh_impl.h"
 
@@ -220,10 +222,11 @@ int run(int argc, char** argv) {
     streamer.wait(std::chrono::milliseconds(100));
   }
   parameters.view.max_triangles = ViewParameters{}.max_triangles;
-  const DrawList list = streamer.mesh().resident(BlockId{0})->draw_list();
-  std::vector<Vec3d> positions;
-  for (const Vec3f& p : list.positions) positions.push_back(list.origin + Vec3d{p.x, p.y, p.z});
-  const Box box = box_of(positions);
+  const Result<BlockFile> blocks = open_crease(file);
+  if (!blocks.ok()) return 2;
+  const Result<DecodedModel> model = decode_model(*blocks, {.contracted_bands = 0});
+  if (!model.ok()) return 2;
+  const Box box = box_of(model->mesh.positions);  // of the model: files of it are flown over alike
   std::map<std::uint32_t, BlockRoots> known;
   std::vector<std::vector<double>> rows(kRowCount), times(kRowCount);
   std::vector<double> shown;
