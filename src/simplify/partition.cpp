@@ -207,13 +207,15 @@ void keep_parts_whole(std::span<Centroid> centroids,
     ++part.count;
     for (int i = 0; i < 3; ++i) part.sum[i] += c.sum[i];
   }
-  for (std::size_t k = 0; k < centroids.size(); ++k) {
-    const Part& part = parts[part_of_centroid[k]];
-    if (part.count > patch_triangles) continue;
-    for (int i = 0; i < 3; ++i) {
-      centroids[k].sum[i] = static_cast<std::int32_t>(part.sum[i] / part.count);
+  parallel_ranges(centroids.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k != end; ++k) {
+      const Part& part = parts[part_of_centroid[k]];
+      if (part.count > patch_triangles) continue;
+      for (int i = 0; i < 3; ++i) {
+        centroids[k].sum[i] = static_cast<std::int32_t>(part.sum[i] / part.count);
+      }
     }
-  }
+  });
 }
 
 }  // namespace

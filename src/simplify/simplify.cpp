@@ -126,9 +126,11 @@ class Simplifier {
           if (options.measures_errors) work_.witnesses = witnesses_of(mesh, work_.positions);
         },
         [&] {
-          find_parts(work_);
-          find_inside_out(work_);
-          find_copies(mesh, work_);
+          parallel_both([&] { find_copies(mesh, work_); },
+                        [&] {
+                          find_parts(work_);
+                          find_inside_out(work_);
+                        });
         });
     sequence_.grid = grid;
     sequence_.placement = options.placement;
