@@ -53,12 +53,40 @@ DeviationUnit unit_of(const AttributeLayer& layer) {
   return DeviationUnit::Share;
 }
 
-// What a material is told by: its name, or what it looks like.
-std::vector<std::string> names_of(const std::vector<Material>& materials) {
+bool have_name(const std::vector<Material>& materials, const std::string& name) {
+  return std::ranges::find(materials, name, &Material::name) != materials.end();
+}
+
+// To what a format with colours in bytes or a few digits keeps of them.
+bool look_alike(const Material& a, const Material& b) {
+  constexpr float kShades = 0.004f;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!(std::abs(a.base_color[i] - b.base_color[i]) <= kShades)) return false;
+  }
+  return a.base_color_texture.empty() == b.base_color_texture.empty();
+}
+
+// What a material is told by: its name. One that has none has got one in a format that asks for it,
+// so it is told by that of one of `others` that looks alike and has no other counterpart, and by
+// its look where there is none.
+std::vector<std::string> names_of(const std::vector<Material>& materials,
+                                  const std::vector<Material>& others) {
   std::vector<std::string> names;
+  std::vector<bool> is_taken(others.size());
   for (const Material& material : materials) {
     if (!material.name.empty()) {
       names.push_back(material.name);
+      continue;
+    }
+    std::size_t k = 0;
+    while (k < others.size() &&
+           (is_taken[k] || others[k].name.empty() || have_name(materials, others[k].name) ||
+            !look_alike(material, others[k]))) {
+      ++k;
+    }
+    if (k < others.size()) {
+      is_taken[k] = true;
+      names.push_back(others[k].name);
       continue;
     }
     char color[80];
@@ -95,11 +123,12 @@ SharedAttributes::SharedAttributes(const Mesh& a, const Mesh& b) {
   share_layers(a, b);
   if (!a.material_of_triangle.empty() && !b.material_of_triangle.empty()) {
     Labels labels;
-    shared_.push_back({.name = "material",
-                       .unit = DeviationUnit::Share,
-                       .label_of_triangle = {
-                           labels.of_triangles(a.material_of_triangle, names_of(a.materials)),
-                           labels.of_triangles(b.material_of_triangle, names_of(b.materials))}});
+    shared_.push_back(
+        {.name = "material",
+         .unit = DeviationUnit::Share,
+         .label_of_triangle = {
+             labels.of_triangles(a.material_of_triangle, names_of(a.materials, b.materials)),
+             labels.of_triangles(b.material_of_triangle, names_of(b.materials, a.materials))}});
   }
   if (!a.parts.empty() && !b.parts.empty()) {
     Labels labels;

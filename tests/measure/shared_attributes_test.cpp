@@ -145,6 +145,22 @@ TEST_CASE("materials and parts are told by their names") {
   CHECK(c.attributes[1].spread.mean == 1);
 }
 
+TEST_CASE("a material without a name is the one that got a name and looks the same") {
+  Mesh a = square(4), b = a;
+  a.materials = {{.base_color = {1, 0, 0, 1}}, {.name = "glass"}, {.base_color = {0, 1, 0, 1}}};
+  b.materials = {{.name = "material 2", .base_color = {0, 0.999f, 0, 1}},
+                 {.name = "default", .base_color = {1, 0, 0, 1}},
+                 {.name = "glass"}};
+  for (std::uint32_t t = 0; t < a.triangle_count(); ++t) {
+    a.material_of_triangle.push_back(MaterialId{t % 3});
+    b.material_of_triangle.push_back(MaterialId{(t + 1) % 3});
+  }
+  CHECK(only_one(*compare_meshes(a, b, {.samples = 1000})).spread.max == 0);
+  CHECK(only_one(*compare_meshes(b, a, {.samples = 1000})).spread.max == 0);
+  b.materials[1].base_color = {0, 0, 1, 1};
+  CHECK(only_one(*compare_meshes(a, b, {.samples = 1000})).spread.max == 1);
+}
+
 TEST_CASE("deviations equal the brute force, zoo mesh against zoo mesh") {
   const ValueAt waves = [](const Vec3d& p) {
     return std::vector<float>{float(std::sin(5 * p[0]) + p[2]), float(std::cos(3 * p[1]))};
