@@ -31,6 +31,9 @@ class PassLimits {
   double limit() const { return limit_; }
   bool begins_band() const { return pass_ == 0; }
 
+  // Where nothing cost so little.
+  void raise(double limit) { limit_ = std::max(limit_, limit); }
+
   // After a pass. True: it was its band's last, as it is where `cut_short`.
   bool advance(double share, bool cut_short) {
     double& power = powers_[static_cast<std::size_t>(pass_)];

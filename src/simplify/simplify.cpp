@@ -162,8 +162,14 @@ class Simplifier {
         steering.leaves_ends = 1;
         steering.leaves_pair = kCoarseLeavesPair;
       }
+      if (!limits) {
+        limits.emplace(sampled_limit(steering, triangle_area));
+      } else if (stalled_ > 0) {
+        const double sampled = sampled_limit(steering, triangle_area);
+        if (sampled > limits->limit()) stalled_ = 0;
+        limits->raise(sampled);
+      }
       const bool last = patches_.count() == 1 && (before <= kLastBand || stalled_ >= kMostStalls);
-      if (!limits) limits.emplace(first_limit(steering, triangle_area));
       steering.cost_limit = last ? kNoLimit : limits->limit();
       const double step = last ? kNoLimit : std::sqrt(limits->limit() / (triangle_area * 6));
       steering.virtual_distance = 2 * step;
@@ -201,8 +207,10 @@ class Simplifier {
         std::min<std::uint64_t>(triangles, std::numeric_limits<std::uint32_t>::max()));
   }
 
-  // The limit under which kFirstPairs of the pairs lie, from a sample of an eighth of the patches.
-  double first_limit(const Steering& steering, double triangle_area) {
+  // The limit under which kFirstPairs of the pairs lie, from a sample of an eighth of the patches:
+  // for the first pass, and where next to nothing cost as little as the last one's, as when all
+  // that is flat is gone.
+  double sampled_limit(const Steering& steering, double triangle_area) {
     constexpr std::size_t kSample = 16, kStride = 8;
     std::vector<double> costs;
     const std::size_t stride = std::max(kStride, patches_.count() / kSample);

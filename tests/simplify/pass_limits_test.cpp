@@ -20,6 +20,14 @@ TEST_CASE("a limit grows as little as what the last pass left allows, and by 24 
   }
 }
 
+TEST_CASE("a limit that nothing was below is raised, and never lowered") {
+  PassLimits limits(3);
+  limits.raise(2);
+  CHECK(limits.limit() == 3);
+  limits.raise(500);
+  CHECK(limits.limit() == 500);
+}
+
 TEST_CASE("the first band has one pass, others two, what is cut short ends") {
   PassLimits limits(1);
   CHECK(limits.begins_band());
