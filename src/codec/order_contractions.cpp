@@ -6,6 +6,7 @@
 #include "codec/face_normals.h"
 #include "codec/patch_geometry.h"
 #include "codec/patch_lines.h"
+#include "codec/whole_parts.h"
 #include "hierarchy/quadric.h"
 #include "hierarchy/witnesses.h"
 
@@ -85,7 +86,9 @@ class CostEstimator {
     double surface = mean_distance(off, surface_[first].weight);
     const std::span<const std::uint32_t> vanished = patch.contract(first, second);
     const std::span<const std::uint32_t> around = patch.around(first);
+    vanished_count_ = static_cast<std::uint32_t>(vanished.size());
     if (around.empty()) {
+      any_part_vanishes_ = true;
       double longest = 0;
       for (const std::uint32_t t : vanished) {
         const double side2 = geometry_.longest_side2(patch.corners(t));
@@ -154,6 +157,9 @@ class CostEstimator {
 
   // Whether all contractions so far ended where one of the two was.
   bool moves_to_end() const { return moves_to_end_; }
+  // How many triangles vanished with the last one, and whether a part has vanished so far.
+  std::uint32_t vanished_count() const { return vanished_count_; }
+  bool any_part_vanishes() const { return any_part_vanishes_; }
   // Contractions so far that change nothing.
   std::size_t flat_count() const { return flat_count_; }
   // Contractions so far after which witnesses are much farther off than planes say.
@@ -283,7 +289,8 @@ class CostEstimator {
   LevelError own_;
   double turn_weight_ = 0;
   std::size_t flat_count_ = 0, astray_count_ = 0;
-  bool moves_to_end_ = true;
+  std::uint32_t vanished_count_ = 0;
+  bool moves_to_end_ = true, any_part_vanishes_ = false;
 };
 
 }  // namespace
@@ -316,6 +323,19 @@ void measure_in_order(const UnfoldedBlock& block, const ModelSchema& schema,
   estimator.give_back_witnesses(witnesses);
 }
 
+// All are as wrong as the worst of them: a view shows all of a part or nothing.
+void level_errors(std::span<OrderedContraction> run) {
+  LevelError own, error;
+  for (const OrderedContraction& c : run) {
+    own = larger(own, c.own);
+    error = larger(error, c.error);
+  }
+  for (OrderedContraction& c : run) {
+    c.own = own;
+    c.error = error;
+  }
+}
+
 }  // namespace
 
 ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchema& schema,
@@ -326,6 +346,7 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
   CostEstimator estimator(block, schema, values, error_of_slot, witnesses, patch);
   std::vector<double> cost_of_vertex(block.vertices.size(), 0);
   std::vector<OrderedContraction> undone;
+  std::vector<std::uint32_t> vanished_of_split(block.splits.size());
   std::vector<std::pair<double, std::uint32_t>> ranks;  // by cost, then as they were undone
   undone.reserve(block.splits.size());
   ranks.reserve(block.splits.size());
@@ -342,6 +363,7 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
     }
     const double cost = std::max({estimator.contract(patch, first, second, split.parent_position),
                                   cost_of_vertex[first], cost_of_vertex[second]});
+    vanished_of_split[i] = estimator.vanished_count();
     cost_of_vertex[first] = cost;
     ranks.emplace_back(cost, static_cast<std::uint32_t>(undone.size()));
     undone.push_back(
@@ -353,11 +375,15 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
   for (const auto& [cost, place] : ranks) order.push_back(undone[place]);
   if (estimator.flat_count() > order.size() / kFewOfThem)
     order = defer_folds(block, std::move(order));
+  std::vector<Run> runs;
+  if (estimator.any_part_vanishes()) runs = keep_parts_whole(block, vanished_of_split, order);
   if (estimator.astray_count() > order.size() / kFewAstray) {
     measure_in_order(block, schema, values, error_of_slot, witnesses, order);
   } else {
     estimator.give_back_witnesses(witnesses);
   }
+  for (const Run& run : runs)
+    level_errors(std::span(order).subspan(run.first, run.end - run.first));
   const Placement placement = estimator.moves_to_end() ? Placement::Endpoint : Placement::Optimal;
   return {std::move(order), estimator.take_wedges(), placement};
 }

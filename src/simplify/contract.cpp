@@ -74,6 +74,7 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
     category_around_[kept] = kNone;
   }
   q.flat_around = q.flat_around && p.flat_around;
+  contract_parts(kept, removed);
   p.alive = false;
   p.into = kept;
   for (const auto& [t, third] : vanishing_) {

@@ -278,6 +278,10 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::make_legal(Candidate& pair,
   if (best.cost <= bound) {
     best.cost += vanishing_cost(a, b);
     if (vanishing_.empty() && (is_of_card(a) || is_of_card(b))) best.cost *= kJoinWeight;
+    if (const double with_part = cost_with_part(a, b, best.cost); with_part > best.cost) {
+      best.cost = with_part;
+      blamed_ = kNone;
+    }
     best.lasts = !ring_.empty();
   }
   return best;

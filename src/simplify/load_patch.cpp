@@ -61,6 +61,7 @@ void PatchSimplifier::start(WorkMesh& work, std::span<const std::uint32_t> trian
     load_edges();
     loaded_ = patch_id;
   }
+  load_parts();
   load_turns();  // alone depends on the steering
   if (steering_.virtual_distance > 0 && work.part_count > 1) find_virtual_pairs();
 }

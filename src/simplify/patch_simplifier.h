@@ -143,6 +143,14 @@ class PatchSimplifier {
     Index third;  // its vertex that is no end
   };
 
+  // A connected part, of which the patch may have no more than some vertices.
+  struct Part {
+    double damage = 0;    // see hierarchy/whole_part.h; 0 if it is large
+    Index triangles = 0;  // those that are left
+    Index into = kNone;   // the one that it has joined
+    bool whole = false;   // small, all of it is the patch's, and nothing has broken it
+  };
+
   struct Edge {
     Index other;
     Index corner[2];        // of the vertex that it was found at, in two of its triangles
@@ -164,6 +172,14 @@ class PatchSimplifier {
 
   // virtual_pairs.cpp
   void find_virtual_pairs();
+
+  // whole_parts.cpp
+  void load_parts();
+  Index part_at(Index v);
+  void contract_parts(Index kept, Index removed);
+  Index broken_by(Index a, Index b, double cost);
+  double cost_with_part(Index a, Index b, double cost);
+  void vanish(Index member, double cost);
 
   // pair_cost.cpp
   // `bound`: a cost above it need not be exact.
@@ -335,6 +351,10 @@ class PatchSimplifier {
 
   std::vector<Index> category_around_;     // by vertex; kNone: several
   AreaChanges by_category_, by_material_;  // of one contraction
+
+  std::vector<Part> parts_;          // empty: none is small
+  std::vector<Index> part_of_;       // per vertex, see part_at()
+  std::vector<Index> next_in_part_;  // per vertex: a circle through those of its part
 
   std::vector<std::pair<Index, Index>> pairs_;  // edges, then virtual pairs
   // Those that cost little enough. Contractions make pairs the same: the first that is looked at

@@ -111,16 +111,20 @@ void PatchSimplifier::contract_or_hold(const Entry& entry, Index a, Index b, dou
   if (!is_due()) return hold(entry, cost, placed);
   measure_witnesses(a, b, placed);
   const double far = std::max(double(farthest_witness_) - kRounding, 0.0);
-  const double least = steering_.far_area * far * far;
+  double least = steering_.far_area * far * far;
   if (placed.cost > kNearLimit * steering_.cost_limit) {
     result_.far_counts.add(least / placed.cost);
   }
+  least = cost_with_part(a, b, least);
   if (least > placed.cost) {
     placed.cost = least;
     blamed_ = kNone;
     if (!is_due()) return hold(entry, cost, placed);
   }
+  const Index broken = broken_by(a, b, placed.cost);
+  const bool vanishes = broken != kNone && part_at(a) == part_at(b);
   contract(a, b, placed.position, placed.cost);
+  if (vanishes) vanish(a, placed.cost);
 }
 
 void PatchSimplifier::hold(const Entry& entry, double cost, const Placed& placed) {
@@ -226,7 +230,7 @@ PatchResult PatchSimplifier::run() {
         std::max(changed_around_[a], changed_around_[b]) <= waited->looked_at) {
       find_ring(a, b);
       blamed_ = kNone;
-      const double known = waited->cost_with_ring;
+      const double known = cost_with_part(a, b, waited->cost_with_ring);
       Placed placed{known, known, to_double(waited->position), true};
       contract_or_hold(entry, a, b, known, placed);
       continue;

@@ -2,6 +2,7 @@
 #include "codec/encoded_model.h"
 #include "crease/decode_model.h"
 #include "support/mesh_builder.h"
+#include "support/village.h"
 
 #include <doctest/doctest.h>
 
@@ -47,6 +48,23 @@ TEST_CASE("hardly a triangle of a flat sea faces down at any level") {
     most = std::max(most, down);
   }
   CHECK(most <= 4);
+}
+
+TEST_CASE("boxes of a village that comes from a file are whole or gone at every level") {
+  const EncodedCase c = simplified_case(village(), 2'000, 14, kCoarsePrecision);
+  const Result<DecodedModel> model = decode_model(opened(c.bytes));
+  REQUIRE(model.ok());
+  std::size_t any_gone = 0;
+  for (const double share : {0.5, 0.8, 0.85, 0.9, 0.93, 0.96, 0.98}) {
+    const std::size_t count = std::size_t(share * double(model->sequence.contractions.size()));
+    const Mesh level = mesh_of_level(model->mesh, model->sequence,
+                                     apply_contractions(model->mesh, model->sequence, count));
+    const BoxCount boxes = count_boxes(c.mesh, level);
+    CAPTURE(share);
+    CHECK(boxes.broken <= kBoxes / 25);
+    any_gone += boxes.gone > 0 && boxes.whole > 0;
+  }
+  CHECK(any_gone >= 2);
 }
 
 }  // namespace crease

@@ -1,0 +1,95 @@
+#include "codec/whole_parts.h"
+
+#include "codec/patch_geometry.h"
+#include "hierarchy/whole_part.h"
+#include "mesh/disjoint_sets.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace crease::codec {
+
+namespace {
+
+struct PartOfBlock {
+  PartDamage damage_of_triangles;
+  double damage = 0;  // of a part that vanishes
+  std::uint32_t triangles = 0, vanishing = 0;
+  double cost = 0;  // of each contraction once one has broken it
+  bool is_broken = false;
+};
+
+// By their first vertices; the others stay empty.
+std::vector<PartOfBlock> parts_of(const UnfoldedBlock& block,
+                                  std::span<const std::uint32_t> vanished_of_split,
+                                  DisjointSets& sets) {
+  const PatchPlaces places(block.end);
+  std::vector<PartOfBlock> parts(block.end.positions.size());
+  for (std::size_t i = 0; i < block.splits.size(); ++i) {
+    parts[sets.find(block.splits[i].vertex)].vanishing += vanished_of_split[i];
+  }
+  for (const Corners& t : block.end.triangles) ++parts[sets.find(t[0])].triangles;
+  for (const Corners& t : block.end.triangles) {
+    PartOfBlock& part = parts[sets.find(t[0])];
+    if (part.vanishing != part.triangles) continue;
+    part.damage_of_triangles.add(places.place(t[0]), places.place(t[1]), places.place(t[2]));
+  }
+  for (PartOfBlock& part : parts) part.damage = part.damage_of_triangles.value();
+  return parts;
+}
+
+// Of a contraction in the new order.
+struct Rank {
+  double cost;
+  std::uint32_t broken_part;  // its number and one, or 0
+  std::uint32_t place;        // in the old order
+  bool operator<(const Rank& o) const {
+    return std::tie(cost, broken_part, place) < std::tie(o.cost, o.broken_part, o.place);
+  }
+};
+
+}  // namespace
+
+std::vector<Run> keep_parts_whole(const UnfoldedBlock& block,
+                                  std::span<const std::uint32_t> vanished_of_split,
+                                  std::vector<OrderedContraction>& order) {
+  DisjointSets sets(block.end.positions.size());
+  for (const Corners& t : block.end.triangles) {
+    sets.unite(t[0], t[1]);
+    sets.unite(t[0], t[2]);
+  }
+  for (std::size_t i = 0; i < block.splits.size(); ++i) {
+    sets.unite(block.splits[i].vertex, block.second_child(i));
+  }
+  std::vector<PartOfBlock> parts = parts_of(block, vanished_of_split, sets);
+
+  std::vector<Rank> ranks;
+  ranks.reserve(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t number = sets.find(block.splits[order[i].split].vertex);
+    PartOfBlock& part = parts[number];
+    if (!part.is_broken && breaks_part(order[i].cost, part.damage, part.triangles)) {
+      part.is_broken = true;
+      part.cost = std::max(order[i].cost, price_of_part(part.damage, part.triangles));
+    }
+    part.triangles -= vanished_of_split[order[i].split];
+    ranks.push_back(part.is_broken ? Rank{part.cost, number + 1, i} : Rank{order[i].cost, 0, i});
+  }
+  std::sort(ranks.begin(), ranks.end());
+
+  std::vector<Run> runs;
+  std::vector<OrderedContraction> reordered;
+  reordered.reserve(order.size());
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    reordered.push_back(order[ranks[i].place]);
+    reordered.back().cost = ranks[i].cost;
+    if (ranks[i].broken_part == 0) continue;
+    if (i == 0 || ranks[i].broken_part != ranks[i - 1].broken_part) runs.push_back({i, i});
+    runs.back().end = i + 1;
+  }
+  order = std::move(reordered);
+  return runs;
+}
+
+}  // namespace crease::codec

@@ -1,0 +1,58 @@
+// Small parts stay whole or go: a house without a wall is worse to look at than none.
+//
+// A connected part that is down to few triangles has none to spare. A contraction that costs a good
+// share of what is lost if the part vanishes breaks it, so that one waits until the part's
+// triangles are worth more elsewhere; then all the rest goes as well, one after the other. The
+// simplifier decides so, and so does who puts the contractions of a file in order.
+#pragma once
+
+#include "crease/vec.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace crease {
+
+// A box has 12 triangles, a prism 8. With more of them, up to three times as many, only what costs
+// more breaks a part, by the third power.
+inline constexpr double kFewTriangles = 12, kTooMany = 36;
+inline constexpr double kBreakingShare = 0.15;  // of the price of one of its contractions
+
+// What is lost if a part vanishes, as quadrics would tell it, which count an area at each of its
+// three corners: its squared distances from its own middle, by area, as if all that is left were
+// about so far away.
+class PartDamage {
+ public:
+  // A triangle of it.
+  void add(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    const double share = length(cross(b - a, c - a)) / 6;
+    area_ += 3 * share;
+    sum_ = sum_ + (a + b + c) * share;
+    squares_ += (dot(a, a) + dot(b, b) + dot(c, c)) * share;
+  }
+  // area * squared length
+  double value() const {
+    return area_ > 0 ? kCorners * std::max(0.0, squares_ - dot(sum_, sum_) / area_) : 0;
+  }
+
+ private:
+  // Three, and three times as much for what stood there alone: nothing around makes up for it.
+  static constexpr double kCorners = 9;
+  double area_ = 0, squares_ = 0;
+  Vec3d sum_;
+};
+
+// What each contraction of a part should cost of which so many triangles are left: two go with it.
+inline double price_of_part(double damage, std::size_t triangles) {
+  return damage / (0.5 * double(triangles));
+}
+
+// Whether a contraction inside it that costs so much breaks it. `damage`: 0 of a part that may not
+// go as a whole.
+inline bool breaks_part(double cost, double damage, std::size_t triangles) {
+  if (!(damage > 0) || double(triangles) > kTooMany) return false;
+  const double over = std::max(1.0, double(triangles) / kFewTriangles);
+  return cost >= kBreakingShare * over * over * over * price_of_part(damage, triangles);
+}
+
+}  // namespace crease

@@ -1,0 +1,132 @@
+// Small parts stay whole, or go: see hierarchy/whole_part.h.
+#include "hierarchy/whole_part.h"
+#include "simplify/patch_simplifier.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace crease::simplification {
+
+namespace {
+
+// One with more triangles will not be down to few when the pass ends.
+constexpr std::uint32_t kNotSmall = 512;
+
+}  // namespace
+
+void PatchSimplifier::load_parts() {
+  parts_.clear();
+  if (work_->part_count < 2) return;
+  const auto part_vertex = [&](Index v) { return work_->part_of_vertex[vertices_[v].global]; };
+  const Index n = static_cast<Index>(vertices_.size());
+  Index small = 0;
+  while (small < n && work_->triangles_of_part[part_vertex(small)] > kNotSmall) ++small;
+  if (small == n) return;
+
+  part_of_.resize(n);
+  next_in_part_.resize(n);
+  std::vector<Index> last;  // of its vertices, so far
+  Index* const known = local_of_vertex_.data();
+  for (Index v = 0; v < n; ++v) {
+    Index& part = known[part_vertex(v)];
+    if (part == kNone) {
+      part = static_cast<Index>(parts_.size());
+      Part& own = parts_.emplace_back();
+      own.triangles = work_->triangles_of_part[part_vertex(v)];
+      own.whole = own.triangles <= kNotSmall;
+      last.push_back(v);
+      next_in_part_[v] = v;
+    }
+    part_of_[v] = part;
+    if (vertices_[v].locked) parts_[part].whole = false;
+    next_in_part_[v] = std::exchange(next_in_part_[last[part]], v);
+    last[part] = v;
+  }
+  for (Index v = 0; v < n; ++v) known[part_vertex(v)] = kNone;  // as it was
+
+  std::vector<PartDamage> damages(parts_.size());
+  for (Index t = 0; t < global_triangle_.size(); ++t) {
+    const Index* v = &vertex_of_corner_[4 * t];
+    if (!parts_[part_of_[v[0]]].whole) continue;
+    damages[part_of_[v[0]]].add(positions_[v[0]], positions_[v[1]], positions_[v[2]]);
+  }
+  for (Index i = 0; i < parts_.size(); ++i) parts_[i].damage = damages[i].value();
+}
+
+PatchSimplifier::Index PatchSimplifier::part_at(Index v) {
+  Index& part = part_of_[v];
+  while (parts_[part].into != kNone) part = parts_[part].into;
+  return part;
+}
+
+// If `kept` and `removed` become one, and that many triangles vanish.
+void PatchSimplifier::contract_parts(Index kept, Index removed) {
+  if (parts_.empty()) return;
+  const Index into = part_at(kept), other = part_at(removed);
+  Part& part = parts_[into];
+  if (into != other) {
+    parts_[other].into = into;
+    part.damage += parts_[other].damage;
+    part.triangles += parts_[other].triangles;
+    part.whole = part.whole && parts_[other].whole;
+    std::swap(next_in_part_[kept], next_in_part_[removed]);
+  }
+  part.triangles -= static_cast<Index>(vanishing_.size());
+}
+
+// The part that a contraction of this cost breaks, or kNone. One that joins parts may break the
+// larger one.
+PatchSimplifier::Index PatchSimplifier::broken_by(Index a, Index b, double cost) {
+  if (parts_.empty()) return kNone;
+  const Index of_a = part_at(a), of_b = part_at(b);
+  const Index larger = parts_[of_a].damage > parts_[of_b].damage ? of_a : of_b;
+  const Part& part = parts_[larger];
+  const bool may_go = part.whole && part.triangles < live_triangles_;
+  return may_go && breaks_part(cost, part.damage, part.triangles) ? larger : kNone;
+}
+
+double PatchSimplifier::cost_with_part(Index a, Index b, double cost) {
+  const Index part = broken_by(a, b, cost);
+  if (part == kNone) return cost;
+  return std::max(cost, price_of_part(parts_[part].damage, parts_[part].triangles));
+}
+
+// After a contraction has broken it: the rest of the part that `member` is of. All of these
+// contractions are as wrong as the last one, so that a view shows all of the part or nothing.
+void PatchSimplifier::vanish(Index member, double cost) {
+  const std::size_t first = result_.contractions.size() - 1;
+  parts_[part_at(member)].whole = false;
+  Index v = member;
+  do {
+    v = next_in_part_[v];
+    while (vertices_[v].alive && vertices_[v].corners.count > 0) {
+      Index nearest = kNone;
+      double least = 0;
+      for (const Index corner : corners_of(v)) {
+        for (const Index other : {others_of(corner)[0], others_of(corner)[1]}) {
+          const Vec3d gap = positions_[other] - positions_[v];
+          const double away2 = dot(gap, gap);
+          if (nearest != kNone && (away2 > least || (away2 == least && other >= nearest))) continue;
+          nearest = other;
+          least = away2;
+        }
+      }
+      find_ring(nearest, v);
+      const Placed placed{cost, cost, positions_[nearest], false};
+      measure_witnesses(nearest, v, placed);
+      contract(nearest, v, placed.position, cost);
+    }
+  } while (v != member);
+  const LevelError error = result_.contractions.back().contraction.error;
+  for (std::size_t i = first; i < result_.contractions.size(); ++i) {
+    LevelError& own = result_.contractions[i].contraction.error;
+    own = larger(own, error);
+  }
+  do {  // a vertex without triangles may still join another
+    v = next_in_part_[v];
+    errors_[v].now = larger(errors_[v].now, error);
+  } while (v != member);
+}
+
+}  // namespace crease::simplification

@@ -1,0 +1,81 @@
+// Small parts stay whole or go.
+#include "hierarchy/whole_part.h"
+#include "simplify/reduce.h"
+#include "support/village.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace crease {
+
+TEST_CASE("what is lost with a cube is its area times nine of its squared distances") {
+  constexpr double kSide = 2;
+  MeshBuilder builder;
+  builder.box({5, 5, 5}, {5 + kSide, 5 + kSide, 5 + kSide}, 24);
+  const Mesh cube = builder.take();
+  PartDamage damage;
+  for (const Triangle& t : cube.triangles) {
+    const auto at = [&](std::size_t c) { return cube.positions[index_of(t[c])]; };
+    damage.add(at(0), at(1), at(2));
+  }
+  // Of a point of a face from the middle: half a side, and two uniform coordinates.
+  const double mean_square = kSide * kSide * (1.0 / 4 + 2.0 / 12);
+  CHECK(damage.value() == doctest::Approx(9 * 6 * kSide * kSide * mean_square).epsilon(0.01));
+  CHECK(PartDamage().value() == 0);
+}
+
+TEST_CASE("what breaks a part is dearer the more triangles it has, and nothing breaks large ones") {
+  CHECK(price_of_part(60, 12) == 10);
+  CHECK(breaks_part(1.6, 60, 12));
+  CHECK_FALSE(breaks_part(1.4, 60, 12));
+  CHECK(breaks_part(6.1, 60, 24));
+  CHECK_FALSE(breaks_part(5.9, 60, 24));
+  CHECK_FALSE(breaks_part(1e9, 60, 37));
+  CHECK_FALSE(breaks_part(1e9, 0, 8));
+}
+
+// 36 flat triangles at the side of a box are two. When the level has fewer than twelve a box, some
+// boxes are gone; of one patch one may be on its way.
+TEST_CASE("boxes of a village are whole or gone at every level") {
+  const Mesh input = village();
+  std::size_t last = kBoxes;
+  for (const double per_box : {40, 14, 10, 6, 3, 1}) {
+    const Reached reached = reduce(input, std::size_t(per_box * kBoxes));
+    const BoxCount boxes = count_boxes(input, reached.mesh);
+    CAPTURE(per_box);
+    CHECK(boxes.broken <= 1);
+    CHECK(boxes.whole <= last);
+    last = boxes.whole;
+    if (per_box == 14) CHECK(boxes.whole > kBoxes / 2);
+    if (per_box == 1) CHECK(boxes.gone > kBoxes / 2);
+  }
+}
+
+// So that a view that asks for an error shows all of a box or nothing.
+TEST_CASE("the contractions that take a box away are all as wrong as the last") {
+  Mesh mesh = village();
+  const Grid grid = make_grid(mesh, {});
+  snap(mesh, grid);
+  const ContractionSequence sequence = *simplify(mesh, grid, {});
+  std::vector<std::vector<float>> errors(kBoxes);
+  for (const Contraction& c : sequence.contractions) {
+    const Vec3d at = mesh.positions[index_of(c.removed)];
+    if (at.z < 0.15) continue;
+    errors[std::size_t(at.x) + std::size_t(at.y) * kVillageSide].push_back(c.error.surface);
+  }
+  std::size_t in_one_go = 0;
+  for (std::vector<float>& own : errors) {
+    std::sort(own.begin(), own.end());
+    const auto large = std::upper_bound(own.begin(), own.end(), 0.05f);
+    // Twelve triangles go with six contractions; what is left of a box may join another part.
+    REQUIRE(own.end() - large >= 6);
+    in_one_go += *large == *(large + 5);
+  }
+  CHECK(in_one_go > kBoxes * 9 / 10);
+}
+
+}  // namespace crease
