@@ -15,7 +15,7 @@ namespace crease {
 
 // A box has 12 triangles, a prism 8. With more of them, up to three times as many, only what costs
 // more breaks a part, by the third power.
-inline constexpr double kFewTriangles = 12, kTooMany = 36;
+inline constexpr double kSmallPart = 12, kLargePart = 36;
 inline constexpr double kBreakingShare = 0.15;  // of the price of one of its contractions
 
 // What is lost if a part vanishes, as quadrics would tell it, which count an area at each of its
@@ -50,8 +50,8 @@ inline double price_of_part(double damage, std::size_t triangles) {
 // Whether a contraction inside it that costs so much breaks it. `damage`: 0 of a part that may not
 // go as a whole.
 inline bool breaks_part(double cost, double damage, std::size_t triangles) {
-  if (!(damage > 0) || double(triangles) > kTooMany) return false;
-  const double over = std::max(1.0, double(triangles) / kFewTriangles);
+  if (!(damage > 0) || double(triangles) > kLargePart) return false;
+  const double over = std::max(1.0, double(triangles) / kSmallPart);
   return cost >= kBreakingShare * over * over * over * price_of_part(damage, triangles);
 }
 
