@@ -323,19 +323,6 @@ void measure_in_order(const UnfoldedBlock& block, const ModelSchema& schema,
   estimator.give_back_witnesses(witnesses);
 }
 
-// All are as wrong as the worst of them: a view shows all of a part or nothing.
-void level_errors(std::span<OrderedContraction> run) {
-  LevelError own, error;
-  for (const OrderedContraction& c : run) {
-    own = larger(own, c.own);
-    error = larger(error, c.error);
-  }
-  for (OrderedContraction& c : run) {
-    c.own = own;
-    c.error = error;
-  }
-}
-
 }  // namespace
 
 ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchema& schema,
@@ -375,15 +362,12 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
   for (const auto& [cost, place] : ranks) order.push_back(undone[place]);
   if (estimator.flat_count() > order.size() / kFewOfThem)
     order = defer_folds(block, std::move(order));
-  std::vector<Run> runs;
-  if (estimator.any_part_vanishes()) runs = keep_parts_whole(block, vanished_of_split, order);
+  if (estimator.any_part_vanishes()) keep_parts_whole(block, vanished_of_split, order);
   if (estimator.astray_count() > order.size() / kFewAstray) {
     measure_in_order(block, schema, values, error_of_slot, witnesses, order);
   } else {
     estimator.give_back_witnesses(witnesses);
   }
-  for (const Run& run : runs)
-    level_errors(std::span(order).subspan(run.first, run.end - run.first));
   const Placement placement = estimator.moves_to_end() ? Placement::Endpoint : Placement::Optimal;
   return {std::move(order), estimator.take_wedges(), placement};
 }

@@ -51,9 +51,8 @@ struct Rank {
 
 }  // namespace
 
-std::vector<Run> keep_parts_whole(const UnfoldedBlock& block,
-                                  std::span<const std::uint32_t> vanished_of_split,
-                                  std::vector<OrderedContraction>& order) {
+void keep_parts_whole(const UnfoldedBlock& block, std::span<const std::uint32_t> vanished_of_split,
+                      std::vector<OrderedContraction>& order) {
   DisjointSets sets(block.end.positions.size());
   for (const Corners& t : block.end.triangles) {
     sets.unite(t[0], t[1]);
@@ -78,18 +77,13 @@ std::vector<Run> keep_parts_whole(const UnfoldedBlock& block,
   }
   std::sort(ranks.begin(), ranks.end());
 
-  std::vector<Run> runs;
   std::vector<OrderedContraction> reordered;
   reordered.reserve(order.size());
-  for (std::size_t i = 0; i < ranks.size(); ++i) {
-    reordered.push_back(order[ranks[i].place]);
-    reordered.back().cost = ranks[i].cost;
-    if (ranks[i].broken_part == 0) continue;
-    if (i == 0 || ranks[i].broken_part != ranks[i - 1].broken_part) runs.push_back({i, i});
-    runs.back().end = i + 1;
+  for (const Rank& rank : ranks) {
+    reordered.push_back(order[rank.place]);
+    reordered.back().cost = rank.cost;
   }
   order = std::move(reordered);
-  return runs;
 }
 
 }  // namespace crease::codec

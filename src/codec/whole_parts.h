@@ -10,17 +10,11 @@
 
 namespace crease::codec {
 
-// Contractions of an order that follow each other.
-struct Run {
-  std::size_t first = 0, end = 0;
-};
-
 // From the contraction that breaks a part on, which vanishes in the block, those of the part follow
-// each other at one cost. `vanished_of_split`: how many triangles go with each. Returns these runs.
-// Costs are ascending, before and after; children come before their parents. Time O(triangles +
-// splits log splits).
-std::vector<Run> keep_parts_whole(const UnfoldedBlock& block,
-                                  std::span<const std::uint32_t> vanished_of_split,
-                                  std::vector<OrderedContraction>& order);
+// each other at one cost. `vanished_of_split`: how many triangles go with each. Costs are
+// ascending, before and after; children come before their parents. Time O(triangles + splits log
+// splits).
+void keep_parts_whole(const UnfoldedBlock& block, std::span<const std::uint32_t> vanished_of_split,
+                      std::vector<OrderedContraction>& order);
 
 }  // namespace crease::codec

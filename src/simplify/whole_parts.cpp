@@ -3,6 +3,7 @@
 #include "simplify/patch_simplifier.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -51,7 +52,22 @@ void PatchSimplifier::load_parts() {
     if (!parts_[part_of_[v[0]]].whole) continue;
     damages[part_of_[v[0]]].add(positions_[v[0]], positions_[v[1]], positions_[v[2]]);
   }
-  for (Index i = 0; i < parts_.size(); ++i) parts_[i].damage = damages[i].value();
+  struct Box {
+    Vec3d low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  };
+  std::vector<Box> boxes(parts_.size());
+  for (Index v = 0; v < n; ++v) {
+    Box& box = boxes[part_of_[v]];
+    for (int i = 0; i < 3; ++i) {
+      box.low[i] = std::min(box.low[i], positions_[v][i]);
+      box.high[i] = std::max(box.high[i], positions_[v][i]);
+    }
+  }
+  for (Index i = 0; i < parts_.size(); ++i) {
+    const Vec3d half = (boxes[i].high - boxes[i].low) * 0.5;
+    parts_[i].damage = damages[i].value();
+    parts_[i].reach2 = dot(half, half);
+  }
 }
 
 PatchSimplifier::Index PatchSimplifier::part_at(Index v) {
@@ -68,6 +84,7 @@ void PatchSimplifier::contract_parts(Index kept, Index removed) {
   if (into != other) {
     parts_[other].into = into;
     part.damage += parts_[other].damage;
+    part.reach2 = std::max(part.reach2, parts_[other].reach2);
     part.triangles += parts_[other].triangles;
     part.whole = part.whole && parts_[other].whole;
     std::swap(next_in_part_[kept], next_in_part_[removed]);
@@ -86,16 +103,19 @@ PatchSimplifier::Index PatchSimplifier::broken_by(Index a, Index b, double cost)
   return may_go && breaks_part(cost, part.damage, part.triangles) ? larger : kNone;
 }
 
+// One that breaks a part costs at least the part's price, and no less than what is as far away as
+// the part is large (far_area.h).
 double PatchSimplifier::cost_with_part(Index a, Index b, double cost) {
-  const Index part = broken_by(a, b, cost);
-  if (part == kNone) return cost;
-  return std::max(cost, price_of_part(parts_[part].damage, parts_[part].triangles));
+  const Index broken = broken_by(a, b, cost);
+  if (broken == kNone) return cost;
+  const Part& part = parts_[broken];
+  return std::max(
+      {cost, price_of_part(part.damage, part.triangles), steering_.far_area * part.reach2});
 }
 
-// After a contraction has broken it: the rest of the part that `member` is of. All of these
-// contractions are as wrong as the last one, so that a view shows all of the part or nothing.
+// After a contraction has broken it: the rest of the part that `member` is of. Their errors are
+// what they are: a view within them cannot tell what is left of a part from all of it.
 void PatchSimplifier::vanish(Index member, double cost) {
-  const std::size_t first = result_.contractions.size() - 1;
   parts_[part_at(member)].whole = false;
   Index v = member;
   do {
@@ -117,15 +137,6 @@ void PatchSimplifier::vanish(Index member, double cost) {
       measure_witnesses(nearest, v, placed);
       contract(nearest, v, placed.position, cost);
     }
-  } while (v != member);
-  const LevelError error = result_.contractions.back().contraction.error;
-  for (std::size_t i = first; i < result_.contractions.size(); ++i) {
-    LevelError& own = result_.contractions[i].contraction.error;
-    own = larger(own, error);
-  }
-  do {  // a vertex without triangles may still join another
-    v = next_in_part_[v];
-    errors_[v].now = larger(errors_[v].now, error);
   } while (v != member);
 }
 

@@ -55,27 +55,4 @@ TEST_CASE("boxes of a village are whole or gone at every level") {
   }
 }
 
-// So that a view that asks for an error shows all of a box or nothing.
-TEST_CASE("the contractions that take a box away are all as wrong as the last") {
-  Mesh mesh = village();
-  const Grid grid = make_grid(mesh, {});
-  snap(mesh, grid);
-  const ContractionSequence sequence = *simplify(mesh, grid, {});
-  std::vector<std::vector<float>> errors(kBoxes);
-  for (const Contraction& c : sequence.contractions) {
-    const Vec3d at = mesh.positions[index_of(c.removed)];
-    if (at.z < 0.15) continue;
-    errors[std::size_t(at.x) + std::size_t(at.y) * kVillageSide].push_back(c.error.surface);
-  }
-  std::size_t in_one_go = 0;
-  for (std::vector<float>& own : errors) {
-    std::sort(own.begin(), own.end());
-    const auto large = std::upper_bound(own.begin(), own.end(), 0.05f);
-    // Twelve triangles go with six contractions; what is left of a box may join another part.
-    REQUIRE(own.end() - large >= 6);
-    in_one_go += *large == *(large + 5);
-  }
-  CHECK(in_one_go > kBoxes * 9 / 10);
-}
-
 }  // namespace crease
