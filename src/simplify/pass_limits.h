@@ -19,11 +19,6 @@ inline constexpr double kPassShare = 0.5;
 inline constexpr int kPasses = 2;
 inline constexpr int kPassesOfFirst = 1;  // so that half of the triangles see two borders
 
-// Where few triangles are left passes leave more of them, and bands have more passes: the quadrics
-// are nearer to what there is, and it takes hardly any time.
-inline constexpr double kCoarsePassShare = 0.75;
-inline constexpr int kCoarsePasses = 5;
-
 // By no more than this, though more triangles stay. Beyond it, what lies within a patch goes before
 // what costs far less and lies at its border: the walls of a building before its pipes.
 inline constexpr double kMostGrowth = 24;
@@ -39,19 +34,17 @@ class PassLimits {
   // Where nothing cost so little.
   void raise(double limit) { limit_ = std::max(limit_, limit); }
 
-  // After a pass. True: it was its band's last, as it is where `cut_short`. `coarse`: few triangles
-  // are left.
-  bool advance(double share, bool cut_short, bool coarse) {
-    double& power = powers_[pass_ > 0];
+  // After a pass. True: it was its band's last, as it is where `cut_short`.
+  bool advance(double share, bool cut_short) {
+    double& power = powers_[static_cast<std::size_t>(pass_)];
     if (factor_ > 1) {
       power = std::clamp(-std::log(std::min(share, 0.97)) / std::log(factor_), 0.12, 1.0);
     }
-    const int passes = is_first_band_ ? kPassesOfFirst : coarse ? kCoarsePasses : kPasses;
-    const bool ends = cut_short || pass_ + 1 >= passes;
+    const bool ends = cut_short || pass_ + 1 == (is_first_band_ ? kPassesOfFirst : kPasses);
     is_first_band_ = is_first_band_ && !ends;
     pass_ = ends ? 0 : pass_ + 1;
-    const double pass_share = coarse ? kCoarsePassShare : kPassShare;
-    factor_ = std::clamp(std::pow(pass_share, -1 / powers_[pass_ > 0]), 2.0, kMostGrowth);
+    const double next = powers_[static_cast<std::size_t>(pass_)];
+    factor_ = std::clamp(std::pow(kPassShare, -1 / next), 2.0, kMostGrowth);
     limit_ *= factor_;
     return ends;
   }
@@ -60,8 +53,7 @@ class PassLimits {
   double limit_, factor_ = 1;
   int pass_ = 0;
   bool is_first_band_ = true;
-  std::array<double, 2> powers_{
-      0.35, 0.25};  // of a band's first pass, of others; of scans and CAD models
+  std::array<double, kPasses> powers_{0.35, 0.25};  // of scans and CAD models
 };
 
 }  // namespace crease::simplification

@@ -29,9 +29,6 @@ namespace {
 // than for the bits that a file takes: these vertices are few.
 constexpr double kCoarseShare = 0.1, kCoarseLeavesPair = 0.9;
 constexpr std::size_t kCoarse = 2000;
-// Then passes are more as well, unless it is less than this share that is left: each forgets a
-// little of what a large model was.
-constexpr double kStillKnown = 0.05;
 
 // The first pass contracts pairs that cost no more than this share of all do: with more of them its
 // borders show in levels of half the triangles, with fewer the first band is hardly worth a file's
@@ -186,8 +183,7 @@ class Simplifier {
 
       const double share = double(work_.live.size()) / double(before);
       stalled_ = share > 0.98 ? stalled_ + 1 : 0;
-      const bool coarse = work_.live.size() < kCoarse && left > kStillKnown;
-      if (!limits->advance(share, last || stalled_ > 0, coarse)) {
+      if (!limits->advance(share, last || stalled_ > 0)) {
         drop_vanished(patches_);
         continue;
       }

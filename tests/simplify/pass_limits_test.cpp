@@ -12,7 +12,7 @@ TEST_CASE("a limit grows as little as what the last pass left allows, and by 24 
     PassLimits limits(1);
     double before = limits.limit();
     for (int pass = 0; pass < 12; ++pass) {
-      limits.advance(share, false, false);
+      limits.advance(share, false);
       CHECK(limits.limit() >= 2 * before);
       CHECK(limits.limit() <= kMostGrowth * before * (1 + 1e-12));
       before = limits.limit();
@@ -31,22 +31,13 @@ TEST_CASE("a limit that nothing was below is raised, and never lowered") {
 TEST_CASE("the first band has one pass, others two, what is cut short ends") {
   PassLimits limits(1);
   CHECK(limits.begins_band());
-  CHECK(limits.advance(0.5, false, false));
-  CHECK_FALSE(limits.advance(0.5, false, false));
+  CHECK(limits.advance(0.5, false));
+  CHECK_FALSE(limits.advance(0.5, false));
   CHECK_FALSE(limits.begins_band());
-  CHECK(limits.advance(0.5, false, false));
-  CHECK(limits.advance(0.99, true, false));
+  CHECK(limits.advance(0.5, false));
+  CHECK(limits.advance(0.99, true));
   CHECK(limits.begins_band());
 }
 
 }  // namespace
-TEST_CASE("passes over few triangles are more, and grow less") {
-  PassLimits fine(1), coarse(1);
-  CHECK(fine.advance(0.5, false, false));
-  CHECK(coarse.advance(0.5, false, true));
-  CHECK(coarse.limit() < fine.limit());
-  for (int pass = 1; pass < 5; ++pass) CHECK_FALSE(coarse.advance(0.7, false, true));
-  CHECK(coarse.advance(0.7, false, true));
-}
-
 }  // namespace crease::simplification
