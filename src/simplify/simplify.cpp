@@ -188,6 +188,7 @@ class Simplifier {
         continue;
       }
       if (statistics) statistics->bands.push_back(band_statistics());
+      if (contractions_in_band_ == 0 && sequence_.bands.size() > 1) sequence_.bands.pop_back();
       if (last) break;
       ++band;
     }

@@ -216,7 +216,7 @@ TEST_CASE("the plain decoder finds what the codec does, in small models of every
               .bytes);
     }
   }
-  CHECK(blocks > (kSanitized ? 80 : 800));
+  CHECK(blocks > (kSanitized ? 80 : 700));
 }
 
 TEST_CASE("the plain decoder finds what the codec does, in real models") {
