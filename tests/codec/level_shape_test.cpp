@@ -29,6 +29,13 @@ Mesh coast(int cells) {
   return builder.take();
 }
 
+// After this share of its contractions.
+Mesh level_after(double share, const DecodedModel& model) {
+  const std::size_t count = std::size_t(share * double(model.sequence.contractions.size()));
+  return mesh_of_level(model.mesh, model.sequence,
+                       apply_contractions(model.mesh, model.sequence, count));
+}
+
 }  // namespace
 
 TEST_CASE("hardly a triangle of a flat sea faces down at any level") {
@@ -37,9 +44,7 @@ TEST_CASE("hardly a triangle of a flat sea faces down at any level") {
   REQUIRE(model.ok());
   std::size_t most = 0;
   for (const double share : {0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6}) {
-    const std::size_t count = std::size_t(share * double(model->sequence.contractions.size()));
-    const Mesh level = mesh_of_level(model->mesh, model->sequence,
-                                     apply_contractions(model->mesh, model->sequence, count));
+    const Mesh level = level_after(share, *model);
     std::size_t down = 0;
     for (const Triangle& t : level.triangles) {
       const auto at = [&](std::size_t i) { return level.positions[index_of(t[i])]; };
@@ -56,9 +61,7 @@ TEST_CASE("boxes of a village that comes from a file are whole or gone at every 
   REQUIRE(model.ok());
   std::size_t any_gone = 0;
   for (const double share : {0.5, 0.8, 0.85, 0.9, 0.93, 0.96, 0.98}) {
-    const std::size_t count = std::size_t(share * double(model->sequence.contractions.size()));
-    const Mesh level = mesh_of_level(model->mesh, model->sequence,
-                                     apply_contractions(model->mesh, model->sequence, count));
+    const Mesh level = level_after(share, *model);
     const BoxCount boxes = count_boxes(c.mesh, level);
     CAPTURE(share);
     CHECK(boxes.broken <= kBoxes / 25);
