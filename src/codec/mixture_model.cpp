@@ -12,12 +12,13 @@ namespace {
 
 constexpr float kScaleRate = 0.15f, kSlopeRate = 0.015f, kMeanRate = 0.02f;
 constexpr float kLeastScale = -12, kMostScale = 16, kMostSlope = 2;
+constexpr float kLeastSum = 0x1p-126f;  // of which the inverse is a number
 
 }  // namespace
 
 bool make_shares(PerComponent& odds) {
   const float sum = sum_of(EightFloats(odds));
-  if (!(sum > 0)) return false;
+  if (!(sum >= kLeastSum)) return false;
   (EightFloats(odds) * (1 / sum)).store(odds);
   return true;
 }

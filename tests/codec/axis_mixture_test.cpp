@@ -1,5 +1,6 @@
 // A file must not depend on how many floats a processor takes at once.
 #include "codec/axis_mixture.h"
+#include "codec/mixture_model.h"
 
 #include <doctest/doctest.h>
 
@@ -59,6 +60,20 @@ TEST_CASE("shares, sums and weights are the same to the bit by eights and by fou
     weigh(mixture, start, low, width);
     weigh_by_fours(by_fours, start, low, width);
     REQUIRE(std::bit_cast<Bits>(mixture.weight) == std::bit_cast<Bits>(by_fours.weight));
+  }
+}
+
+// Where the inverse of a sum is infinite, shares would be no numbers, and stay so in a model.
+TEST_CASE("odds that are hardly above zero have no shares") {
+  for (const float odds : {0.0f, 1e-44f, 1e-40f, 1e-39f}) {
+    PerComponent some{odds, 0, 0, odds};
+    CHECK_FALSE(make_shares(some));
+    CHECK(some[0] == odds);
+  }
+  for (const float odds : {1e-37f, 1e-20f, 1.0f, 1e20f}) {
+    PerComponent some{odds, 0, 0, odds};
+    CHECK(make_shares(some));
+    CHECK(some == PerComponent{0.5f, 0, 0, 0.5f});
   }
 }
 

@@ -107,7 +107,7 @@ float excess(float q) {
 
 bool make_shares(PerComponent& weights) {
   const float sum = sum_by_fours({weights.begin(), weights.end()});
-  if (!(sum > 0)) return false;
+  if (!(sum >= 0x1p-126f)) return false;
   for (float& w : weights) w = w * (1 / sum);
   return true;
 }

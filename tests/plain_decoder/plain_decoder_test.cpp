@@ -13,6 +13,7 @@
 #include "support/mesh_zoo.h"
 #include "support/sanitized.h"
 #include "support/shared_data.h"
+#include "support/village.h"
 
 #include <doctest/doctest.h>
 
@@ -277,6 +278,21 @@ TEST_CASE("the plain decoder finds what the codec does, in random contractions")
     if (seed % 4 == 0) lose_normals(mesh);
     const int bits = seed % 5 == 0 ? 31 : 14;
     CHECK(check_file(random_case(std::move(mesh), seed, precision, bits).bytes) == 2);
+  }
+}
+
+// Flat walls far apart: on a fine grid a place that nothing foretells is worth less than a float holds.
+TEST_CASE("the plain decoder finds what the codec does, in boxes on fine grids") {
+  for (const int bits : {20, 22, 24, 26, 28, 30}) {
+    INFO(bits);
+    if (kSanitized && bits != 24) continue;
+    for (const int blocks : {3, 5, 8}) {
+      INFO(blocks);
+      check_file(
+          simplified_case(city_blocks(blocks, 1), 8000, bits, kExactPrecision, Placement::Endpoint)
+              .bytes);
+    }
+    check_file(simplified_case(village(), 8000, bits, precision_of(10)).bytes);
   }
 }
 
