@@ -41,8 +41,10 @@ void add_build_options(CLI::App& command, ReadOptions& options) {
   command
       .add_option("--precision", options.precision,
                   "grid that positions are snapped to: a length (0.001), or bits over the longest "
-                  "side (14bits); default 24bits. Open borders that meet within a step "
-                  "are joined; by default within 22bits, which floats hardly tell apart")
+                  "side (14bits). By default the one that the model's numbers are on, such as "
+                  "whole millimetres, so that nothing is rounded, or 24bits. Open borders that "
+                  "meet within a step are joined; by default within 22bits, which floats hardly "
+                  "tell apart")
       ->type_name("LENGTH|BITSbits");
   command
       .add_option("--placement", options.placement,
@@ -144,8 +146,11 @@ void tell_strays(Imported& imported, const Precision& precision) {
   const std::optional<Strays> strays = find_strays(imported.mesh);
   if (!strays) return;
   const double step = make_grid(imported.mesh, precision).step;
+  const double by_bits = std::ldexp(strays->longest, -precision.bits_or_default());
+  const bool is_own = precision.bits == 0 && std::abs(step - by_bits) > 0.001 * by_bits;
+  if (is_own) return;                                        // the model's own numbers are on it
   const double finest = 1.001 * finest_step(imported.mesh);  // as it is written, in four digits
-  const double wanted = std::ldexp(strays->longest_without, -precision.bits);
+  const double wanted = std::ldexp(strays->longest_without, -precision.bits_or_default());
   const bool can_be_had = wanted > finest;
   std::string note =
       grouped(strays->count) + " of " + grouped(imported.mesh.vertex_count()) +

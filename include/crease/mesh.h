@@ -126,12 +126,18 @@ struct Grid {
 };
 
 // What --precision asks for: a length, or bits over the longest side of the bounding box (1 to 30).
+// Neither: the grid that the model's numbers are on already, whole millimetres or six decimals, if
+// its step is longer than kDefaultBits give; so nothing is rounded, and files are smaller.
 struct Precision {
-  double length = 0;  // model units; 0: use bits
   // Walls stay planes for the simplifier. A grid as fine as a 256th of the short edges, 14 to 18
   // bits mostly, saves a third of the file and bends them: a gear at 10 % is off by nine times as
   // much as otherwise, and a corner of many sectors loses some.
-  int bits = 24;
+  static constexpr int kDefaultBits = 24;
+
+  double length = 0;  // model units; 0: use bits
+  int bits = 0;       // 0: as said above
+
+  int bits_or_default() const { return bits > 0 ? bits : kDefaultBits; }
 };
 
 // The shortest step that a grid of the mesh may have: 2^-30 of the longest side, and longer where

@@ -2,11 +2,17 @@
 #include "io/formats.h"
 #include "io/left_out.h"
 #include "io/split_vertices.h"
+#include "mesh/box_of.h"
+#include "mesh/own_grid.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -24,6 +30,32 @@ void write_values(ByteSink& out, std::string_view word, const AttributeLayer& la
     }
     out.text("\n");
   }
+}
+
+// How many decimals positions have, but for the rounding of a grid's origin and steps, if few.
+std::optional<int> decimals_of(const Mesh& mesh) {
+  constexpr int kMost = 12;
+  const double longest = box_of(mesh.positions).longest;
+  if (!(longest > 0)) return std::nullopt;
+  const std::optional<double> step = round_step(mesh.positions, longest, std::ldexp(longest, -30));
+  for (int decimals = 0; step && decimals <= kMost; ++decimals) {
+    const double steps = *step * std::pow(10.0, decimals);
+    if (steps > 0.5 && std::abs(steps - std::round(steps)) < 1e-6) return decimals;
+  }
+  return std::nullopt;
+}
+
+// 503.458, not 503.45799999999997.
+void write_decimals(ByteSink& out, double x, int decimals) {
+  std::array<char, 400> digits;
+  const auto got = std::to_chars(digits.data(), digits.data() + digits.size(), x,
+                                 std::chars_format::fixed, decimals);
+  std::string_view text(digits.data(), static_cast<std::size_t>(got.ptr - digits.data()));
+  if (text.find('.') != text.npos) {
+    text = text.substr(0, text.find_last_not_of('0') + 1);
+    if (text.ends_with('.')) text.remove_suffix(1);
+  }
+  out.text(text == "-0" ? "0" : text);
 }
 
 // Names stand in one line. An empty one stays nameless by a word of its own.
@@ -89,12 +121,17 @@ std::vector<std::byte> write_obj(const Mesh& mesh, std::string_view mtl_name) {
     out.text(mtl_name);
     out.text("\n");
   }
+  const std::optional<int> decimals = decimals_of(mesh);
   for (std::size_t s = 0; s < split.count(); ++s) {
     const Vec3d& p = mesh.positions[split.position[s]];
     out.text("v");
     for (int i = 0; i < 3; ++i) {
       out.text(" ");
-      out.number(p[i]);
+      if (decimals) {
+        write_decimals(out, p[i], *decimals);
+      } else {
+        out.number(p[i]);
+      }
     }
     for (std::size_t c = 0; colors && c < 3; ++c) {
       out.text(" ");

@@ -1,9 +1,11 @@
 #include "crease/mesh.h"
 #include "mesh/box_of.h"
+#include "mesh/own_grid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 namespace crease {
@@ -52,15 +54,40 @@ Status check_precision(const Mesh& mesh, const Precision& precision) {
   return fail(Error::CommandLine, message);
 }
 
+namespace {
+
+// The model's own grid, where that is coarser and has its numbers: in halves, quarters, ... until
+// it is fine enough for where contracted vertices stand.
+Grid grid_by_default(const Mesh& mesh, double longest) {
+  constexpr int kLeastBits = 16;
+  const double fine = std::ldexp(longest, -Precision::kDefaultBits);
+  std::optional<Grid> own = own_grid(mesh.positions, longest, fine);
+  if (!own) return {{}, fine};
+  const std::optional<Strays> strays = find_strays(mesh);
+  const double enough = std::ldexp(strays ? strays->longest_without : longest, -kLeastBits);
+  while (own->step > enough && own->step / 2 >= finest_step(mesh)) own->step /= 2;
+  return *own;
+}
+
+}  // namespace
+
 Grid make_grid(const Mesh& mesh, const Precision& precision) {
   if (mesh.positions.empty()) return {};
   const auto [low, size, longest] = box_of(mesh.positions);
   Grid grid;
-  grid.step = precision.length > 0 ? precision.length : longest / double(1 << precision.bits);
+  if (precision.length > 0) {
+    grid.step = precision.length;
+  } else if (precision.bits > 0 || longest == 0) {
+    grid.step = std::ldexp(longest, -precision.bits_or_default());
+  } else {
+    grid = grid_by_default(mesh, longest);
+  }
   grid.step = std::max(grid.step, finest_step(mesh));
   if (!(grid.step > 0)) grid.step = 1;
   for (int i = 0; i < 3; ++i) {
-    grid.origin[i] = std::round((low[i] + 0.5 * size[i]) / grid.step) * grid.step;
+    const double center = low[i] + 0.5 * size[i];
+    const double steps = std::round((center - grid.origin[i]) / grid.step);
+    grid.origin[i] += steps * grid.step;
   }
   return grid;
 }

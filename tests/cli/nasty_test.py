@@ -52,7 +52,8 @@ class Nasty(tool.Case):
 
     def test_a_triangle_far_away_from_all_others_is_told_with_what_it_costs(self):
         far = "".join(f"v {x} {y} 900000\n" for x, y in ((0, 0), (1, 0), (0, 1)))
-        grid = "".join(f"v {i % 12} {i // 12} 0\n" for i in range(144))
+        whole = "".join(f"v {i % 12} {i // 12} 0\n" for i in range(144))
+        grid = "".join(f"v {i % 12} {i // 12} {(i % 7) / 3e4}\n" for i in range(144))
         faces = "".join(f"f {i + 4} {i + 5} {i + 16}\n" for i in range(132) if i % 12 < 11)
         stray, out = self.write("stray.obj", far + grid + "f 1 2 3\n" + faces), self.path("a.crease")
         notes = self.json("build", stray, "-o", out)["import"]["notes"]
@@ -66,6 +67,10 @@ class Nasty(tool.Case):
                          [])
         extracted = self.run_tool("extract", stray, "-o", self.path("a.ply"), "--ratio", "0.5")
         self.assertIn(notes[0], extracted.stderr)
+        # It costs nothing where all of them are on a grid, of which there are enough steps.
+        stray = self.write("whole.obj", far + whole + "f 1 2 3\n" + faces)
+        self.assertEqual(self.json("build", stray, "-o", out)["import"]["notes"], [])
+        self.assertEqual(self.json("info", out)["precision"], 2 ** -10)
 
     def test_good_files_build_and_lose_nothing(self):
         for folder in ("cad", "attributes", "scan", "city"):

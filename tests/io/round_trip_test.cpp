@@ -261,6 +261,32 @@ double moved(const Mesh& mesh, const Mesh& back, const Vec3d& origin) {
   return most;
 }
 
+// The sums of a grid's origin and its steps are off by a rounding; what was written as 503.458 is
+// 503.458 again.
+TEST_CASE("an OBJ has the decimals that its positions had") {
+  Mesh mesh = hard_box(8);
+  const auto written = [&](double x) {
+    for (Vec3d& p : mesh.positions) p = {0, 0, 0};
+    mesh.positions.back() = {x, 0.001, -0.003};
+    const Grid grid = make_grid(mesh, {.length = 0.001});
+    snap(mesh, grid);
+    const std::vector<std::byte> bytes = *export_bytes(mesh, ".obj");
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::size_t at = text.rfind("\nv ") + 3;
+    return text.substr(at, text.find('\n', at) - at);
+  };
+  CHECK(written(503.458) == "503.458 0.001 -0.003");
+  CHECK(written(-23.1) == "-23.1 0.001 -0.003");
+  CHECK(written(0.021) == "0.021 0.001 -0.003");
+  CHECK(written(723456.78) == "723456.78 0.001 -0.003");
+  CHECK(written(4000) == "4000 0.001 -0.003");
+  // One that has none makes all of them exact.
+  mesh.positions.front().x = 1.0 / 3;
+  const std::vector<std::byte> bytes = *export_bytes(mesh, ".obj");
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  CHECK(text.find("v 0.3333333333333333 ") != text.npos);
+}
+
 TEST_CASE("an STL far from the origin is written less a round one, and the report says so") {
   struct Case {
     Vec3d at, origin;

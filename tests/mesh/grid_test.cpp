@@ -1,12 +1,15 @@
 // The grid of positions: how fine it can be, and what makes it coarse.
 #include "crease/mesh.h"
 
+#include "mesh/own_grid.h"
 #include "support/mesh_zoo.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <random>
 #include <string>
+#include <vector>
 
 namespace crease {
 namespace {
@@ -77,6 +80,105 @@ TEST_CASE("strays on several sides are found, and those of a large mesh may be m
   REQUIRE(strays.has_value());
   CHECK(strays->count == 6);
   CHECK(strays->longest_without == doctest::Approx(2).epsilon(0.01));
+}
+
+std::vector<Vec3d> random_points(std::size_t count, double size, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> along(0, size);
+  std::vector<Vec3d> points(count);
+  for (Vec3d& p : points) p = {along(random), along(random), along(random)};
+  return points;
+}
+
+// As if they had been written on a grid, read again and moved.
+std::vector<Vec3d> on_grid(std::vector<Vec3d> points, double step_of, double divisor, double away) {
+  for (Vec3d& p : points) {
+    for (double* x : {&p.x, &p.y, &p.z}) {
+      *x = (std::round(*x / step_of * divisor) + std::round(away / step_of * divisor)) * step_of /
+           divisor;
+    }
+  }
+  return points;
+}
+
+std::vector<Vec3d> as_floats(std::vector<Vec3d> points) {
+  for (Vec3d& p : points) p = {float(p.x), float(p.y), float(p.z)};
+  return points;
+}
+
+double own_step(const std::vector<Vec3d>& points, double longest) {
+  const auto grid = own_grid(points, longest, std::ldexp(longest, -24));
+  return grid ? grid->step : 0;
+}
+
+TEST_CASE("numbers of so many decimals, or sixteenths, are on a grid of these") {
+  const std::vector<Vec3d> some = random_points(400, 100, 1);
+  for (const double away : {0.0, 7e3, -1.2e6}) {
+    CHECK(own_step(on_grid(some, 1, 1000, away), 100) == 0.001);
+    CHECK(own_step(on_grid(some, 1, 100'000, away), 100) == 0.00001);
+    CHECK(own_step(on_grid(some, 5, 1000, away), 100) == 0.005);
+    CHECK(own_step(on_grid(some, 1, 16, away), 100) == 0.0625);
+    CHECK(own_step(on_grid(some, 10, 1, away), 100) == 10);
+  }
+  CHECK(own_step(as_floats(on_grid(some, 1, 1000, 0)), 100) == 0.001);
+  CHECK(own_step(as_floats(on_grid(some, 2, 10'000, 0)), 100) == 0.0002);
+  // Finer than what is used by default.
+  CHECK(own_step(on_grid(some, 1, 10'000'000, 0), 100) == 0);
+}
+
+TEST_CASE("numbers that are whole steps apart are on a grid, wherever it lies") {
+  const std::vector<Vec3d> some = random_points(2000, 1, 2);
+  for (const double step : {1.0 / 16383, 0.0123456 / 255, 1.7 / 65535}) {
+    std::vector<Vec3d> quantized = some;
+    for (Vec3d& p : quantized) {
+      p = {std::round(p.x / step) * step - 0.387, std::round(p.y / step) * step + 0.1234,
+           std::round(p.z / step) * step + 0.777};
+    }
+    for (const auto& points : {quantized, as_floats(quantized)}) {
+      const auto grid = own_grid(points, 1, 0x1p-24);
+      REQUIRE(grid.has_value());
+      CHECK(grid->step == doctest::Approx(step).epsilon(1e-5));
+      double most = 0;
+      for (const Vec3d& p : points) {
+        const Vec3d off = grid->position(grid->nearest(p)) - p;
+        most = std::max({most, std::abs(off.x), std::abs(off.y), std::abs(off.z)});
+      }
+      CHECK(most < 0x1p-22);
+    }
+  }
+}
+
+TEST_CASE("numbers of no grid have none, nor such of which one is off") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::vector<Vec3d> some = random_points(100, 1, seed);
+    CHECK(own_step(some, 1) == 0);
+    CHECK(own_step(as_floats(some), 1) == 0);
+    std::vector<Vec3d> nearly = on_grid(some, 1, 1000, 0);
+    nearly[seed].y += 0.1 / 3001;
+    CHECK(own_step(nearly, 1) == 0);
+  }
+  CHECK(own_step({}, 1) == 0);
+}
+
+TEST_CASE("by default a grid is the model's own, fine enough, and no finer than others") {
+  Mesh mesh = smooth_sphere(20, 40);
+  CHECK(make_grid(mesh, {}).step == make_grid(mesh, {.bits = 24}).step);
+  CHECK(make_grid(mesh, {}).step == std::ldexp(2.0, -24));
+  mesh.positions = on_grid(mesh.positions, 1, 1'000'000, 3);
+  const std::vector<Vec3d> before = mesh.positions;
+  const Grid grid = make_grid(mesh, {});
+  CHECK(grid.step == 0.000001);
+  snap(mesh, grid);
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    CHECK(length(mesh.positions[v] - before[v]) <= 4 * 0x1p-51);
+  }
+  // So few steps that contracted vertices would have nowhere to go.
+  mesh.positions = on_grid(mesh.positions, 1, 100, 0);
+  CHECK(make_grid(mesh, {}).step == 0.01 / 512);
+  CHECK(make_grid(hard_box(2), {}).step == 0x1p-16);
+  // Where all is one point.
+  for (Vec3d& p : mesh.positions) p = {1, 1, 1};
+  CHECK(make_grid(mesh, {}).step > 0);
 }
 
 }  // namespace

@@ -281,7 +281,8 @@ TEST_CASE("the plain decoder finds what the codec does, in random contractions")
   }
 }
 
-// Flat walls far apart: on a fine grid a place that nothing foretells is worth less than a float holds.
+// Flat walls far apart: on a fine grid a place that nothing foretells is worth less than a float
+// holds.
 TEST_CASE("the plain decoder finds what the codec does, in boxes on fine grids") {
   for (const int bits : {20, 22, 24, 26, 28, 30}) {
     INFO(bits);

@@ -256,7 +256,7 @@ class Window(tool.Case):
         self.press(252, 389)  # error: 64 pixels
         coarse = self.changed(first, 16, 0.005)
         self.press(133, 314)  # creases
-        self.changed(coarse, 16, 0.01)
+        self.changed(coarse, 16, 0.005)
         self.press(133, 314)
         self.back(coarse, 16)
         self.press(26, 581)  # bandwidth: as little as can be

@@ -1,0 +1,139 @@
+#include "mesh/own_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace crease {
+
+namespace {
+
+// How exact numbers are.
+struct Rounding {
+  bool are_floats = true;
+  double away = 0;  // the greatest, without its sign
+
+  // What is left of a sum of numbers, as where a translation was added.
+  double of_sum() const { return std::ldexp(away, are_floats ? -23 : -51); }
+};
+
+Rounding rounding_of(std::span<const Vec3d> positions) {
+  Rounding result;
+  for (const Vec3d& p : positions) {
+    for (int i = 0; i < 3; ++i) {
+      result.are_floats = result.are_floats && double(float(p[i])) == p[i];
+      result.away = std::max(result.away, std::abs(p[i]));
+    }
+  }
+  return result;
+}
+
+// A step as a quotient: doubles hold powers of ten, and not what these are the inverse of, so a
+// multiple is rounded once.
+struct RoundStep {
+  double of = 1, divisor = 1;
+
+  double length() const { return of / divisor; }
+  double nearest(double x) const { return std::round(x / of * divisor) * of / divisor; }
+};
+
+std::vector<RoundStep> round_steps(double shortest, double longest) {
+  constexpr int kDecimals = 15, kBinary = 50;
+  std::vector<RoundStep> steps;
+  const auto add = [&](const RoundStep& step) {
+    if (step.length() >= shortest && step.length() <= longest) steps.push_back(step);
+  };
+  double power = 1;
+  for (int k = 0; k <= kDecimals; ++k, power *= 10) {
+    for (const double digit : {5.0, 2.0, 1.0}) {
+      add({digit, power});
+      if (k > 0) add({digit * power, 1});
+    }
+  }
+  for (int k = -kBinary; k <= kBinary; ++k) add({1, std::ldexp(1.0, k)});
+  std::sort(steps.begin(), steps.end(),
+            [](const RoundStep& a, const RoundStep& b) { return a.length() > b.length(); });
+  return steps;
+}
+
+// Numbers along an axis, each once.
+std::vector<double> numbers_along(std::span<const Vec3d> positions, int axis) {
+  std::vector<double> numbers;
+  numbers.reserve(positions.size());
+  for (const Vec3d& p : positions) numbers.push_back(p[axis]);
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+// What numbers are whole steps apart by, if they are: the shortest gap is a step, and each longer
+// one tells it more exactly. 0: they are not.
+double step_of(const std::vector<double>& numbers, double off) {
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < numbers.size(); ++i) gaps.push_back(numbers[i] - numbers[i - 1]);
+  std::sort(gaps.begin(), gaps.end());
+  double length = 0, steps = 0;
+  for (const double gap : gaps) {
+    const double step = steps > 0 ? length / steps : gap, count = std::round(gap / step);
+    if (!(step > 16 * off) || std::abs(gap - count * step) > 4 * off) return 0;
+    length += gap;
+    steps += count;
+  }
+  return steps > 0 ? length / steps : 0;
+}
+
+std::optional<Grid> regular_grid(std::span<const Vec3d> positions, double longest,
+                                 double shortest) {
+  constexpr std::size_t kFewest = 64;  // numbers that are no grid by chance
+  const double off = rounding_of(positions).of_sum();
+  std::array<std::vector<double>, 3> numbers;
+  int most = 0;
+  for (int i = 0; i < 3; ++i) {
+    auto& along = numbers[std::size_t(i)];
+    along = numbers_along(positions, i);
+    const auto& before = numbers[std::size_t(most)];
+    if (along.back() - along.front() > before.back() - before.front()) most = i;
+  }
+  const auto& tells = numbers[std::size_t(most)];
+  if (tells.size() < kFewest) return std::nullopt;
+  const double step = step_of(tells, off);
+  if (!(step >= shortest && step <= longest)) return std::nullopt;
+  for (const std::vector<double>& along : numbers) {
+    const bool all = std::all_of(along.begin(), along.end(), [&](double x) {
+      const double away = x - along.front();
+      return std::abs(away - std::round(away / step) * step) <= 2 * off;
+    });
+    if (!all) return std::nullopt;
+  }
+  return Grid{{numbers[0].front(), numbers[1].front(), numbers[2].front()}, step};
+}
+
+}  // namespace
+
+std::optional<double> round_step(std::span<const Vec3d> positions, double longest,
+                                 double shortest) {
+  const Rounding rounding = rounding_of(positions);
+  const bool are_floats = rounding.are_floats;
+  const double off = rounding.of_sum();
+  const auto is_on = [&](const RoundStep& step, double x) {
+    const double nearest = step.nearest(x);
+    return are_floats ? float(nearest) == float(x) : std::abs(nearest - x) <= off;
+  };
+  const double least = are_floats ? shortest : std::max(shortest, 1024 * off);
+  for (const RoundStep& step : round_steps(least, longest)) {
+    const bool all = std::all_of(positions.begin(), positions.end(), [&](const Vec3d& p) {
+      return is_on(step, p.x) && is_on(step, p.y) && is_on(step, p.z);
+    });
+    if (all) return step.length();
+  }
+  return std::nullopt;
+}
+
+std::optional<Grid> own_grid(std::span<const Vec3d> positions, double longest, double shortest) {
+  if (positions.empty()) return std::nullopt;
+  if (const auto step = round_step(positions, longest, shortest)) return Grid{{}, *step};
+  return regular_grid(positions, longest, shortest);
+}
+
+}  // namespace crease
