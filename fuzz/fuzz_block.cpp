@@ -41,6 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (data[0] & 4) coding.layers.push_back({.dimension = 1, .is_raw = true});
   if (data[0] & 8) coding.material_count = 7;
   if (data[0] & 16) coding.part_count = 70'000;
+  if (data[0] & 32) coding.rates = kRatesBefore;
   const std::size_t first = bytes.size() * data[1] / 256;
   Result<DecodedBlock> base = decode_block(bytes.first(first), 0, coding, kLimits, {});
   if (!base.ok()) return 0;

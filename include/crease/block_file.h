@@ -1,4 +1,4 @@
-// model.crease, versions 6 to 9: blocks from coarse to fine and a directory of them
+// model.crease, versions 6 to 13: blocks from coarse to fine and a directory of them
 // (docs/format.md).
 //
 //   Result<ByteSourcePtr> source = open_file_source("city.crease");
@@ -145,7 +145,7 @@ struct BlockFileLimits {
 
 class BlockFile {
  public:
-  // Versions 6 to 9; those before, from before the first release, fail with NotSupported.
+  // Versions 6 to 13; those before, from before the first release, fail with NotSupported.
   static Result<BlockFile> open(ByteSourcePtr source, const BlockFileLimits& limits = {});
 
   const BlockFileHead& head() const { return head_; }

@@ -203,7 +203,10 @@ class BlockCoder {
     }
     std::array<AdaptiveBit, 2> is_of_grain;             // by whether what is expected is
     std::array<std::array<AdaptiveBit, 2>, 2> is_kept;  // by whether the vertex stays, is new
-    DirectionModel direction{false}, corner_direction{true};
+    DirectionModel direction, corner_direction;
+
+    explicit LayerModels(const LearningRates& rates)
+        : direction(false, rates), corner_direction(true, rates) {}
   };
   struct Normals {  // of a vertex, at a layer of directions; zero where there is none
     Spot geometric{}, stored{};
@@ -314,9 +317,11 @@ class BlockCoder {
     MixingWeights<3> weights;
   };
   std::array<StaysModels, 3> stays_;  // the first child; the second by whether the first does
-  std::array<PlaceModel, 5> place_models_{
-      PlaceModel(Leaving::One), PlaceModel(Leaving::SecondOfBoth), PlaceModel(Leaving::FirstOfBoth),
-      PlaceModel(Leaving::SecondBetween), PlaceModel(Leaving::FirstBetween)};
+  std::array<PlaceModel, 5> place_models_{PlaceModel(Leaving::One, coding_.rates),
+                                          PlaceModel(Leaving::SecondOfBoth, coding_.rates),
+                                          PlaceModel(Leaving::FirstOfBoth, coding_.rates),
+                                          PlaceModel(Leaving::SecondBetween, coding_.rates),
+                                          PlaceModel(Leaving::FirstBetween, coding_.rates)};
   SeenModels seen_models_;
   SeenGate seen_gate_;
   AdaptiveBit is_between_{0.75, 10};

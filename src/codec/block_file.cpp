@@ -99,7 +99,7 @@ Result<std::vector<std::byte>> BlockFile::read_section(const BlockFileHead::Sect
 Result<std::vector<Material>> BlockFile::read_materials() const {
   const auto bytes = read_section(head_.materials, "materials", kNamesFactor);
   if (!bytes.ok()) return bytes.failure();
-  auto materials = decode_materials(*bytes, head_.version);
+  auto materials = decode_materials(*bytes, format::layout_of(head_.version));
   if (!materials.ok()) return named(materials.failure());
   return materials;
 }

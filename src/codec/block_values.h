@@ -23,7 +23,7 @@ inline std::int32_t wrapped_product(std::int32_t a, std::int32_t b) {
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_layer(const BlockLayer& layer, std::vector<CodedValue>& values,
                                           std::size_t l) {
-  LayerModels models;
+  LayerModels models(coding_.rates);
   if constexpr (Coder::kEncodes) {  // in one go, since the guide has them elsewhere
     wanted_.resize(values.size());
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {

@@ -11,12 +11,21 @@
 namespace crease::format {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'C', 'R', 'E', 'A', 'S', 'E', '\n'};
-// Version 7 is version 6 with images; version 8 has materials with holes or two sides, and perhaps
-// images; version 9 is version 8 with materials that are blended. A file is of the least version
-// that has all it needs.
-inline constexpr std::uint16_t kContainerVersion = 6, kVersionWithImages = 7,
-                               kVersionWithSurfaces = 8, kVersionWithBlending = 9,
-                               kNewestVersion = kVersionWithBlending;
+// Layout 7 is layout 6 with images; layout 8 has materials with holes or two sides, and perhaps
+// images; layout 9 is layout 8 with materials that are blended. A file is of the least one that has
+// all it needs. Versions 6 to 9 are these, versions 10 to 13 the same with blocks that learn at
+// other rates (learning_rates.h); files are written in those.
+inline constexpr std::uint16_t kContainerLayout = 6, kLayoutWithImages = 7, kLayoutWithSurfaces = 8,
+                               kLayoutWithBlending = 9;
+inline constexpr std::uint16_t kVersionWithRates = 10, kNewestVersion = 13;
+constexpr std::uint16_t layout_of(std::uint16_t version) {
+  constexpr std::uint16_t kMoved = kVersionWithRates - kContainerLayout;
+  return version < kVersionWithRates ? version : static_cast<std::uint16_t>(version - kMoved);
+}
+constexpr std::uint16_t version_of(std::uint16_t layout) {
+  return static_cast<std::uint16_t>(layout + (kVersionWithRates - kContainerLayout));
+}
+static_assert(layout_of(kNewestVersion) == kLayoutWithBlending);
 // Of AttributeCoding::Lattice. Values of the code that the enumeration has are coded as no program
 // reads any more.
 inline constexpr std::uint8_t kLatticeCode = 4;

@@ -22,10 +22,10 @@ Result<DirectoryPage> decode_page(std::span<const std::byte> bytes, const BlockF
                                   std::uint32_t page, Checksums checksums,
                                   std::uint64_t max_bytes = BlockFileLimits{}.max_bytes);
 
-// `bytes`: all of the section, whose checksum is right; none: there are no names. `version`,
+// `bytes`: all of the section, whose checksum is right; none: there are no names. `layout`,
 // `count`: as the head says. `max_bytes`: of memory, the section's included.
 Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes,
-                                               std::uint16_t version);
+                                               std::uint16_t layout);
 Result<std::vector<std::string>> decode_parts(
     std::span<const std::byte> bytes, std::uint32_t count,
     std::uint64_t max_bytes = BlockFileLimits{}.max_bytes);

@@ -102,7 +102,7 @@ Result<BlockFileHead> decode_head_fields(ByteReader& in, BlockFileHead head, boo
   if (has_images) {
     head.images.bytes = in.u64();
     const bool has_none = head.image_list.range.bytes == 0 && head.images.bytes == 0;
-    const bool may_have_none = head.version >= format::kVersionWithSurfaces;
+    const bool may_have_none = format::layout_of(head.version) >= format::kLayoutWithSurfaces;
     if (has_none ? !may_have_none : head.image_list.range.bytes == 0 || head.images.bytes == 0) {
       return bad_head("a list of images without images, or none where there must be one");
     }
@@ -156,7 +156,7 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
                                   Checksums checksums) {
   const Result<std::uint16_t> version = decode_version(start);
   if (!version.ok()) return version.failure();
-  if (*version < format::kContainerVersion) {
+  if (*version < format::kContainerLayout) {
     return fail(Error::NotSupported,
                 "version " + std::to_string(*version) +
                     " is a layout from before the first release; build the file again");
@@ -173,7 +173,7 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
   head.file_bytes = in.u64();
   const std::uint64_t told = in.u64();
   if (in.truncated()) return cut();
-  const bool has_images = *version >= format::kVersionWithImages;
+  const bool has_images = format::layout_of(*version) >= format::kLayoutWithImages;
   const std::uint32_t least = format::kFixedHeadBytes + (has_images ? format::kImageHeadBytes : 0);
   if (head.head_bytes < least || head.head_bytes > format::kMaxHeadBytes ||
       head.head_bytes > head.file_bytes) {
@@ -193,7 +193,7 @@ Result<BlockFileHead> decode_head(std::span<const std::byte> start, std::uint64_
 }
 
 Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes,
-                                               std::uint16_t version) {
+                                               std::uint16_t layout) {
   std::vector<Material> materials;
   if (bytes.empty()) return materials;
   const auto bad = [](const std::string& what) {
@@ -210,10 +210,10 @@ Result<std::vector<Material>> decode_materials(std::span<const std::byte> bytes,
     material.name = in.text();
     for (float& f : material.base_color) f = in.f32();
     material.base_color_texture = in.text();
-    if (version >= format::kVersionWithSurfaces) {
+    if (layout >= format::kLayoutWithSurfaces) {
       material.alpha_cutoff = in.f32();
       const std::uint8_t flags = in.u8();
-      const bool may_blend = version >= format::kVersionWithBlending;
+      const bool may_blend = layout >= format::kLayoutWithBlending;
       const int known = format::kDoubleSided | (may_blend ? format::kBlended : 0);
       if ((flags & ~known) != 0) return bad("a reserved flag");
       material.double_sided = (flags & format::kDoubleSided) != 0;

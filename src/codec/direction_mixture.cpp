@@ -45,10 +45,11 @@ OctahedralCode code_near_first(const OctahedralCoding& coding, const OnSquare& o
 
 }  // namespace
 
-DirectionModel::DirectionModel(bool of_corners) {
+DirectionModel::DirectionModel(bool of_corners, const LearningRates& rates)
+    : mean_rate_(rates.mean_sizes) {
   const DirectionStart& start = of_corners ? kOfCorners : kOfVertices;
   weights_.of = start.weights;
-  scales_ = {start.scale, start.slope};
+  scales_ = {start.scale, start.slope, rates.direction_slopes, rates.first_scales};
 }
 
 CREASE_WIDE DirectionMixture DirectionModel::mixture(const OctahedralCoding& coding,
@@ -82,7 +83,7 @@ void DirectionModel::learn(const DirectionMixture& mixture, const Sizes& sizes) 
   PerComponent right = mixture.weight;
   if (!make_shares(right)) return;
   weights_.learn(right);
-  mean_.learn(sizes);
+  mean_.learn(sizes, mean_rate_);
   scales_.learn(right, mixture.excess, sizes, mean_.of);
 }
 

@@ -59,7 +59,7 @@ OctahedralCode code_direction(Coder& coder, const OctahedralCoding& coding,
 class DirectionModel {
  public:
   // Of single corners, or of whole vertices.
-  explicit DirectionModel(bool of_corners);
+  DirectionModel(bool of_corners, const LearningRates& rates);
 
   // The first candidate is where residuals start.
   DirectionMixture mixture(const OctahedralCoding& coding, const DirectionCandidates& candidates,
@@ -67,6 +67,7 @@ class DirectionModel {
   void learn(const DirectionMixture& mixture, const Sizes& sizes);
 
  private:
+  float mean_rate_;
   ComponentWeights weights_;
   ComponentScales scales_;
   MeanSizes mean_;

@@ -23,25 +23,25 @@ void encode_reserved(ByteWriter& out, int count) {
   for (int i = 0; i < count; ++i) out.u8(0);
 }
 
-std::uint16_t version_of(const std::vector<Material>& materials, bool has_images) {
-  std::uint16_t version = has_images ? format::kVersionWithImages : format::kContainerVersion;
+std::uint16_t layout_for(const std::vector<Material>& materials, bool has_images) {
+  std::uint16_t layout = has_images ? format::kLayoutWithImages : format::kContainerLayout;
   for (const Material& m : materials) {
     if (m.alpha_cutoff > 0 || m.double_sided)
-      version = std::max(version, format::kVersionWithSurfaces);
-    if (m.is_blended) version = format::kVersionWithBlending;
+      layout = std::max(layout, format::kLayoutWithSurfaces);
+    if (m.is_blended) layout = format::kLayoutWithBlending;
   }
-  return version;
+  return layout;
 }
 
 std::vector<std::byte> encode_materials(const std::vector<Material>& materials,
-                                        std::uint16_t version) {
+                                        std::uint16_t layout) {
   ByteWriter out;
   if (!materials.empty()) out.u32(static_cast<std::uint32_t>(materials.size()));
   for (const Material& material : materials) {
     out.text(material.name);
     out.f32s(material.base_color);
     out.text(material.base_color_texture);
-    if (version < format::kVersionWithSurfaces) continue;
+    if (layout < format::kLayoutWithSurfaces) continue;
     out.f32(material.alpha_cutoff);
     out.u8(static_cast<std::uint8_t>((material.double_sided ? format::kDoubleSided : 0) |
                                      (material.is_blended ? format::kBlended : 0)));
@@ -131,8 +131,8 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   ByteWriter lists;
   encode_layers_and_bands(lists, facts);
   const std::uint32_t page_count = format::page_count(writer.block_count_);
-  writer.version_ = version_of(content.materials, !content.images.empty());
-  const bool tells_images = writer.version_ >= format::kVersionWithImages;
+  writer.layout_ = layout_for(content.materials, !content.images.empty());
+  const bool tells_images = writer.layout_ >= format::kLayoutWithImages;
   const std::uint64_t head_bytes =
       format::kFixedHeadBytes + (tells_images ? format::kImageHeadBytes : 0) +
       lists.bytes().size() + std::uint64_t(page_count) * format::kPageReferenceBytes;
@@ -156,7 +156,7 @@ Result<ContainerWriter> ContainerWriter::begin(ByteSink& sink, const ContainerCo
   head.u8(static_cast<std::uint8_t>(facts.up));
   encode_reserved(head, 2);
   head.u32(static_cast<std::uint32_t>(content.parts.size()));
-  const std::vector<std::byte> materials = encode_materials(content.materials, writer.version_);
+  const std::vector<std::byte> materials = encode_materials(content.materials, writer.layout_);
   writer.parts_ = encode_parts(content.parts);
   using Section = const std::vector<std::byte>*;
   writer.images_ = content.images;
@@ -246,7 +246,7 @@ Status ContainerWriter::finish() {
   }
   ByteWriter out;
   for (std::uint8_t b : format::kMagic) out.u8(b);
-  out.u16(version_);
+  out.u16(format::version_of(layout_));
   out.u16(0);  // flags
   out.u32(head_bytes_);
   out.u64(position_);

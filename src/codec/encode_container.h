@@ -64,7 +64,7 @@ class ContainerWriter {
   std::vector<Page> pages_;
   std::vector<std::byte> parts_;   // the names, which come behind the blocks
   std::vector<ImageFile> images_;  // which come last
-  std::uint16_t version_ = 0;
+  std::uint16_t layout_ = 0;
   std::vector<std::byte> image_list_;
   std::uint64_t position_ = 0;       // where the next page goes
   std::uint32_t next_ = 0;           // block

@@ -10,7 +10,8 @@ namespace crease::codec {
 
 namespace {
 
-constexpr float kScaleRate = 0.15f, kSlopeRate = 0.015f, kMeanRate = 0.02f;
+constexpr float kScaleRate = 0.15f;
+constexpr int kFirstSteps = 8, kSeenAtMost = 1 << 20;
 constexpr float kLeastScale = -12, kMostScale = 16, kMostSlope = 2;
 constexpr float kLeastSum = 0x1p-126f;  // of which the inverse is a number
 
@@ -23,10 +24,10 @@ bool make_shares(PerComponent& odds) {
   return true;
 }
 
-void MeanSizes::learn(const Sizes& sizes) {
+void MeanSizes::learn(const Sizes& sizes, float rate) {
   if (!has_any) of = sizes;
   has_any = true;
-  for (std::size_t j = 0; j < sizes.size(); ++j) of[j] += kMeanRate * (sizes[j] - of[j]);
+  for (std::size_t j = 0; j < sizes.size(); ++j) of[j] += rate * (sizes[j] - of[j]);
 }
 
 void ComponentWeights::learn(const PerComponent& right) {
@@ -49,10 +50,12 @@ CREASE_WIDE PerComponent ComponentScales::at(const Sizes& sizes) const {
 
 CREASE_WIDE void ComponentScales::learn(const PerComponent& right, const PerComponent& excess,
                                         const Sizes& sizes, const Sizes& mean) {
+  const float rate = kScaleRate + first_rate / (1 + static_cast<float>(seen) / kFirstSteps);
+  seen = std::min(seen + 1, kSeenAtMost);
   PerComponent step;
   const EightFloats steps = EightFloats(right) * EightFloats(excess);
   steps.store(step);
-  const EightFloats next_scale = EightFloats(of) + kScaleRate * steps;
+  const EightFloats next_scale = EightFloats(of) + rate * steps;
   const std::array<float, 2> sum{step[0] + step[1],
                                  (step[2] + step[3]) + (step[4] + step[5]) + (step[6] + step[7])};
   // A slope turns about the mean of the sizes: what it moves there comes off the components.
@@ -65,7 +68,7 @@ CREASE_WIDE void ComponentScales::learn(const PerComponent& right, const PerComp
   for (std::size_t i = 0; i < 2; ++i) {
     FourFloats now;
     std::memcpy(&now, slope[i].data(), sizeof now);
-    const FourFloats next = lesser(greater(now + kSlopeRate * sum[i] * away, -most), most);
+    const FourFloats next = lesser(greater(now + slope_rate * sum[i] * away, -most), most);
     std::memcpy(slope[i].data(), &next, sizeof next);
     const FourFloats turned = (next - now) * middle;
     moved[i] = (turned[0] + turned[1]) + (turned[2] + turned[3]);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "codec/axis_mixture.h"
+#include "codec/learning_rates.h"
 
 #include <array>
 #include <cstddef>
@@ -12,12 +13,12 @@ namespace crease::codec {
 // What says how far off components are: logarithms of lengths nearby.
 using Sizes = std::array<float, 4>;
 
-// About the mean of the last fifty.
+// About the mean of the last 1 / rate.
 struct MeanSizes {
   Sizes of{};
   bool has_any = false;
 
-  void learn(const Sizes& sizes);
+  void learn(const Sizes& sizes, float rate);
 };
 
 // How likely each component is: moves towards what was right.
@@ -33,6 +34,8 @@ struct ComponentWeights {
 struct ComponentScales {
   PerComponent of{};
   std::array<Sizes, 2> slope{};
+  float slope_rate = 0, first_rate = 0;
+  int seen = 0;
 
   PerComponent at(const Sizes& sizes) const;
   // `excess`: how much farther off a component was than it expected; see place_mixture.h.

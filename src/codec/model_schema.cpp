@@ -1,5 +1,7 @@
 #include "codec/model_schema.h"
 
+#include "codec/container.h"
+
 #include "codec/lattices.h"
 #include "codec/layer_values.h"
 
@@ -28,6 +30,7 @@ Result<ModelSchema> read_schema(const BlockFile& file) {
   }
   schema.coding = block_coding(schema.facts.layers, schema.codings, schema.materials.size(),
                                static_cast<std::size_t>(part_count));
+  if (file.head().version < format::kVersionWithRates) schema.coding.rates = kRatesBefore;
   return schema;
 }
 

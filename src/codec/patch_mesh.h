@@ -1,6 +1,7 @@
 // What a block refines: the triangles of one patch at one end of its band.
 #pragma once
 
+#include "codec/learning_rates.h"
 #include "crease/vec.h"
 #include "mesh/octahedral.h"
 
@@ -66,6 +67,7 @@ struct BlockLayer {
 struct BlockCoding {
   std::vector<BlockLayer> layers;
   std::uint32_t material_count = 1, part_count = 1;  // category = part * material_count + material
+  LearningRates rates{};
 };
 
 }  // namespace crease::codec

@@ -109,13 +109,14 @@ Sizes sizes(const Surroundings& around, const Miss& miss) {
       miss.tangent + 0.25f, miss.normal + 0.25f, around.mean_edge + 1, around.bend + 1}));
 }
 
-PlaceModel::PlaceModel(Leaving leaving) : leaving_(leaving) {
+PlaceModel::PlaceModel(Leaving leaving, const LearningRates& rates)
+    : leaving_(leaving), mean_rate_(rates.mean_sizes) {
   for (std::size_t c = 0; c < kTriangles; ++c) {
     weights_[c].of = kLikely[std::size_t(leaving)][c];
   }
   const Scales& start = scales_of(leaving);
-  tangent_ = {start.tangent, start.tangent_slope};
-  normal_ = {start.normal, start.normal_slope};
+  tangent_ = {start.tangent, start.tangent_slope, rates.place_slopes, rates.first_scales};
+  normal_ = {start.normal, start.normal_slope, rates.place_slopes, rates.first_scales};
 }
 
 std::size_t PlaceModel::triangles_class(std::size_t triangles) {
@@ -175,7 +176,7 @@ void PlaceModel::learn(const PlaceMixture& mixture, std::size_t triangles, const
   PerComponent right = mixture.weight;
   if (!make_shares(right)) return;
   weights_[triangles_class(triangles)].learn(right);
-  mean_.learn(sizes);
+  mean_.learn(sizes, mean_rate_);
   tangent_.learn(right, mixture.tangent_excess, sizes, mean_.of);
   normal_.learn(right, mixture.normal_excess, sizes, mean_.of);
 }

@@ -41,7 +41,7 @@ Sizes sizes(const Surroundings& around, const Miss& miss);
 // and learns, within a block, where each place was.
 class PlaceModel {
  public:
-  explicit PlaceModel(Leaving leaving);
+  PlaceModel(Leaving leaving, const LearningRates& rates);
 
   // Of a child with so many triangles.
   PlaceMixture mixture(const Surroundings& around, bool second, std::size_t triangles,
@@ -54,6 +54,7 @@ class PlaceModel {
   static std::size_t triangles_class(std::size_t triangles);
 
   Leaving leaving_;
+  float mean_rate_;
   std::array<ComponentWeights, kTriangles> weights_;
   ComponentScales tangent_, normal_;
   MeanSizes mean_;

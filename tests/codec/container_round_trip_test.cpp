@@ -133,8 +133,8 @@ TEST_CASE("images come back, behind everything else, and are read when they are 
   const std::vector<std::byte> without = bytes_of(file);
   file.content.images = some_images();
   const std::vector<std::byte> bytes = bytes_of(file);
-  CHECK(without[8] == std::byte{6});
-  CHECK(bytes[8] == std::byte{7});
+  CHECK(without[8] == std::byte{10});
+  CHECK(bytes[8] == std::byte{11});
   const Result<BlockFile> read = BlockFile::open(memory_source(bytes));
   REQUIRE_MESSAGE(read.ok(), (read.ok() ? "" : read.failure().message));
   CHECK(read->validate().empty());

@@ -210,7 +210,7 @@ TEST_CASE("a sphere that is rounded up has all of what it was within it") {
 
 TEST_CASE("what a material says beyond its colour is looked at when it is read") {
   const auto read = [](float cutoff, std::uint8_t flags,
-                       std::uint16_t version = format::kVersionWithSurfaces) {
+                       std::uint16_t layout = format::kLayoutWithSurfaces) {
     ByteWriter out;
     out.u32(1);
     out.text("leaf");
@@ -218,17 +218,17 @@ TEST_CASE("what a material says beyond its colour is looked at when it is read")
     out.text("");
     out.f32(cutoff);
     out.u8(flags);
-    return decode_materials(out.take(), version);
+    return decode_materials(out.take(), layout);
   };
   REQUIRE(read(0.5f, 1).ok());
   CHECK(read(0.5f, 1)->front().alpha_cutoff == 0.5f);
   CHECK(read(0.5f, 1)->front().double_sided);
   CHECK_FALSE(read(0.5f, 0)->front().double_sided);
   CHECK(read(0.5f, 2).failure().message == "materials: a reserved flag");
-  CHECK(read(0, 2, format::kVersionWithBlending)->front().is_blended);
-  CHECK(read(0, 3, format::kVersionWithBlending)->front().double_sided);
-  CHECK_FALSE(read(0, 1, format::kVersionWithBlending)->front().is_blended);
-  CHECK(read(0, 4, format::kVersionWithBlending).failure().message == "materials: a reserved flag");
+  CHECK(read(0, 2, format::kLayoutWithBlending)->front().is_blended);
+  CHECK(read(0, 3, format::kLayoutWithBlending)->front().double_sided);
+  CHECK_FALSE(read(0, 1, format::kLayoutWithBlending)->front().is_blended);
+  CHECK(read(0, 4, format::kLayoutWithBlending).failure().message == "materials: a reserved flag");
   CHECK(read(-0.5f, 0).failure().message == "materials: a cutoff of alpha is no number from 0 on");
 }
 
@@ -242,7 +242,7 @@ TEST_CASE("whatever of images, holes, sides and blending there is, the file is r
     if (has & 4u) materials[1].double_sided = true;
     if (has & 8u) materials[1].is_blended = true;
     const std::vector<std::byte> bytes = bytes_of(written);
-    const int version = has & 8u ? 9 : has & 6u ? 8 : has & 1u ? 7 : 6;
+    const int version = has & 8u ? 13 : has & 6u ? 12 : has & 1u ? 11 : 10;
     CHECK(bytes[8] == std::byte(version));
     const Result<BlockFile> file = BlockFile::open(memory_source(bytes));
     REQUIRE_MESSAGE(file.ok(), (file.ok() ? "" : file.failure().message));
@@ -261,7 +261,7 @@ TEST_CASE("older layouts and newer versions are told apart") {
     CHECK(refused.error == Error::NotSupported);
     CHECK(refused.message.ends_with("build the file again"));
   }
-  bytes[8] = std::byte(10);
+  bytes[8] = std::byte(format::kNewestVersion + 1);
   CHECK(BlockFile::open(memory_source(bytes)).failure().error == Error::VersionTooNew);
 }
 

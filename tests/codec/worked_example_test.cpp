@@ -121,8 +121,8 @@ TEST_CASE("the golden files are read, and written to the byte") {
   blended.content.materials[1].is_blended = true;
   blended.content.materials[1].double_sided = true;
   for (const auto& [golden, written] :
-       {std::pair("version_6.crease", &without), std::pair("version_7.crease", &with),
-        std::pair("version_8.crease", &surfaces), std::pair("version_9.crease", &blended)}) {
+       {std::pair("version_10.crease", &without), std::pair("version_11.crease", &with),
+        std::pair("version_12.crease", &surfaces), std::pair("version_13.crease", &blended)}) {
     const std::string name = golden;
     CAPTURE(name);
     const WrittenFile file = golden_file(golden, *written);
@@ -140,6 +140,26 @@ TEST_CASE("the golden files are read, and written to the byte") {
     for (std::size_t i = 0; i < file.content.images.size(); ++i) {
       CHECK(*file.content.images[i].bytes == *written->content.images[i].bytes);
     }
+  }
+}
+
+// All of it is the same.
+TEST_CASE("the golden files of the versions before are read") {
+  for (const auto& [before, after] : {std::pair("version_6.crease", "version_10.crease"),
+                                      std::pair("version_7.crease", "version_11.crease"),
+                                      std::pair("version_8.crease", "version_12.crease"),
+                                      std::pair("version_9.crease", "version_13.crease")}) {
+    const auto opened = [](const char* name) {
+      const Result<ByteSourcePtr> source = open_file_source(test_folder() / "golden" / name);
+      REQUIRE(source.ok());
+      const Result<BlockFile> file = BlockFile::open(*source);
+      REQUIRE_MESSAGE(file.ok(), (file.ok() ? "" : file.failure().message));
+      CHECK(file->validate().empty());
+      return *file;
+    };
+    const BlockFile old = opened(before);
+    CHECK(old.head().version + 4 == opened(after).head().version);
+    CHECK((bytes_of(read_whole(old)) == bytes_of(read_whole(opened(after)))));
   }
 }
 

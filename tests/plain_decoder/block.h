@@ -3,6 +3,7 @@
 
 #include "plain_decoder/around.h"
 #include "plain_decoder/bits.h"
+#include "plain_decoder/mixture.h"
 #include "plain_decoder/octahedral.h"
 
 #include <array>
@@ -29,6 +30,7 @@ struct BlockLayer {
 struct BlockSchema {
   std::vector<BlockLayer> layers;
   std::uint32_t materials = 1, parts = 1;  // 1 where there are no names
+  Rates rates = kRates;
 };
 
 struct Name {

@@ -109,15 +109,16 @@ Head read_head(const Bytes& file) {
   Reader start(file);
   for (const std::uint8_t byte : kMagic) demand(start.u8() == byte, "not a file of this kind");
   const std::uint16_t version = start.u16();
-  demand(version >= 6 && version <= 9, "neither version 6, 7, 8 nor 9");
+  demand(version >= 6 && version <= 13, "none of the versions 6 to 13");
+  const int layout = version < 10 ? version : version - 4;
   start.u16();  // flags; below
   Head head;
   head.version = version;
+  head.layout = layout;
   head.bytes = start.u32();
   head.file_bytes = start.u64();
   const std::uint64_t told = start.u64();
-  demand(head.bytes >= (version >= 7 ? 168 : 144) && head.bytes <= kMaxHead,
-         "the size of the head");
+  demand(head.bytes >= (layout >= 7 ? 168 : 144) && head.bytes <= kMaxHead, "the size of the head");
   const Bytes whole = part_of(file, 0, head.bytes);
   Bytes covered = whole;
   covered.erase(covered.begin() + 24, covered.begin() + 32);
@@ -144,11 +145,11 @@ Head read_head(const Bytes& file) {
   head.materials = read_part(in);
   head.part_names = read_part(in);
   head.tables = read_part(in);
-  if (version >= 7) {
+  if (layout >= 7) {
     head.image_list = read_part(in);
     head.image_bytes = in.u64();
     demand((head.image_list.bytes > 0) == (head.image_bytes > 0), "a list without images");
-    demand(version >= 8 || head.image_bytes > 0, "version 7 without images");
+    demand(layout >= 8 || head.image_bytes > 0, "layout 7 without images");
   }
   for (int l = 0; l < layers; ++l) head.layers.push_back(read_layer(in));
   if (bands > 0) head.bands = read_bands(in.bytes(in.u32()), bands, head.triangles);
@@ -180,7 +181,7 @@ Bytes read_part(const Bytes& file, std::uint64_t& offset, const Part& part) {
 }
 
 // "Materials, part names, model tables".
-std::vector<Material> read_materials(const Bytes& bytes, int version) {
+std::vector<Material> read_materials(const Bytes& bytes, int layout) {
   std::vector<Material> materials;
   if (bytes.empty()) return materials;
   Reader in(bytes);
@@ -194,11 +195,11 @@ std::vector<Material> read_materials(const Bytes& bytes, int version) {
       demand(std::isfinite(c), "a colour that is not finite");
     }
     material.texture = in.text();
-    if (version >= 8) {
+    if (layout >= 8) {
       material.cutoff = in.f32();
       demand(std::isfinite(material.cutoff) && material.cutoff >= 0, "a cutoff");
       const int flags = in.u8();
-      demand(flags <= (version == 9 ? 3 : 1), "a reserved flag");
+      demand(flags <= (layout == 9 ? 3 : 1), "a reserved flag");
       material.double_sided = flags % 2 == 1;
       material.blended = flags >= 2;
     }
@@ -320,7 +321,7 @@ Container read_container(const Bytes& file) {
   container.head = read_head(file);
   const Head& head = container.head;
   std::uint64_t offset = head.bytes;
-  container.materials = read_materials(read_part(file, offset, head.materials), head.version);
+  container.materials = read_materials(read_part(file, offset, head.materials), head.layout);
   container.tables = read_part(file, offset, head.tables);
   std::uint64_t last = end_of_blocks(head);
   demand(offset == (head.pages.empty() ? last : head.pages[0].offset),

@@ -36,7 +36,7 @@ struct PageReference {
 };
 
 struct Head {
-  int version = 0;
+  int version = 0, layout = 0;
   std::uint32_t bytes = 0;  // of the head
   std::uint64_t file_bytes = 0;
   std::uint32_t blocks = 0;

@@ -10,9 +10,10 @@ float size(float x) {
 
 }  // namespace
 
-DirectionModel::DirectionModel(const DirectionStart& start) {
+DirectionModel::DirectionModel(const DirectionStart& start, const Rates& rates) {
   weights_.of = start.weights;
-  scales_ = {start.logarithms, start.slopes};
+  scales_ = {start.logarithms, start.slopes, rates.direction_slopes, rates.first};
+  mean_.rate = rates.mean;
 }
 
 Code DirectionModel::read(RangeDecoder& in, const Octahedral& coding, const Candidates& candidates,

@@ -14,7 +14,7 @@ using Candidates = std::array<FloatVector, kComponents>;
 
 class DirectionModel {
  public:
-  explicit DirectionModel(const DirectionStart& start);
+  DirectionModel(const DirectionStart& start, const Rates& rates);
   Code read(RangeDecoder& in, const Octahedral& coding, const Candidates& candidates,
             const Sizes& sizes);
 
@@ -57,7 +57,8 @@ class DirectionReader {
   const std::vector<Code>& codes_;
   const std::vector<bool>& is_known_;
   std::vector<FloatVector> geometric_, stored_;  // per vertex
-  DirectionModel of_vertex_{kOfVertices}, of_corner_{kOfCorners};
+  DirectionModel of_vertex_{kOfVertices, block_.schema.rates};
+  DirectionModel of_corner_{kOfCorners, block_.schema.rates};
 };
 
 // The sum of twice the areas of each vertex' triangles, by number, of unit length.

@@ -121,7 +121,7 @@ void ComponentWeights::learn(const PerComponent& shares) {
 void MeanSizes::learn(const Sizes& sizes) {
   if (!has_any) of = sizes;
   has_any = true;
-  for (std::size_t j = 0; j < 4; ++j) of[j] += 0.02f * (sizes[j] - of[j]);
+  for (std::size_t j = 0; j < 4; ++j) of[j] += rate * (sizes[j] - of[j]);
 }
 
 PerComponent ComponentScales::at(const Sizes& sizes) const {
@@ -136,10 +136,12 @@ PerComponent ComponentScales::at(const Sizes& sizes) const {
 
 void ComponentScales::learn(const PerComponent& shares, const PerComponent& excesses,
                             const Sizes& sizes, const Sizes& mean) {
+  const float rate = 0.15f + first / (1 + float(n) / 8);
+  if (n < 1 << 20) ++n;
   PerComponent step;
   for (std::size_t k = 0; k < kComponents; ++k) {
     step[k] = shares[k] * excesses[k];
-    logarithm[k] = std::clamp(logarithm[k] + 0.15f * step[k], -12.0f, 16.0f);
+    logarithm[k] = std::clamp(logarithm[k] + rate * step[k], -12.0f, 16.0f);
   }
   const std::array<float, 2> sum{step[0] + step[1],
                                  (step[2] + step[3]) + (step[4] + step[5]) + (step[6] + step[7])};
@@ -147,7 +149,7 @@ void ComponentScales::learn(const PerComponent& shares, const PerComponent& exce
     std::vector<float> moved;
     for (std::size_t j = 0; j < 4; ++j) {
       const float away = std::clamp(sizes[j] - mean[j], -2.0f, 2.0f);
-      const float next = std::clamp(slope[i][j] + 0.015f * sum[i] * away, -2.0f, 2.0f);
+      const float next = std::clamp(slope[i][j] + slope_rate * sum[i] * away, -2.0f, 2.0f);
       moved.push_back((next - slope[i][j]) * mean[j]);
       slope[i][j] = next;
     }

@@ -27,7 +27,12 @@ void weigh(Axis& axis, std::int32_t start, std::int64_t low, std::int64_t width)
 std::int32_t round_of(float x);
 float excess(float q);
 
-// "What mixtures learn".
+// "What mixtures learn": the rates, of versions from 10 on and of those before.
+struct Rates {
+  float place_slopes = 0, direction_slopes = 0, mean = 0, first = 0;
+};
+inline constexpr Rates kRates{0.004f, 0.001f, 0.04f, 1}, kRatesBefore10{0.015f, 0.015f, 0.02f, 0};
+
 struct ComponentWeights {
   PerComponent of{};
   int n = 0;
@@ -37,6 +42,7 @@ struct ComponentWeights {
 
 struct MeanSizes {
   Sizes of{};
+  float rate = 0;
   bool has_any = false;
 
   void learn(const Sizes& sizes);
@@ -45,6 +51,8 @@ struct MeanSizes {
 struct ComponentScales {
   PerComponent logarithm{};
   std::array<Sizes, 2> slope{};
+  float slope_rate = 0, first = 0;
+  int n = 0;
 
   PerComponent at(const Sizes& sizes) const;
   void learn(const PerComponent& shares, const PerComponent& excesses, const Sizes& sizes,

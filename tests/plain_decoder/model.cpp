@@ -63,6 +63,7 @@ BlockSchema block_schema(const Container& container,
   const auto at_least_1 = [](std::size_t n) { return n > 0 ? static_cast<std::uint32_t>(n) : 1; };
   schema.materials = at_least_1(container.materials.size());
   schema.parts = at_least_1(container.part_names.size());
+  if (container.head.version < 10) schema.rates = kRatesBefore10;
   return schema;
 }
 

@@ -107,12 +107,13 @@ std::array<std::optional<FloatVector>, kComponents> expected_places(const Surrou
 
 }  // namespace
 
-PlaceModel::PlaceModel(Who who) {
+PlaceModel::PlaceModel(Who who, const Rates& rates) {
   const PlaceStart& start = kPlaces[std::size_t(who)];
   for (std::size_t c = 0; c < weights_.size(); ++c) weights_[c].of = start.weights[c];
   const PlaceScales& scales = kPlaceScales[start.scales];
-  tangent_ = {scales.tangent, scales.tangent_slopes};
-  normal_ = {scales.normal, scales.normal_slopes};
+  tangent_ = {scales.tangent, scales.tangent_slopes, rates.place_slopes, rates.first};
+  normal_ = {scales.normal, scales.normal_slopes, rates.place_slopes, rates.first};
+  mean_.rate = rates.mean;
 }
 
 std::size_t PlaceModel::weights_of(const Child& child) {

@@ -55,7 +55,7 @@ struct Steps {
 
 class PlaceModel {
  public:
-  explicit PlaceModel(Who who);
+  PlaceModel(Who who, const Rates& rates);
 
   // The child's place. Sets its new miss.
   Along read(RangeDecoder& in, const Surroundings& around, const Child& child, const Sizes& sizes,

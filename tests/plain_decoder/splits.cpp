@@ -73,9 +73,10 @@ class SplitReader {
   std::array<StaysModels, 3> stays_;
   BetweenModel between_;
   SeenModels seen_;
-  std::array<PlaceModel, 5> places_{PlaceModel(Who::One), PlaceModel(Who::SecondOfBoth),
-                                    PlaceModel(Who::FirstOfBoth), PlaceModel(Who::SecondBetween),
-                                    PlaceModel(Who::FirstBetween)};
+  PlaceModel model_of(Who who) const { return {who, block_.schema.rates}; }
+  std::array<PlaceModel, 5> places_{model_of(Who::One), model_of(Who::SecondOfBoth),
+                                    model_of(Who::FirstOfBoth), model_of(Who::SecondBetween),
+                                    model_of(Who::FirstBetween)};
 };
 
 void SplitReader::read() {
