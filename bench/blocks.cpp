@@ -58,8 +58,13 @@ int measure(const std::string& path, const Options& options) {
   for (int round = 0; round < options.encodings; ++round) {
     std::vector<BandPlans> own = plans;
     const double begin = cpu_seconds();
-    blocks = encode_blocks(std::move(own), coding);
+    Result<std::vector<CodedBlock>> encoded = encode_blocks(std::move(own), coding);
     encoding = std::min(encoding, cpu_seconds() - begin);
+    if (!encoded.ok()) {
+      std::fprintf(stderr, "%s: %s\n", path.c_str(), encoded.failure().message.c_str());
+      return 1;
+    }
+    blocks = *std::move(encoded);
   }
 
   // Every stream of every block, decoded again; metered in the last round alone.
