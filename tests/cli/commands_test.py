@@ -93,6 +93,20 @@ class Commands(tool.Case):
         self.json("extract", out, "-o", full)
         return built, self.json("compare", self.city(), full, "--samples", 5000)["normal_deviation"]
 
+    def test_by_default_a_model_keeps_its_decimals(self):
+        def corners(path):
+            with open(path) as lines:
+                return sorted(line for line in lines if line.startswith("v "))
+
+        built = self.hills(20)
+        self.assertEqual(self.json("info", built)["precision"], 0.00001)
+        self.run_tool("extract", built, "-o", self.path("again.obj"))
+        numbers = [[float(x) for x in line.split()[1:]] for line in corners(self.path("hills.obj"))]
+        self.assertEqual([[float(x) for x in line.split()[1:]] for line in corners(self.path("again.obj"))],
+                         numbers)
+        self.run_tool("build", self.path("hills.obj"), "-o", built, "--precision", "14bits")
+        self.assertEqual(self.json("info", built)["precision"], 19 / 2 ** 14)
+
     def test_normal_bits_bound_the_deviation_at_full_resolution(self):
         for options, words, most in (([], "octahedral, 12 bits", 0.04),
                                      (["--normal-bits", 10], "octahedral, 10 bits", 0.16),
