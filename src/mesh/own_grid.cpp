@@ -1,7 +1,8 @@
 #include "mesh/own_grid.h"
 
+#include "mesh/box_of.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -87,26 +88,22 @@ std::optional<Grid> regular_grid(std::span<const Vec3d> positions, double longes
                                  double shortest) {
   constexpr std::size_t kFewest = 64;  // numbers that are no grid by chance
   const double off = rounding_of(positions).of_sum();
-  std::array<std::vector<double>, 3> numbers;
+  const PointBox box = box_of(positions);
   int most = 0;
-  for (int i = 0; i < 3; ++i) {
-    auto& along = numbers[std::size_t(i)];
-    along = numbers_along(positions, i);
-    const auto& before = numbers[std::size_t(most)];
-    if (along.back() - along.front() > before.back() - before.front()) most = i;
+  for (int i = 1; i < 3; ++i) {
+    if (box.size[i] > box.size[most]) most = i;
   }
-  const auto& tells = numbers[std::size_t(most)];
-  if (tells.size() < kFewest) return std::nullopt;
-  const double step = step_of(tells, off);
+  const std::vector<double> tell = numbers_along(positions, most);
+  if (tell.size() < kFewest) return std::nullopt;
+  const double step = step_of(tell, off);
   if (!(step >= shortest && step <= longest)) return std::nullopt;
-  for (const std::vector<double>& along : numbers) {
-    const bool all = std::all_of(along.begin(), along.end(), [&](double x) {
-      const double away = x - along.front();
-      return std::abs(away - std::round(away / step) * step) <= 2 * off;
-    });
-    if (!all) return std::nullopt;
+  for (const Vec3d& p : positions) {
+    for (int i = 0; i < 3; ++i) {
+      const double away = p[i] - box.low[i];
+      if (std::abs(away - std::round(away / step) * step) > 2 * off) return std::nullopt;
+    }
   }
-  return Grid{{numbers[0].front(), numbers[1].front(), numbers[2].front()}, step};
+  return Grid{box.low, step};
 }
 
 }  // namespace
