@@ -17,8 +17,7 @@ namespace {
 std::vector<std::byte> city_in_blocks(std::uint32_t seed) {
   BuildOptions options;
   options.simplify.patch_triangles = 800;
-  Result<Built> built = build_model(
-      generate_city({.seed = seed, .triangles = kSanitized ? 26'000u : 30'000u}), options);
+  Result<Built> built = build_model(generate_city({.seed = seed, .triangles = 32'000}), options);
   REQUIRE(built.ok());
   REQUIRE(built->file_bytes.size() > std::size_t(80) << 10);
   return std::move(built->file_bytes);
