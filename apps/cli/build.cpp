@@ -39,10 +39,15 @@ Result<Imported> import_inputs(const BuildArguments& options, const Precision& p
   return imported;
 }
 
-std::string snapped_lines(const std::vector<SnappedLayer>& layers) {
-  std::string lines;
-  for (const SnappedLayer& layer : layers) {
-    lines += (lines.empty() ? "  " : "\n  ") + layer.layer + ": " + layer.precision;
+std::string snapped_lines(const Built& built) {
+  // Where a grid has the model's own numbers, sums of its steps are off by what doubles are.
+  constexpr double kRounding = 1e-6;
+  std::string lines = "  positions: steps of " + in_length(built.grid_step);
+  if (built.position_error_max > kRounding * built.grid_step) {
+    lines += ", off by " + in_length(built.position_error_max) + " at most";
+  }
+  for (const SnappedLayer& layer : built.snapped) {
+    lines += "\n  " + layer.layer + ": " + layer.precision;
     if (layer.error_max > 0) {
       lines += ", off by " + in_length(layer.error_max) + " at most, " +
                in_length(layer.error_mean) + " on average";
@@ -94,7 +99,7 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
 
   const Result<Built> built = build_model(std::move(imported->mesh), *build);
   if (!built.ok()) return built.failure();
-  log(common, snapped_lines(built->snapped));
+  log(common, snapped_lines(*built));
   const double build_seconds = watch.seconds() - import_seconds;
   if (interrupted()) return interrupted_failure();
   const Status written = write_crease(options.output, built->file_bytes);
@@ -119,6 +124,8 @@ Result<Report> run_build(const BuildArguments& options, const Common& common) {
                  {"bits_per_vertex", bits},
                  {"bands", built->statistics.bands.size()},
                  {"blocks", built->blocks},
+                 {"precision", built->grid_step},
+                 {"position_error_max", built->position_error_max},
                  {"snapped", snapped_json(built->snapped)},
                  {"import", to_json(imported->report)}};
   report.text = options.output.string() + ": " + grouped(triangles) + " triangles, " +

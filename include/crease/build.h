@@ -38,7 +38,8 @@ std::vector<SnappedLayer> snap_attributes(Mesh& mesh, const AttributePrecision& 
 
 struct Built {
   SimplifyStatistics statistics;
-  std::vector<SnappedLayer> snapped;  // one a layer
+  double grid_step = 0, position_error_max = 0;  // how far snapping moved a vertex; model units
+  std::vector<SnappedLayer> snapped;             // one a layer
   std::uint32_t blocks = 0;
   std::vector<std::byte> file_bytes;
 };

@@ -163,7 +163,8 @@ std::optional<Strays> find_strays(const Mesh& mesh);
 // whole millimetres stays on whole millimetres.
 Grid make_grid(const Mesh& mesh, const Precision& precision);
 
-// Every position on the grid, in place. Vertices are not merged.
-void snap(Mesh& mesh, const Grid& grid);
+// Every position on the grid, in place; how far the farthest went, in model units. Vertices are not
+// merged.
+double snap(Mesh& mesh, const Grid& grid);
 
 }  // namespace crease

@@ -92,8 +92,14 @@ Grid make_grid(const Mesh& mesh, const Precision& precision) {
   return grid;
 }
 
-void snap(Mesh& mesh, const Grid& grid) {
-  for (Vec3d& p : mesh.positions) p = grid.position(grid.nearest(p));
+double snap(Mesh& mesh, const Grid& grid) {
+  double farthest2 = 0;
+  for (Vec3d& p : mesh.positions) {
+    const Vec3d on_grid = grid.position(grid.nearest(p)), way = on_grid - p;
+    farthest2 = std::max(farthest2, dot(way, way));
+    p = on_grid;
+  }
+  return std::sqrt(farthest2);
 }
 
 }  // namespace crease

@@ -40,8 +40,9 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
   const Status precise = check_precision(mesh, options.precision);
   if (!precise.ok()) return precise.failure();
   const Grid grid = make_grid(mesh, options.precision);
-  snap(mesh, grid);
   Built built;
+  built.grid_step = grid.step;
+  built.position_error_max = snap(mesh, grid);
   const std::vector<LayerCoding> codings = codings_of(mesh, options.attributes);
   built.snapped = snap_to_codings(mesh, codings);
   SimplifyOptions simplify_options = options.simplify;

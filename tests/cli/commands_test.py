@@ -100,12 +100,15 @@ class Commands(tool.Case):
 
         built = self.hills(20)
         self.assertEqual(self.json("info", built)["precision"], 0.00001)
+        self.assertLess(self.json("build", self.path("hills.obj"), "-o", built)["position_error_max"], 1e-13)
         self.run_tool("extract", built, "-o", self.path("again.obj"))
         numbers = [[float(x) for x in line.split()[1:]] for line in corners(self.path("hills.obj"))]
         self.assertEqual([[float(x) for x in line.split()[1:]] for line in corners(self.path("again.obj"))],
                          numbers)
-        self.run_tool("build", self.path("hills.obj"), "-o", built, "--precision", "14bits")
+        rounded = self.json("build", self.path("hills.obj"), "-o", built, "--precision", "14bits")
+        self.assertEqual(rounded["precision"], 19 / 2 ** 14)
         self.assertEqual(self.json("info", built)["precision"], 19 / 2 ** 14)
+        self.assertTrue(0.1 * rounded["precision"] < rounded["position_error_max"] < rounded["precision"])
 
     def test_normal_bits_bound_the_deviation_at_full_resolution(self):
         for options, words, most in (([], "octahedral, 12 bits", 0.04),
