@@ -11,7 +11,7 @@ namespace crease {
 namespace {
 
 // How exact numbers are.
-struct Rounding {
+struct Exactness {
   bool are_floats = true;
   double away = 0;  // the greatest, without its sign
 
@@ -19,8 +19,8 @@ struct Rounding {
   double of_sum() const { return std::ldexp(away, are_floats ? -23 : -51); }
 };
 
-Rounding rounding_of(std::span<const Vec3d> positions) {
-  Rounding result;
+Exactness exactness_of(std::span<const Vec3d> positions) {
+  Exactness result;
   for (const Vec3d& p : positions) {
     for (int i = 0; i < 3; ++i) {
       result.are_floats = result.are_floats && double(float(p[i])) == p[i];
@@ -87,7 +87,7 @@ double step_of(const std::vector<double>& numbers, double off) {
 std::optional<Grid> regular_grid(std::span<const Vec3d> positions, double longest,
                                  double shortest) {
   constexpr std::size_t kFewest = 64;  // numbers that are no grid by chance
-  const double off = rounding_of(positions).of_sum();
+  const double off = exactness_of(positions).of_sum();
   const PointBox box = box_of(positions);
   int most = 0;
   for (int i = 1; i < 3; ++i) {
@@ -110,9 +110,9 @@ std::optional<Grid> regular_grid(std::span<const Vec3d> positions, double longes
 
 std::optional<double> round_step(std::span<const Vec3d> positions, double longest,
                                  double shortest) {
-  const Rounding rounding = rounding_of(positions);
-  const bool are_floats = rounding.are_floats;
-  const double off = rounding.of_sum();
+  const Exactness exactness = exactness_of(positions);
+  const bool are_floats = exactness.are_floats;
+  const double off = exactness.of_sum();
   const auto is_on = [&](const RoundStep& step, double x) {
     const double nearest = step.nearest(x);
     return are_floats ? float(nearest) == float(x) : std::abs(nearest - x) <= off;
