@@ -152,6 +152,20 @@ class PatchSimplifier {
     bool whole = false;   // small, all of it is the patch's, and nothing has broken it
   };
 
+  // Triangles of one category that are connected in one plane; see islands.cpp.
+  struct Region {
+    double area = 0;
+    bool is_large = false;   // it was not looked at to its end
+    bool is_locked = false;  // other patches have some of it
+    bool is_flat = true;     // it ends where its category does
+  };
+  struct Island {
+    double area = 0;
+    bool is_locked = false;
+    bool is_aside = false;  // what breaks it takes no triangle from it
+    std::vector<Index> members;
+  };
+
   struct Edge {
     Index other;
     Index corner[2];        // of the vertex that it was found at, in two of its triangles
@@ -181,6 +195,18 @@ class PatchSimplifier {
   Index broken_by(Index a, Index b, double cost);
   double cost_with_part(Index a, Index b, double cost);
   void vanish(Index member, double cost);
+
+  // islands.cpp
+  Index across(Index t, Index c) const;
+  void find_beyond(Index member, Index other, int steps);
+  Region region_around(Index t, double enough);
+  Island island_around(Index t, double most);
+  double price_of(const Island& island) const;
+  bool loses_triangles(const Island& island) const;
+  Island island_broken_by(Index a, Index b, const Placed& placed);
+  Placed place_at_end(const Candidate& pair, int end);
+  bool pushes_another(const Island& island, const Candidate& pair, const Placed& placed);
+  bool close_island(const Island& island, double cost);
 
   // pair_cost.cpp
   // `bound`: a cost above it need not be exact.
@@ -352,6 +378,11 @@ class PatchSimplifier {
 
   std::vector<Index> category_around_;     // by vertex; kNone: several
   AreaChanges by_category_, by_material_;  // of one contraction
+
+  std::vector<Index> region_of_;  // per triangle, the last that it was found in
+  Index region_count_ = 0;
+  std::vector<Index> region_members_;  // of the last one, and triangles of other categories in its
+  std::vector<Index> region_borders_;  // plane beside it
 
   std::vector<Part> parts_;          // empty: none is small
   std::vector<Index> part_of_;       // per vertex, see part_at()

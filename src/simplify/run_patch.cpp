@@ -121,10 +121,21 @@ void PatchSimplifier::contract_or_hold(const Entry& entry, Index a, Index b, dou
     blamed_ = kNone;
     if (!is_due()) return hold(entry, cost, placed);
   }
+  const Island island = island_broken_by(a, b, placed);
+  if (island.is_locked) return;
+  if (island.is_aside) {  // looked at again without it
+    if (close_island(island, placed.cost)) {
+      heap_.push({static_cast<float>(cost), entry.pair(), kNone, entry.tries});
+      return;
+    }
+    find_ring(a, b);
+    measure_witnesses(a, b, placed);
+  }
   const Index broken = broken_by(a, b, placed.cost);
   const bool vanishes = broken != kNone && part_at(a) == part_at(b);
   contract(a, b, placed.position, placed.cost);
   if (vanishes) vanish(a, placed.cost);
+  if (!island.members.empty()) close_island(island, placed.cost);
 }
 
 void PatchSimplifier::hold(const Entry& entry, double cost, const Placed& placed) {
