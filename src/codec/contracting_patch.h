@@ -60,6 +60,9 @@ class ContractingPatch {
     return vanished_;
   }
 
+  // Those that vanished with the last call.
+  std::span<const std::uint32_t> vanished() const { return vanished_; }
+
   // How many of the last ones in around(first) came from `second` with the last call.
   std::size_t moved_count() const { return moved_count_; }
 

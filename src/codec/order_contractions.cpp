@@ -6,6 +6,7 @@
 #include "codec/face_normals.h"
 #include "codec/patch_geometry.h"
 #include "codec/patch_lines.h"
+#include "codec/whole_islands.h"
 #include "codec/whole_parts.h"
 #include "hierarchy/quadric.h"
 #include "hierarchy/witnesses.h"
@@ -86,7 +87,6 @@ class CostEstimator {
     double surface = mean_distance(off, surface_[first].weight);
     const std::span<const std::uint32_t> vanished = patch.contract(first, second);
     const std::span<const std::uint32_t> around = patch.around(first);
-    vanished_count_ = static_cast<std::uint32_t>(vanished.size());
     if (around.empty()) {
       any_part_vanishes_ = true;
       double longest = 0;
@@ -157,8 +157,7 @@ class CostEstimator {
 
   // Whether all contractions so far ended where one of the two was.
   bool moves_to_end() const { return moves_to_end_; }
-  // How many triangles vanished with the last one, and whether a part has vanished so far.
-  std::uint32_t vanished_count() const { return vanished_count_; }
+  // Whether a part has vanished so far.
   bool any_part_vanishes() const { return any_part_vanishes_; }
   // Contractions so far that change nothing.
   std::size_t flat_count() const { return flat_count_; }
@@ -289,7 +288,6 @@ class CostEstimator {
   LevelError own_;
   double turn_weight_ = 0;
   std::size_t flat_count_ = 0, astray_count_ = 0;
-  std::uint32_t vanished_count_ = 0;
   bool moves_to_end_ = true, any_part_vanishes_ = false;
 };
 
@@ -334,6 +332,7 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
   std::vector<double> cost_of_vertex(block.vertices.size(), 0);
   std::vector<OrderedContraction> undone;
   std::vector<std::uint32_t> vanished_of_split(block.splits.size());
+  std::vector<std::uint32_t> split_of_vanished(block.end.triangles.size(), kNone);
   std::vector<std::pair<double, std::uint32_t>> ranks;  // by cost, then as they were undone
   undone.reserve(block.splits.size());
   ranks.reserve(block.splits.size());
@@ -350,7 +349,10 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
     }
     const double cost = std::max({estimator.contract(patch, first, second, split.parent_position),
                                   cost_of_vertex[first], cost_of_vertex[second]});
-    vanished_of_split[i] = estimator.vanished_count();
+    vanished_of_split[i] = static_cast<std::uint32_t>(patch.vanished().size());
+    for (const std::uint32_t t : patch.vanished()) {
+      split_of_vanished[t] = static_cast<std::uint32_t>(i);
+    }
     cost_of_vertex[first] = cost;
     ranks.emplace_back(cost, static_cast<std::uint32_t>(undone.size()));
     undone.push_back(
@@ -362,6 +364,7 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
   for (const auto& [cost, place] : ranks) order.push_back(undone[place]);
   if (estimator.flat_count() > order.size() / kFewOfThem)
     order = defer_folds(block, std::move(order));
+  keep_islands_whole(block, split_of_vanished, order);
   if (estimator.any_part_vanishes()) keep_parts_whole(block, vanished_of_split, order);
   if (estimator.astray_count() > order.size() / kFewAstray) {
     measure_in_order(block, schema, values, error_of_slot, witnesses, order);

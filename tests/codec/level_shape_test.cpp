@@ -1,6 +1,7 @@
 // Levels between the ends of a block, whose order no file has, are shapes as good as the ends are.
 #include "codec/encoded_model.h"
 #include "crease/decode_model.h"
+#include "support/facade.h"
 #include "support/mesh_builder.h"
 #include "support/village.h"
 
@@ -66,6 +67,20 @@ TEST_CASE("boxes of a village that comes from a file are whole or gone at every 
     CAPTURE(share);
     CHECK(boxes.broken <= kBoxes / 25);
     any_gone += boxes.gone > 0 && boxes.whole > 0;
+  }
+  CHECK(any_gone >= 2);
+}
+
+TEST_CASE("windows of a facade that comes from a file are whole or gone at every level") {
+  const EncodedCase c = simplified_case(facade(), 2'000, 14, kCoarsePrecision);
+  const Result<DecodedModel> model = decode_model(opened(c.bytes));
+  REQUIRE(model.ok());
+  std::size_t any_gone = 0;
+  for (const double share : {0.3, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95}) {
+    const WindowCount windows = count_windows(c.mesh, level_after(share, *model));
+    CAPTURE(share);
+    CHECK(windows.broken <= kWindows / 20);
+    any_gone += windows.gone > 0 && windows.whole > 0;
   }
   CHECK(any_gone >= 2);
 }
