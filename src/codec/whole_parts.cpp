@@ -1,6 +1,7 @@
 #include "codec/whole_parts.h"
 
 #include "codec/patch_geometry.h"
+#include "hierarchy/resting_parts.h"
 #include "hierarchy/whole_part.h"
 #include "mesh/disjoint_sets.h"
 
@@ -18,6 +19,7 @@ struct PartOfBlock {
   std::uint32_t triangles = 0, vanishing = 0;
   double cost = 0;  // of each contraction once one has broken it
   bool is_broken = false;
+  std::uint32_t first_place = 0;  // of what breaks it, in the order
 };
 
 // By their first vertices; the others stay empty.
@@ -37,6 +39,34 @@ std::vector<PartOfBlock> parts_of(const UnfoldedBlock& block,
   }
   for (PartOfBlock& part : parts) part.damage = part.damage_of_triangles.value();
   return parts;
+}
+
+// Parts that would float without another one go before it, those on top of others first.
+void hold_what_others_rest_on(const UnfoldedBlock& block, DisjointSets& sets,
+                              std::vector<PartOfBlock>& parts) {
+  const PatchPlaces places(block.end);
+  std::vector<std::uint32_t> name, number(parts.size(), kNone);  // of those that have triangles
+  std::vector<PartBox> boxes;
+  for (const Corners& t : block.end.triangles) {
+    std::uint32_t& own = number[sets.find(t[0])];
+    if (own == kNone) {
+      own = static_cast<std::uint32_t>(boxes.size());
+      boxes.emplace_back();
+      name.push_back(sets.find(t[0]));
+    }
+    for (const std::uint32_t v : t) boxes[own].add(places.place(v));
+  }
+  const std::vector<std::uint32_t> rests_on = only_contacts(boxes);
+  constexpr int kMostOnEachOther = 4;
+  for (int storey = 0; storey < kMostOnEachOther; ++storey) {
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+      if (rests_on[i] == kNone) continue;
+      const PartOfBlock& upper = parts[name[i]];
+      PartOfBlock& lower = parts[name[rests_on[i]]];
+      if (!upper.is_broken || !lower.is_broken) continue;
+      lower.cost = std::max(lower.cost, kAfter * upper.cost);
+    }
+  }
 }
 
 // Of a contraction in the new order.
@@ -62,18 +92,25 @@ void keep_parts_whole(const UnfoldedBlock& block, std::span<const std::uint32_t>
     sets.unite(block.splits[i].vertex, block.second_child(i));
   }
   std::vector<PartOfBlock> parts = parts_of(block, vanished_of_split, sets);
+  std::vector<std::uint32_t> number_of(order.size());  // of each contraction's part
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t number = number_of[i] = sets.find(block.splits[order[i].split].vertex);
+    PartOfBlock& part = parts[number];
+    if (!part.is_broken && breaks_part(order[i].cost, part.damage, part.triangles)) {
+      part.is_broken = true;
+      part.first_place = i;
+      part.cost = std::max(order[i].cost, price_of_part(part.damage, part.triangles));
+    }
+    part.triangles -= vanished_of_split[order[i].split];
+  }
+  hold_what_others_rest_on(block, sets, parts);
 
   std::vector<Rank> ranks;
   ranks.reserve(order.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) {
-    const std::uint32_t number = sets.find(block.splits[order[i].split].vertex);
-    PartOfBlock& part = parts[number];
-    if (!part.is_broken && breaks_part(order[i].cost, part.damage, part.triangles)) {
-      part.is_broken = true;
-      part.cost = std::max(order[i].cost, price_of_part(part.damage, part.triangles));
-    }
-    part.triangles -= vanished_of_split[order[i].split];
-    ranks.push_back(part.is_broken ? Rank{part.cost, number + 1, i} : Rank{order[i].cost, 0, i});
+    const PartOfBlock& part = parts[number_of[i]];
+    const bool goes = part.is_broken && i >= part.first_place;
+    ranks.push_back(goes ? Rank{part.cost, number_of[i] + 1, i} : Rank{order[i].cost, 0, i});
   }
   std::sort(ranks.begin(), ranks.end());
 

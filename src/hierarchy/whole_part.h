@@ -47,6 +47,9 @@ inline double price_of_part(double damage, std::size_t triangles) {
   return damage / (0.5 * double(triangles));
 }
 
+// What would float without a part goes before it: the part costs so many times as much as that.
+inline constexpr double kAfter = 1.01;
+
 // Whether a contraction inside it that costs so much breaks it. `damage`: 0 of a part that may not
 // go as a whole.
 inline bool breaks_part(double cost, double damage, std::size_t triangles) {

@@ -149,7 +149,9 @@ class PatchSimplifier {
     double reach2 = 0;    // squared, how far its box's corners are from the middle
     Index triangles = 0;  // those that are left
     Index into = kNone;   // the one that it has joined
-    bool whole = false;   // small, all of it is the patch's, and nothing has broken it
+    // Parts that would float without it, a list.
+    Index first_on_it = kNone, next_on_same = kNone;
+    bool whole = false;  // small, all of it is the patch's, and nothing has broken it
   };
 
   // Triangles of one category that are connected in one plane; see islands.cpp.
@@ -193,6 +195,7 @@ class PatchSimplifier {
   Index part_at(Index v);
   void contract_parts(Index kept, Index removed);
   Index broken_by(Index a, Index b, double cost);
+  double price_of_what_rests_on(Index part, Index but) const;
   double cost_with_part(Index a, Index b, double cost);
   void vanish(Index member, double cost);
 

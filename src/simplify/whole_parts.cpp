@@ -1,4 +1,5 @@
 // Small parts stay whole, or go: see hierarchy/whole_part.h.
+#include "hierarchy/resting_parts.h"
 #include "hierarchy/whole_part.h"
 #include "simplify/patch_simplifier.h"
 
@@ -52,21 +53,15 @@ void PatchSimplifier::load_parts() {
     if (!parts_[part_of_[v[0]]].whole) continue;
     damages[part_of_[v[0]]].add(positions_[v[0]], positions_[v[1]], positions_[v[2]]);
   }
-  struct Box {
-    Vec3d low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  };
-  std::vector<Box> boxes(parts_.size());
-  for (Index v = 0; v < n; ++v) {
-    Box& box = boxes[part_of_[v]];
-    for (int i = 0; i < 3; ++i) {
-      box.low[i] = std::min(box.low[i], positions_[v][i]);
-      box.high[i] = std::max(box.high[i], positions_[v][i]);
-    }
-  }
+  std::vector<PartBox> boxes(parts_.size());
+  for (Index v = 0; v < n; ++v) boxes[part_of_[v]].add(positions_[v]);
+  const std::vector<Index> rests_on = only_contacts(boxes);
   for (Index i = 0; i < parts_.size(); ++i) {
-    const Vec3d half = (boxes[i].high - boxes[i].low) * 0.5;
+    const Vec3d half = boxes[i].half();
     parts_[i].damage = damages[i].value();
     parts_[i].reach2 = dot(half, half);
+    if (rests_on[i] == kNone || !parts_[i].whole) continue;
+    parts_[i].next_on_same = std::exchange(parts_[rests_on[i]].first_on_it, i);
   }
 }
 
@@ -87,6 +82,9 @@ void PatchSimplifier::contract_parts(Index kept, Index removed) {
     part.reach2 = std::max(part.reach2, parts_[other].reach2);
     part.triangles += parts_[other].triangles;
     part.whole = part.whole && parts_[other].whole;
+    Index* end = &part.first_on_it;
+    while (*end != kNone) end = &parts_[*end].next_on_same;
+    *end = parts_[other].first_on_it;
     std::swap(next_in_part_[kept], next_in_part_[removed]);
   }
   part.triangles -= static_cast<Index>(vanishing_.size());
@@ -103,14 +101,33 @@ PatchSimplifier::Index PatchSimplifier::broken_by(Index a, Index b, double cost)
   return may_go && breaks_part(cost, part.damage, part.triangles) ? larger : kNone;
 }
 
+// What a part costs at the least on which others rest: they go before it.
+double PatchSimplifier::price_of_what_rests_on(Index part, Index but) const {
+  double price = 0;
+  for (Index i = parts_[part].first_on_it; i != kNone; i = parts_[i].next_on_same) {
+    const Part& on_it = parts_[i];
+    if (i == but || !on_it.whole || on_it.into != kNone || on_it.triangles == 0) continue;
+    // By then it has no more triangles than a small one.
+    const std::size_t few = std::min<std::size_t>(on_it.triangles, std::size_t(kSmallPart));
+    const double own =
+        std::max(price_of_part(on_it.damage, few), steering_.far_area * on_it.reach2);
+    price = std::max(price, kAfter * own);
+  }
+  return price;
+}
+
 // One that breaks a part costs at least the part's price, and no less than what is as far away as
 // the part is large (far_area.h).
 double PatchSimplifier::cost_with_part(Index a, Index b, double cost) {
-  const Index broken = broken_by(a, b, cost);
+  if (parts_.empty()) return cost;
+  const Index of_a = part_at(a), of_b = part_at(b), broken = broken_by(a, b, cost);
+  if (of_a != of_b) {
+    cost = std::max({cost, price_of_what_rests_on(of_a, of_b), price_of_what_rests_on(of_b, of_a)});
+  }
   if (broken == kNone) return cost;
   const Part& part = parts_[broken];
-  return std::max(
-      {cost, price_of_part(part.damage, part.triangles), steering_.far_area * part.reach2});
+  return std::max({cost, price_of_part(part.damage, part.triangles),
+                   price_of_what_rests_on(broken, kNone), steering_.far_area * part.reach2});
 }
 
 // After a contraction has broken it: the rest of the part that `member` is of. Their errors are

@@ -3,6 +3,7 @@
 #include "crease/decode_model.h"
 #include "support/facade.h"
 #include "support/mesh_builder.h"
+#include "support/steeples.h"
 #include "support/village.h"
 
 #include <doctest/doctest.h>
@@ -83,6 +84,20 @@ TEST_CASE("windows of a facade that comes from a file are whole or gone at every
     any_gone += windows.gone > 0 && windows.whole > 0;
   }
   CHECK(any_gone >= 2);
+}
+
+TEST_CASE("no spire of a model from a file floats over a drum that is gone") {
+  const EncodedCase c = simplified_case(steeples(), 2'000, 14, kCoarsePrecision);
+  const Result<DecodedModel> model = decode_model(opened(c.bytes));
+  REQUIRE(model.ok());
+  bool any_gone = false;
+  for (const double share : {0.5, 0.7, 0.8, 0.85, 0.9, 0.93, 0.95, 0.97, 0.98, 0.99}) {
+    const SteepleCount steeples = count_steeples(level_after(share, *model));
+    CAPTURE(share);
+    CHECK(steeples.floating <= kSteeples / 20);
+    any_gone |= steeples.whole > kSteeples / 10 && steeples.whole < kSteeples * 9 / 10;
+  }
+  CHECK(any_gone);
 }
 
 }  // namespace crease

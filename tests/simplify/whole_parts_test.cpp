@@ -1,6 +1,8 @@
 // Small parts stay whole or go.
+#include "hierarchy/resting_parts.h"
 #include "hierarchy/whole_part.h"
 #include "simplify/reduce.h"
+#include "support/steeples.h"
 #include "support/village.h"
 
 #include <doctest/doctest.h>
@@ -53,6 +55,37 @@ TEST_CASE("boxes of a village are whole or gone at every level") {
     if (per_box == 14) CHECK(boxes.whole > kBoxes / 2);
     if (per_box == 1) CHECK(boxes.gone > kBoxes / 2);
   }
+}
+
+TEST_CASE("no spire floats over a drum that is gone") {
+  const Mesh input = steeples();
+  bool any_gone = false;
+  for (const double per_steeple : {60, 40, 30, 20, 14, 8, 4}) {
+    const Reached reached = reduce(input, std::size_t(per_steeple * kSteeples));
+    const SteepleCount steeples = count_steeples(reached.mesh);
+    CAPTURE(per_steeple);
+    CHECK(steeples.floating <= kSteeples / 10);  // 88 if each went by its own price
+    any_gone |= steeples.whole > kSteeples / 10 && steeples.whole < kSteeples * 9 / 10;
+  }
+  CHECK(any_gone);
+}
+
+TEST_CASE("a part rests on the only one that its box touches") {
+  const auto box = [](const Vec3d& low, const Vec3d& high) {
+    PartBox result;
+    result.add(low);
+    result.add(high);
+    return result;
+  };
+  const std::vector<PartBox> boxes{
+      box({0, 0, 0}, {4, 4, 1}),        // a floor,
+      box({1, 1, 1}, {2, 2, 2}),        // a body on it,
+      box({1, 1, 2.001}, {2, 2, 3}),    // a roof on that,
+      box({1.4, 1.4, 3}, {1.5, 2, 4}),  // a mast on the roof
+      box({8, 8, 8}, {9, 9, 9}),        // and something elsewhere
+  };
+  CHECK(only_contacts(boxes) == std::vector<std::uint32_t>{1, kNone, kNone, 2, kNone});
+  CHECK(only_contacts({}).empty());
 }
 
 }  // namespace crease
