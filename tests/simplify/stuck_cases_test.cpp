@@ -4,6 +4,7 @@
 #include "crease/simplify.h"
 #include "mesh/normals.h"
 #include "simplify/reduce.h"
+#include "support/hashed.h"
 #include "support/mesh_builder.h"
 #include "support/mesh_zoo.h"
 #include "support/random_contractions.h"
@@ -231,9 +232,8 @@ TEST_CASE("a roof of tiles beside something larger stays a roof") {
 }
 
 // Of a number, from -0.5 to 0.5.
-double hashed(std::uint32_t x) {
-  x = (x + 1) * 2654435761u;  // Knuth's multiplicative hash
-  return ((x ^ x >> 15) >> 8 & 0xffff) * 0x1p-16 - 0.5;
+double around_zero(std::uint32_t x) {
+  return hashed(x) - 0.5;
 }
 
 // Beside the ground they have hardly any area.
@@ -241,7 +241,7 @@ TEST_CASE("posts on rough ground stand as long as the ground is rough") {
   constexpr int kSide = 40, kPosts = 3, kCorners = 6, kStoreys = 4;
   MeshBuilder builder;
   const auto ground = [](int x, int y) {
-    return Vec3d{double(x), double(y), 0.2 * hashed(std::uint32_t(x * kSide + y))};
+    return Vec3d{double(x), double(y), 0.2 * around_zero(std::uint32_t(x * kSide + y))};
   };
   for (int y = 0; y + 1 < kSide; ++y) {
     for (int x = 0; x + 1 < kSide; ++x) {
@@ -275,8 +275,8 @@ TEST_CASE("leaves vanish one by one before they join to something else") {
   MeshBuilder builder;
   for (std::uint32_t leaf = 0; leaf < kLeaves; ++leaf) {
     const auto vector = [&](std::uint32_t first) {
-      return Vec3d{hashed(9 * leaf + first), hashed(9 * leaf + first + 1),
-                   hashed(9 * leaf + first + 2)};
+      return Vec3d{around_zero(9 * leaf + first), around_zero(9 * leaf + first + 1),
+                   around_zero(9 * leaf + first + 2)};
     };
     const Vec3d u = normalized(vector(3)), v = normalized(cross(u, vector(6)));
     builder.grid(vector(0) * 10, u * 0.4, v * 0.4, 1, 1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "crease/mesh.h"
+#include "support/hashed.h"
 #include "support/mesh_builder.h"
 
 #include <algorithm>
@@ -18,10 +19,6 @@ inline constexpr std::uint32_t kWallMaterial = 0, kGlassMaterial = 1, kGroundMat
 
 // The wall stands at y = 0, a window in each square of side 1; the ground is at negative z.
 inline Mesh facade() {
-  const auto hashed = [](std::uint32_t x) {  // 0 to 1
-    x = (x + 1) * 2654435761u;
-    return ((x ^ x >> 15) >> 8 & 0xffff) * 0x1p-16;
-  };
   MeshBuilder builder;
   std::vector<MaterialId> materials;
   const auto quad = [&](const std::array<Vec3d, 4>& at, AttributeId normal,

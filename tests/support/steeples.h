@@ -2,6 +2,7 @@
 #pragma once
 
 #include "crease/mesh.h"
+#include "support/hashed.h"
 #include "support/mesh_builder.h"
 
 #include <array>
@@ -16,10 +17,6 @@ inline constexpr std::size_t kSteeples = std::size_t(kSteepleSide) * kSteepleSid
 inline constexpr double kDrumAt = 1, kSpireAt = 1.1;  // above ground
 
 inline Mesh steeples() {
-  const auto hashed = [](std::uint32_t x) {  // 0 to 1
-    x = (x + 1) * 2654435761u;
-    return ((x ^ x >> 15) >> 8 & 0xffff) * 0x1p-16;
-  };
   constexpr int kCells = 4;  // of the ground, a steeple
   MeshBuilder builder;
   const auto ground = [&](int x, int y) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "crease/mesh.h"
+#include "support/hashed.h"
 #include "support/mesh_builder.h"
 
 #include <algorithm>
@@ -15,10 +16,6 @@ inline constexpr int kVillageSide = 12;  // boxes
 inline constexpr std::size_t kBoxes = std::size_t(kVillageSide) * kVillageSide;
 
 inline Mesh village() {
-  const auto hashed = [](std::uint32_t x) {  // 0 to 1
-    x = (x + 1) * 2654435761u;
-    return ((x ^ x >> 15) >> 8 & 0xffff) * 0x1p-16;
-  };
   constexpr int kCells = 4;  // of the ground, a box
   MeshBuilder builder;
   const auto ground = [&](int x, int y) {
