@@ -122,8 +122,8 @@ void PatchSimplifier::contract_or_hold(const Entry& entry, Index a, Index b, dou
     if (!is_due()) return hold(entry, cost, placed);
   }
   const Island island = island_broken_by(a, b, placed);
-  if (island.is_locked) return;
-  if (island.is_aside) {  // looked at again without it
+  if (island.is_locked) return;  // of other patches as well: not in this pass
+  if (island.is_aside) {         // looked at again without it
     if (close_island(island, placed.cost)) {
       heap_.push({static_cast<float>(cost), entry.pair(), kNone, entry.tries});
       return;

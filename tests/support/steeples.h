@@ -4,6 +4,7 @@
 #include "crease/mesh.h"
 #include "support/hashed.h"
 #include "support/mesh_builder.h"
+#include "support/rough_ground.h"
 
 #include <array>
 #include <cstddef>
@@ -17,19 +18,8 @@ inline constexpr std::size_t kSteeples = std::size_t(kSteepleSide) * kSteepleSid
 inline constexpr double kDrumAt = 1, kSpireAt = 1.1;  // above ground
 
 inline Mesh steeples() {
-  constexpr int kCells = 4;  // of the ground, a steeple
   MeshBuilder builder;
-  const auto ground = [&](int x, int y) {
-    const double height = -0.1 * hashed(std::uint32_t(1000 * y + x));
-    return builder.at({double(x) / kCells, double(y) / kCells, height});
-  };
-  for (int y = 0; y < kCells * kSteepleSide; ++y) {
-    for (int x = 0; x < kCells * kSteepleSide; ++x) {
-      const VertexId v[] = {ground(x, y), ground(x + 1, y), ground(x + 1, y + 1), ground(x, y + 1)};
-      builder.flat_triangle({v[0], v[1], v[2]});
-      builder.flat_triangle({v[0], v[2], v[3]});
-    }
-  }
+  add_rough_ground(builder, kSteepleSide, -0.1);
   constexpr double kGap = 0.001;  // so that no vertex is of two boxes
   for (std::uint32_t i = 0; i < kSteeples; ++i) {
     const Vec3d at{i % kSteepleSide + 0.5, i / kSteepleSide + 0.5, 0};

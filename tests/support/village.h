@@ -4,6 +4,7 @@
 #include "crease/mesh.h"
 #include "support/hashed.h"
 #include "support/mesh_builder.h"
+#include "support/rough_ground.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -16,19 +17,8 @@ inline constexpr int kVillageSide = 12;  // boxes
 inline constexpr std::size_t kBoxes = std::size_t(kVillageSide) * kVillageSide;
 
 inline Mesh village() {
-  constexpr int kCells = 4;  // of the ground, a box
   MeshBuilder builder;
-  const auto ground = [&](int x, int y) {
-    const double height = 0.1 * hashed(std::uint32_t(1000 * y + x));
-    return builder.at({double(x) / kCells, double(y) / kCells, height});
-  };
-  for (int y = 0; y < kCells * kVillageSide; ++y) {
-    for (int x = 0; x < kCells * kVillageSide; ++x) {
-      const VertexId v[] = {ground(x, y), ground(x + 1, y), ground(x + 1, y + 1), ground(x, y + 1)};
-      builder.flat_triangle({v[0], v[1], v[2]});
-      builder.flat_triangle({v[0], v[2], v[3]});
-    }
-  }
+  add_rough_ground(builder, kVillageSide, 0);
   for (std::uint32_t i = 0; i < kBoxes; ++i) {
     const Vec3d low{i % kVillageSide + 0.1, i / kVillageSide + 0.1, 0.2};
     builder.box(low,
