@@ -26,14 +26,14 @@ class Precision(tool.Case):
             with open(path) as lines:
                 return sorted(line for line in lines if line.startswith("v "))
 
-        built = self.hills(20)
+        hills, built = self.hills_mesh(20), self.path("hills.crease")
+        self.assertLess(self.json("build", hills, "-o", built)["position_error_max"], 1e-13)
         self.assertEqual(self.json("info", built)["precision"], 0.00001)
-        self.assertLess(self.json("build", self.path("hills.obj"), "-o", built)["position_error_max"], 1e-13)
         self.run_tool("extract", built, "-o", self.path("again.obj"))
-        numbers = [[float(x) for x in line.split()[1:]] for line in corners(self.path("hills.obj"))]
+        numbers = [[float(x) for x in line.split()[1:]] for line in corners(hills)]
         self.assertEqual([[float(x) for x in line.split()[1:]] for line in corners(self.path("again.obj"))],
                          numbers)
-        rounded = self.json("build", self.path("hills.obj"), "-o", built, "--precision", "14bits")
+        rounded = self.json("build", hills, "-o", built, "--precision", "14bits")
         self.assertEqual(rounded["precision"], 19 / 2 ** 14)
         self.assertEqual(self.json("info", built)["precision"], 19 / 2 ** 14)
         self.assertTrue(0.1 * rounded["precision"] < rounded["position_error_max"] < rounded["precision"])

@@ -138,7 +138,6 @@ class Serve(tool.Case):
         self.built(40000)
         with self.served("--delay", "60000") as (url, _):
             out = self.path("a.ply")
-            os.remove(self.path("city.ply"))
             process = subprocess.Popen([tool.BINARY, "extract", url + "city.crease", "-o", out],
                                        stderr=subprocess.PIPE, text=True)
             # It cannot be over: the first answer takes a minute. It may not have begun to watch.

@@ -30,6 +30,8 @@ SHARED = pathlib.Path(
 SQUARE = "v 0 0 {z}\nv 1 0 {z}\nv 1 1 {z}\nv 0 1 {z}\nf 1 2 3\nf 1 3 4\n"
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
 
+ONCE = tempfile.TemporaryDirectory(prefix="crease_cli_once_")
+
 
 def quarters_png(side=32):
     """A picture whose quarters are red, green, then blue, yellow below."""
@@ -82,11 +84,23 @@ class Case(unittest.TestCase):
         self.assertIsInstance(value, dict)
         return value
 
+    def once(self, name, *command):
+        """What this command makes, in a file that ends as the name does: it runs once for all tests."""
+        made = pathlib.Path(ONCE.name, hashlib.sha256(repr(command).encode()).hexdigest() + "_" + name)
+        if not made.exists():
+            self.run_tool(*command, "-o", made)
+        return made
+
+    def copied(self, made, name):
+        if not os.path.exists(self.path(name)):
+            shutil.copyfile(made, self.path(name))
+        return self.path(name)
+
+    def once_city(self, triangles):
+        return self.once("city.ply", "generate", "city", "--triangles", triangles)
+
     def city(self, triangles=4000, name="city.ply"):
-        path = self.path(name)
-        if not os.path.exists(path):
-            self.json("generate", "city", "-o", path, "--triangles", triangles)
-        return path
+        return self.copied(self.once_city(triangles), name)
 
     def painted(self, cells=20, texture="quarters.png"):
         """A wavy sheet in an OBJ with a picture on it, which lies beside it."""
@@ -107,10 +121,7 @@ class Case(unittest.TestCase):
         return self.write("painted.obj", "\n".join(lines) + "\n")
 
     def built(self, triangles=4000):
-        path = self.path("city.crease")
-        if not os.path.exists(path):
-            self.json("build", self.city(triangles), "-o", path)
-        return path
+        return self.copied(self.once("city.crease", "build", self.once_city(triangles)), "city.crease")
 
     def has(self, value, *keys):
         for key in keys:
@@ -120,7 +131,7 @@ class Case(unittest.TestCase):
         return self.write(name, json.dumps({"position": position, "target": [0, 0, 0],
                                             "viewport": [640, 480], "pixels": pixels}).encode())
 
-    def hills(self, side=160):
+    def hills_mesh(self, side=160):
         def height(x, y):
             return 3 * math.sin(x / 9) * math.cos(y / 13) + 0.3 * math.sin(x * 1.3 + y) + x * y / 5000
 
@@ -129,9 +140,12 @@ class Case(unittest.TestCase):
             for x in range(1, side):
                 a = y * side + x
                 lines += ["f %d %d %d" % (a, a + 1, a + side), "f %d %d %d" % (a + 1, a + side + 1, a + side)]
-        built = self.path("hills.crease")
-        self.run_tool("build", self.write("hills.obj", "\n".join(lines)), "-o", built)
-        return built
+        hills = pathlib.Path(ONCE.name, f"hills_{side}.obj")
+        hills.write_text("\n".join(lines))
+        return hills
+
+    def hills(self):
+        return self.copied(self.once("hills.crease", "build", self.hills_mesh()), "hills.crease")
 
     def files(self):
         return sorted(p.name for p in self.folder.iterdir())
