@@ -10,7 +10,7 @@ namespace {
 
 // What normals weigh falls with this power of the share of the triangles that is left: where
 // triangles become as large as what is shown the surface goes wrong before its shading does.
-constexpr double kNormalPower = 0.1;
+constexpr double kNormalPower = 0.2;
 
 // Where few triangles have most of the area, walls around what was modelled with care, the mean is
 // no measure of the others: normals would decide all of it there. So what a normal costs is in

@@ -6,6 +6,7 @@
 #include "parallel/parallel.h"
 #include "parallel/shared_progress.h"
 #include "simplify/far_area.h"
+#include "simplify/fit_normals.h"
 #include "simplify/partition.h"
 #include "simplify/pass_limits.h"
 #include "simplify/patch_simplifier.h"
@@ -120,7 +121,7 @@ void find_owners(WorkMesh& work, const Patches& patches) {
 class Simplifier {
  public:
   Simplifier(const Mesh& mesh, const Grid& grid, const SimplifyOptions& options)
-      : options_(options), work_(make_work(mesh, grid)) {
+      : options_(options), work_(make_work(mesh, grid)), normals_(mesh, grid, work_) {
     parallel_both(
         [&] {
           if (options.measures_errors) work_.witnesses = witnesses_of(mesh, work_.positions);
@@ -281,7 +282,14 @@ class Simplifier {
     FarCounts far_counts;
     for (const PatchResult& result : results_) far_counts.add(result.far_counts);
     far_area_.learn(far_counts);
+    const std::size_t first_normal = normals_.value_count();
     number_new_values();
+    for (const PatchResult& result : results_) {
+      for (const PatchContraction& own : result.contractions) {
+        normals_.note_contraction(static_cast<std::uint32_t>(own.contraction.removed),
+                                  static_cast<std::uint32_t>(own.contraction.kept));
+      }
+    }
     parallel_both([&] { append_contractions(); },
                   [&] {
                     join_contracted_parts();
@@ -290,6 +298,7 @@ class Simplifier {
                     });
                   });
     results_.clear();
+    normals_.fit(first_normal);
     return true;
   }
 
@@ -429,6 +438,7 @@ class Simplifier {
 
   const SimplifyOptions& options_;
   WorkMesh work_;
+  NormalFit normals_;
   Patches patches_;
   std::vector<PatchResult> results_;
   std::vector<std::uint32_t> first_new_;  // patch by patch, layer by layer
