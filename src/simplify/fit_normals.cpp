@@ -23,6 +23,7 @@ constexpr float kNear = 0.05f;    // a chord: above it differences count by thei
 constexpr double kOwn = 0.02;     // what the present value counts beside the samples
 constexpr int kSweeps = 4;
 constexpr double kDamping = 0.8;  // the eigenvalues of such equations lie between 1/2 and 2
+constexpr std::size_t kTogether = 1 << 15;  // samples
 constexpr std::size_t kChunk = 1024;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -90,6 +91,7 @@ NormalFit::NormalFit(const Mesh& input, const Grid& grid, WorkMesh& work)
     if (!layer_ && layer.is_normal && layer.is_direction && layer.dimension == 3) layer_ = &layer;
   }
   if (!layer_) return;
+  input_values_ = layer_->source->value_count();
   now_at_.resize(work.positions.size());
   std::iota(now_at_.begin(), now_at_.end(), 0u);
   input_area_.resize(input.triangle_count());
@@ -101,28 +103,33 @@ NormalFit::NormalFit(const Mesh& input, const Grid& grid, WorkMesh& work)
       input_area_[t] = static_cast<float>(0.5 * length(cross(at(1) - at(0), at(2) - at(0))));
     }
   });
-  for (const float area : input_area_) area_ += double(area);
-}
-
-Vec3d NormalFit::position(std::uint32_t vertex) const {
-  const Vec3i& p = work_.positions[vertex];
-  return {double(p.x), double(p.y), double(p.z)};
-}
-
-const float* NormalFit::value_at(std::size_t corner) const {
-  return layer_->value(layer_->of_corner[corner]);
+  for (std::uint32_t t = 0; t < input_area_.size(); ++t) {
+    area_ += double(input_area_[t]);
+    if (input_area_[t] > 0) candidates_.push_back(t);
+  }
 }
 
 void NormalFit::find_corners() {
-  first_corner_.assign(work_.positions.size() + 1, 0);
+  place_of_vertex_.resize(work_.positions.size());
+  vertices_.clear();
+  first_corner_.assign(1, 0);
   for (const std::uint32_t t : work_.live) {
-    for (std::size_t c = 0; c < 3; ++c) ++first_corner_[work_.vertex_of_corner[3 * t + c] + 1];
+    for (std::uint32_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
+      const std::uint32_t v = work_.vertex_of_corner[corner];
+      std::uint32_t& place = place_of_vertex_[v];
+      if (!is_live(v)) {
+        place = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.push_back(v);
+        first_corner_.push_back(0);
+      }
+      ++first_corner_[place + 1];
+    }
   }
   std::partial_sum(first_corner_.begin(), first_corner_.end(), first_corner_.begin());
   corners_.resize(first_corner_.back());
   for (const std::uint32_t t : work_.live) {
     for (std::uint32_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
-      corners_[first_corner_[work_.vertex_of_corner[corner]]++] = corner;
+      corners_[first_corner_[place_of_vertex_[work_.vertex_of_corner[corner]]]++] = corner;
     }
   }
   std::copy_backward(first_corner_.begin(), first_corner_.end() - 1, first_corner_.end());
@@ -130,8 +137,8 @@ void NormalFit::find_corners() {
 }
 
 std::span<const std::uint32_t> NormalFit::corners_of(std::uint32_t vertex) const {
-  return std::span(corners_).subspan(first_corner_[vertex],
-                                     first_corner_[vertex + 1] - first_corner_[vertex]);
+  const std::uint32_t* first = &first_corner_[place_of_vertex_[vertex]];
+  return std::span(corners_).subspan(first[0], first[1] - first[0]);
 }
 
 NormalFit::Sample NormalFit::sample_of(std::uint32_t triangle, std::uint32_t place,
@@ -162,6 +169,7 @@ NormalFit::Sample NormalFit::sample_of(std::uint32_t triangle, std::uint32_t pla
   double least = std::numeric_limits<double>::infinity();
   for (const VertexId v : input_.triangles[triangle]) {
     const std::uint32_t now = now_at_[index_of(v)];
+    if (!is_live(now)) continue;
     const Vec3d off = position(now) - point;
     const double squared = dot(off, off);
     if (squared >= least) continue;
@@ -171,25 +179,25 @@ NormalFit::Sample NormalFit::sample_of(std::uint32_t triangle, std::uint32_t pla
   return sample;
 }
 
-// Of an input triangle as many as its area is worth; of those that are not worth one, some.
-void NormalFit::choose_samples(std::size_t wanted) {
-  const auto count = static_cast<std::uint32_t>(input_.triangle_count());
-  const double share = area_ / double(wanted);
-  const auto stride = static_cast<std::uint32_t>(count / wanted);
+// From this candidate on; returns where the next ones begin. A triangle has as many as its area is
+// worth, and of those that are not worth one only this part is among the candidates.
+std::size_t NormalFit::choose_samples(std::size_t from, double share, double part) {
   struct Chosen {
     std::uint32_t triangle, place;
     double area;
   };
   std::vector<Chosen> chosen;
-  for (std::uint32_t t = 0; t < count; ++t) {
+  for (; from < candidates_.size() && chosen.size() < kTogether; ++from) {
+    const std::uint32_t t = candidates_[from];
     const double area = double(input_area_[t]);
-    if (!(area > 0)) continue;
-    if (area < share) {
-      if (mixed(t) % stride == 0) chosen.push_back({t, 0, area * stride});
-      continue;
+    const double points =
+        area < share ? 1 : std::clamp(std::ceil(area / share), 1.0, kMostOfTriangle);
+    const double each = area < share ? area / part : area / points;
+    for (std::uint32_t i = 0; i < points; ++i) chosen.push_back({t, i, each});
+    for (const VertexId v : input_.triangles[t]) {
+      std::uint32_t& now = now_at_[index_of(v)];
+      while (now_at_[now] != now) now = now_at_[now] = now_at_[now_at_[now]];
     }
-    const double points = std::min(std::ceil(area / share), kMostOfTriangle);
-    for (std::uint32_t i = 0; i < points; ++i) chosen.push_back({t, i, area / points});
   }
   samples_.resize(chosen.size());
   for_chunks(chosen.size(), [&](std::size_t begin, std::size_t end) {
@@ -197,14 +205,16 @@ void NormalFit::choose_samples(std::size_t wanted) {
       samples_[i] = sample_of(chosen[i].triangle, chosen[i].place, chosen[i].area);
     }
   });
+  return from;
 }
 
 void NormalFit::sort_by_vertex(std::vector<std::uint32_t>& samples) {
-  first_sample_.assign(work_.positions.size() + 1, 0);
-  for (const std::uint32_t s : samples) ++first_sample_[samples_[s].vertex + 1];
+  const auto place_of = [&](std::uint32_t s) { return place_of_vertex_[samples_[s].vertex]; };
+  first_sample_.assign(vertices_.size() + 1, 0);
+  for (const std::uint32_t s : samples) ++first_sample_[place_of(s) + 1];
   std::partial_sum(first_sample_.begin(), first_sample_.end(), first_sample_.begin());
   std::vector<std::uint32_t> sorted(samples.size());
-  for (const std::uint32_t s : samples) sorted[first_sample_[samples_[s].vertex]++] = s;
+  for (const std::uint32_t s : samples) sorted[first_sample_[place_of(s)]++] = s;
   std::copy_backward(first_sample_.begin(), first_sample_.end() - 1, first_sample_.end());
   first_sample_[0] = 0;
   samples.swap(sorted);
@@ -276,16 +286,18 @@ CREASE_WIDE void NormalFit::look_around(const Fan& fan, Sample& sample) const {
 }
 
 void NormalFit::find_triangles() {
-  std::vector<std::uint32_t> left(samples_.size());
-  std::iota(left.begin(), left.end(), 0u);
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t s = 0; s < samples_.size(); ++s) {
+    if (samples_[s].vertex != kNone) left.push_back(s);  // else its part is gone
+  }
   for (int round = 0; round < kMostVertices && !left.empty(); ++round) {
     sort_by_vertex(left);
-    for_chunks(work_.positions.size(), [&](std::size_t begin, std::size_t end) {
+    for_chunks(vertices_.size(), [&](std::size_t begin, std::size_t end) {
       Fan fan;
-      for (std::size_t v = begin; v < end; ++v) {
-        if (first_sample_[v] == first_sample_[v + 1]) continue;
-        load_fan(static_cast<std::uint32_t>(v), fan);
-        for (std::size_t i = first_sample_[v]; i < first_sample_[v + 1]; ++i) {
+      for (std::size_t place = begin; place < end; ++place) {
+        if (first_sample_[place] == first_sample_[place + 1]) continue;
+        load_fan(vertices_[place], fan);
+        for (std::size_t i = first_sample_[place]; i < first_sample_[place + 1]; ++i) {
           look_around(fan, samples_[left[i]]);
         }
       }
@@ -323,16 +335,21 @@ void NormalFit::fit(std::size_t first_value) {
   if (!layer_ || !(area_ > 0)) return;
   const std::size_t count = input_.triangle_count(), live = work_.live.size();
   if (layer_->value_count() <= first_value || count < kLeastSamples * live) return;
-  for (std::uint32_t& now : now_at_) {
-    while (now_at_[now] != now) now = now_at_[now] = now_at_[now_at_[now]];
-  }
+  const std::size_t wanted = std::min(count, kMostSamples * live);
+  const double share = area_ / double(wanted), part = double(wanted) / double(count);
+  // Fewer with every pass, of those that there were.
+  std::erase_if(candidates_, [&](std::uint32_t t) {
+    return double(input_area_[t]) < share && double(mixed(t)) >= part * 0x1p32;
+  });
   find_corners();
-  choose_samples(std::min(count, kMostSamples * live));
-  find_triangles();
   place_of_triangle_.resize(count);
   for (std::uint32_t i = 0; i < live; ++i) place_of_triangle_[work_.live[i]] = i;
   equations_.assign(live, {});
-  for (const Sample& sample : samples_) add(sample);
+  for (std::size_t from = 0; from < candidates_.size();) {
+    from = choose_samples(from, share, part);
+    find_triangles();
+    for (const Sample& sample : samples_) add(sample);
+  }
   samples_ = {};
   solve(first_value);
   equations_ = {};
@@ -340,7 +357,7 @@ void NormalFit::fit(std::size_t first_value) {
 
 // What it should be while all others are what they are.
 Vec3d NormalFit::better_value(std::uint32_t vertex, std::uint32_t id, const float* start) const {
-  const float* now = layer_->value(id);
+  const float* now = value_of(id);
   const Vec3d present{double(now[0]), double(now[1]), double(now[2])};
   double own = 0, weight = 0, sum[3] = {};
   for (const std::uint32_t corner : corners_of(vertex)) {
@@ -376,7 +393,7 @@ void NormalFit::solve(std::size_t first_value) {
     }
   }
   const std::span<float> values =
-      std::span(layer_->new_values).subspan(3 * (first_value - layer_->source->value_count()));
+      std::span(layer_->new_values).subspan(3 * (first_value - input_values_));
   const std::vector<float> start(values.begin(), values.end());
   std::vector<float> next(start);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {

@@ -56,9 +56,21 @@ class NormalFit {
 
   void find_corners();
   std::span<const std::uint32_t> corners_of(std::uint32_t vertex) const;
-  Vec3d position(std::uint32_t vertex) const;
-  const float* value_at(std::size_t corner) const;
-  void choose_samples(std::size_t wanted);
+  bool is_live(std::uint32_t vertex) const {
+    const std::uint32_t place = place_of_vertex_[vertex];
+    return place < vertices_.size() && vertices_[place] == vertex;
+  }
+  Vec3d position(std::uint32_t vertex) const {
+    const Vec3i& p = work_.positions[vertex];
+    return {double(p.x), double(p.y), double(p.z)};
+  }
+  // As WorkLayer::value(), which divides.
+  const float* value_of(std::size_t id) const {
+    return id < input_values_ ? &layer_->source->values[3 * id]
+                              : &layer_->new_values[3 * (id - input_values_)];
+  }
+  const float* value_at(std::size_t corner) const { return value_of(layer_->of_corner[corner]); }
+  std::size_t choose_samples(std::size_t from, double share, double part);
   Sample sample_of(std::uint32_t triangle, std::uint32_t place, double area) const;
   void find_triangles();
   void sort_by_vertex(std::vector<std::uint32_t>& samples);
@@ -73,14 +85,18 @@ class NormalFit {
   const double per_step_;
   WorkMesh& work_;
   WorkLayer* layer_ = nullptr;
-  std::vector<float> input_area_;                      // by triangle, grid units
-  double area_ = 0;                                    // of all
-  std::vector<std::uint32_t> now_at_;                  // per input vertex: what it has become
-  std::vector<std::uint32_t> first_corner_, corners_;  // of live triangles, by vertex
-  std::vector<Sample> samples_;
-  std::vector<std::uint32_t> first_sample_;       // by vertex
-  std::vector<std::uint32_t> place_of_triangle_;  // in work.live
-  std::vector<Equations> equations_;              // by place in work.live
+  std::size_t input_values_ = 0;
+  std::vector<float> input_area_;          // by triangle, grid units
+  double area_ = 0;                        // of all
+  std::vector<std::uint32_t> candidates_;  // input triangles that samples may come from, ascending
+  std::vector<std::uint32_t> now_at_;      // per input vertex: what it has become
+  std::vector<std::uint32_t> vertices_;    // that live triangles have
+  std::vector<std::uint32_t> place_of_vertex_;         // in vertices_, of those
+  std::vector<std::uint32_t> first_corner_, corners_;  // of live triangles, by place of vertex
+  std::vector<Sample> samples_;                        // some of them at a time
+  std::vector<std::uint32_t> first_sample_;            // by place of vertex
+  std::vector<std::uint32_t> place_of_triangle_;       // in work.live
+  std::vector<Equations> equations_;                   // by place in work.live
 };
 
 }  // namespace crease::simplification
