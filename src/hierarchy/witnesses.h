@@ -22,6 +22,7 @@
 // around a place that is wrong already would count as wrong as it.
 #pragma once
 
+#include "base/mixed.h"
 #include "crease/ids.h"
 #include "crease/mesh.h"
 #include "crease/vec.h"
@@ -264,12 +265,6 @@ class WitnessMover {
       all[i] = most;
     }
   }
-  // In no order that the mesh would know of.
-  static std::uint32_t mixed(std::uint32_t x) {
-    x *= 0x9e3779b1u;
-    return (x ^ x >> 15) * 0x85ebca77u;
-  }
-
   std::vector<Block> blocks_;             // those that were ever needed
   std::vector<std::uint32_t> triangles_;  // around the vertex
   std::vector<Taken> taken_;

@@ -1,5 +1,6 @@
 #include "simplify/fit_normals.h"
 
+#include "base/mixed.h"
 #include "base/wide.h"
 #include "hierarchy/eight_triangles.h"
 #include "parallel/parallel.h"
@@ -36,12 +37,6 @@ void for_chunks(std::size_t count, const Body& body) {
 
 Vec3f as_float(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-// Numbers that do not follow the order of triangles, in which every second one may be of a kind.
-std::uint32_t mixed(std::uint32_t x) {
-  x *= 0x9e3779b1u;
-  return (x ^ x >> 15) * 0x85ebca77u;
 }
 
 struct Nearest {
