@@ -153,8 +153,7 @@ NormalFit::Sample NormalFit::sample_of(std::uint32_t triangle, std::uint32_t pla
   for (std::size_t c = 0; c < 3; ++c) {
     const Vec3d& p = input_.positions[index_of(input_.triangles[triangle][c])];
     point = point + (p - origin_) * (per_step_ * shares[c]);
-    const float* n =
-        layer_->source->value(layer_->source->of_corner[3 * std::size_t(triangle) + c]).data();
+    const float* n = value_of(index_of(layer_->source->of_corner[3 * std::size_t(triangle) + c]));
     normal = normal + Vec3d{double(n[0]), double(n[1]), double(n[2])} * shares[c];
   }
   const double size = length(normal);

@@ -29,9 +29,9 @@ class NormalFit {
   std::size_t value_count() const { return layer_ ? layer_->value_count() : 0; }
 
   // Of the values from this one on, each of which stands at one vertex; once all that the pass
-  // contracted was noted. Linear in the input's triangles, and in those that are left where these
-  // are few; nothing while more than a third of them are. Uses all threads, and gives the same for
-  // any number of them.
+  // contracted was noted. Linear in the triangles that are left and in the candidates of the pass
+  // before; nothing while more than a sixth of the input's triangles are left. Uses all threads,
+  // and gives the same for any number of them.
   void fit(std::size_t first_value);
 
  private:
