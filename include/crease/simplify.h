@@ -23,7 +23,7 @@ struct SimplifyOptions {
   // an area costs as much as a distance of normal_weight mean edge lengths there; less the coarser
   // the level, a quarter of it where 1 of 1,000 triangles is left, and less, to the half, the more
   // uneven the triangles are. 0 and more.
-  double normal_weight = 1;
+  double normal_weight = 1.1;
   // The input's vertices are followed: LevelError::surface is nearly a bound, thin parts stay long.
   // Else it is an estimate, often several times too small, and it takes a third of the time less.
   bool measures_errors = true;

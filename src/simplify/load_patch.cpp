@@ -71,6 +71,7 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
   const std::size_t n = triangles.size();
   clear_for(vertices_, n / 2);
   clear_for(errors_, n / 2);
+  clear_for(grown_, n / 2);
   clear_for(positions_, n / 2);
   clear_for(global_triangle_, n);
   clear_for(vertex_of_corner_, 4 * n);
@@ -94,6 +95,7 @@ void PatchSimplifier::load(std::span<const std::uint32_t> triangles, std::uint32
         vertex.locked = work_->owner_of_vertex[global] != patch_id;
         vertices_.push_back(vertex);
         errors_.push_back({work_->error_of_vertex[global], work_->error_of_vertex[global]});
+        grown_.push_back(work_->grown_of_vertex[global]);
         const Vec3i& p = work_->positions[global];
         for (int i = 0; i < 3; ++i) {
           low[i] = std::min(low[i], p[i]);

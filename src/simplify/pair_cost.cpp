@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -22,6 +23,14 @@ constexpr double kLeavesPlanes = 0.3;
 
 // The optimum stays within this many pair lengths of the pair's middle.
 constexpr double kReach = 1.0;
+
+// What a volume that is off counts, squared and by the area around, beside the distance to planes;
+// of what the better place gains, folds and areas that change hands may take so much.
+constexpr double kVolumeWeight = 40, kFoldsForVolume = 0.1;
+
+// Of an area to the power 3/2: a volume that is left over is made up for later, but not one that a
+// thin part has lost.
+constexpr double kMostGrown = 0.02;
 
 // Sets of at most eight: a byte for each member, with a bit for each member of its set.
 class SmallSets {
@@ -334,7 +343,6 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
   const double length2 = dot(along, along);
   Quadric sum = sum_of(a, b);
   const double tie = kLengthShare * length2 * sum.weight;
-  const double grid_noise = kGridNoise * kGridNoise * sum.weight;
   const auto add_turns = [&](Quadric& q) {
     if (turn_.empty()) return;
     q.add(turn_[a]);
@@ -363,32 +371,88 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
   add_attribute_costs(a, b, sum, joins);
   const Quadric free = sum;
   add_turns(sum);
+  const Chosen chosen = choose(sum, a, b, bound);
+  return placed_at(chosen.position, chosen.cost, free);
+}
+
+// The place that is worth the bits that a file takes for it: an end, between them, or the best. An
+// end where nothing costs less than `bound`.
+inline PatchSimplifier::Chosen PatchSimplifier::choose(const Quadric& sum, Index a, Index b,
+                                                       double bound) const {
+  const Vec3d &pa = positions_[a], &pb = positions_[b];
   const double cost_a = sum.at(pa), cost_b = sum.at(pb);
-  const double best_end = std::min(cost_a, cost_b);
-  const Vec3d& end = cost_a < cost_b ? pa : pb;
-  const auto is_corner = [&](Index v) {
-    return vertices_[v].flat_around && line_of_vertex_[v] != kNone;
-  };
+  const Chosen end = cost_a < cost_b ? Chosen{pa, cost_a} : Chosen{pb, cost_b};
+  const Vec3d along = pb - pa;
+  const double length2 = dot(along, along);
   const double share = is_corner(a) && is_corner(b) ? kLeavesPlanes : 1;
-  const double noise = tie + grid_noise;
-  const double most = steering_.leaves_ends * share * best_end - noise;
-  if (!(most > 0)) return placed_at(end, best_end, free);  // as on planes: no cost is less
+  const double noise = kLengthShare * length2 * sum.weight + kGridNoise * kGridNoise * sum.weight;
+  const double most = steering_.leaves_ends * share * end.cost - noise;
+  if (!(most > 0)) return end;  // as on planes: no cost is less
   const Vec3d middle = (pa + pb) * 0.5;
   Vec3d x = sum.minimum(middle, steering_.pull);
   // The pull, and rounding to a coarse grid, make this more than the least there is.
-  if (!(sum.at(x) <= 1.5 * bound))
-    return placed_at(end, best_end, free);  // nothing is cheap enough
+  if (!(sum.at(x) <= 1.5 * bound)) return end;
   const Vec3d away = x - middle;
   const double away2 = dot(away, away);
   if (away2 > kReach * kReach * length2) x = middle + away * (kReach * std::sqrt(length2 / away2));
   x = rounded(x);
   const double cost_x = sum.at(x);
-  if (!(cost_x < most)) return placed_at(end, best_end, free);
+  if (!(cost_x < most)) return end;
   const PlaceBetween between = place_between(sum, pa, pb, cost_a, steering_.pull);
-  const bool leaves_end = between.cost < most;
-  const double least = leaves_end ? between.cost : best_end;
-  if (cost_x < steering_.leaves_pair * share * least - noise) return placed_at(x, cost_x, free);
-  return placed_at(leaves_end ? between.position : end, least, free);
+  const Chosen near = between.cost < most ? Chosen{between.position, between.cost} : end;
+  return cost_x < steering_.leaves_pair * share * near.cost - noise ? Chosen{x, cost_x} : near;
+}
+
+PatchSimplifier::Volume PatchSimplifier::volume_between(Index a, Index b) const {
+  Volume volume;
+  const auto add = [&](Index t, const Vec3d& from) {
+    const Facing& facing = facing_[t];
+    const Vec3d third = facing.normal * (facing.area / 3);
+    volume.gradient = volume.gradient + third;
+    volume.offset -= dot(third, from);
+    volume.area += facing.area;
+  };
+  for (std::size_t i = 0; i < ring_.size(); ++i) {
+    add(ring_[i].triangle, positions_[i < ring_kept_ ? a : b]);
+  }
+  for (const Vanishing& vanishing : vanishing_) add(vanishing.triangle, positions_[a]);
+  return volume;
+}
+
+// Chooses the place again, now that the triangles around the pair are known (find_ring()): the
+// triangles between vertices that lie on a surface cut off what bends outward, and quadrics move
+// vertices by only half of what it takes to make up for that. Where the volume stays what it is
+// (Lindstrom and Turk 1998) as much of the surface is above the triangles as below. Returns by how
+// much it has grown with that. Corners of flat faces stay in their planes.
+CREASE_WIDE float PatchSimplifier::keep_volume(Index a, Index b, Placed& placed) {
+  if (steering_.placement == Placement::Endpoint || ring_.empty()) return 0;
+  if (is_corner(a) && is_corner(b)) return 0;
+  Volume volume = volume_between(a, b);
+  if (!(volume.area > 0)) return 0;
+  const double most_grown = kMostGrown * volume.area * std::sqrt(volume.area);
+  volume.offset += std::clamp(double(grown_[a]) + double(grown_[b]), -most_grown, most_grown);
+  const Vec3d& now = placed.position;
+  const double grown = dot(volume.gradient, now) + volume.offset;
+  const bool at_end = now == positions_[a] || now == positions_[b];
+  if (at_end && steering_.stays_at_ends) return static_cast<float>(grown);
+  const double scale = kVolumeWeight / volume.area;
+  Quadric sum = sum_of(a, b);
+  if (scale * grown * grown <= kGridNoise * kGridNoise * sum.weight) {
+    return static_cast<float>(grown);
+  }
+  add_attribute_costs(a, b, sum, joins_);
+  if (!turn_.empty()) {
+    sum.add(turn_[a]);
+    sum.add(turn_[b]);
+  }
+  sum.add_plane(volume.gradient, volume.offset, scale);
+  const Chosen chosen = choose(sum, a, b, std::numeric_limits<double>::infinity());
+  const double gain = sum.at(now) - chosen.cost;
+  if (!(gain > 0) || chosen.position == now) return static_cast<float>(grown);
+  const double most = ring_cost(a, b, now, HUGE_VAL) + kFoldsForVolume * gain;
+  if (!(ring_cost(a, b, chosen.position, most) <= most)) return static_cast<float>(grown);
+  placed.position = chosen.position;
+  return static_cast<float>(dot(volume.gradient, chosen.position) + volume.offset);
 }
 
 // At a, at b, and in the middle.

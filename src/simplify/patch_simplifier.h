@@ -35,10 +35,11 @@ struct Steering {
   // A place between the ends is taken if it is this much cheaper than the better end, and the
   // optimum if it is this much cheaper than either: a file needs about 5 bits more for the one and
   // 17 for the other.
-  double leaves_ends = 0.6, leaves_pair = 0.3;
-  double normal_scale = 0;  // what a normal off by one radian is worth, grid units
-  double far_area = 0;      // see far_area.h
-  bool is_alone = false;    // there are threads without a patch of their own
+  double leaves_ends = 0.57, leaves_pair = 0.3;
+  bool stays_at_ends = true;  // also where only a place between them keeps the volume
+  double normal_scale = 0;    // what a normal off by one radian is worth, grid units
+  double far_area = 0;        // see far_area.h
+  bool is_alone = false;      // there are threads without a patch of their own
   bool keep_one_triangle = true;
 };
 
@@ -215,6 +216,20 @@ class PatchSimplifier {
   // `bound`: a cost above it need not be exact.
   Placed place(Index a, Index b, double bound, Joins& joins) const;
   Quadric sum_of(Index a, Index b) const;
+  // A place, and what it costs by `sum`.
+  struct Chosen {
+    Vec3d position;
+    double cost = 0;
+  };
+  Chosen choose(const Quadric& sum, Index a, Index b, double bound) const;
+  // By how much it grows if both ends of a pair move to x: gradient.x + offset.
+  struct Volume {
+    Vec3d gradient;
+    double offset = 0;
+    double area = 0;  // of the triangles that move
+  };
+  Volume volume_between(Index a, Index b) const;
+  float keep_volume(Index a, Index b, Placed& placed);
   void find_costs_of_others(Candidate& pair);
   static void keep_placed(const Placed& placed, Candidate& pair) {
     pair.position = whole(placed.position);
@@ -325,6 +340,8 @@ class PatchSimplifier {
     static constexpr Index kSteps[] = {2, Index(-1), Index(-1)};
     return corner + kSteps[corner % 4];
   }
+  // A corner between flat faces, or on the border of one.
+  bool is_corner(Index v) const { return vertices_[v].flat_around && line_of_vertex_[v] != kNone; }
   bool has_corner_at(Index t, Index v) const {
     const Index* corners = &vertex_of_corner_[4 * t];
     return (corners[0] == v) | (corners[1] == v) | (corners[2] == v);
@@ -355,6 +372,7 @@ class PatchSimplifier {
   std::vector<Vertex> vertices_;
   std::vector<Vec3d> positions_;       // per vertex, grid units less center_
   std::vector<Errors> errors_;         // per vertex
+  std::vector<float> grown_;           // per vertex, see WorkMesh::grown_of_vertex
   std::vector<Index> changed_around_;  // per vertex: so many contractions had been made when it or
                                        // one of its triangles last changed
   std::vector<Quadric> surface_;       // per vertex

@@ -109,6 +109,7 @@ void PatchSimplifier::contract_or_hold(const Entry& entry, Index a, Index b, dou
     return placed.cost <= steering_.cost_limit && is_next(entry, placed.cost);
   };
   if (!is_due()) return hold(entry, cost, placed);
+  const float grown = keep_volume(a, b, placed);
   measure_witnesses(a, b, placed);
   const double far = std::max(double(farthest_witness_) - kRounding, 0.0);
   double least = steering_.far_area * far * far;
@@ -133,6 +134,7 @@ void PatchSimplifier::contract_or_hold(const Entry& entry, Index a, Index b, dou
   }
   const Index broken = broken_by(a, b, placed.cost);
   const bool vanishes = broken != kNone && part_at(a) == part_at(b);
+  grown_[a] = grown_[b] = grown;
   contract(a, b, placed.position, placed.cost);
   if (vanishes) vanish(a, placed.cost);
   if (!island.members.empty()) close_island(island, placed.cost);
@@ -287,6 +289,7 @@ void PatchSimplifier::write_back() {
     if (vertex.locked || !vertex.alive) continue;
     work_->positions[vertex.global] = on_grid(positions_[v]);
     work_->error_of_vertex[vertex.global] = errors_[v].now;
+    work_->grown_of_vertex[vertex.global] = grown_[v];
   }
 }
 

@@ -59,7 +59,7 @@ Extent measure_extent(const WorkMesh& work) {
 // the triangles' size, since distance falls with the square of the size, shading with the size.
 double set_scales(WorkMesh& work, const Extent& extent, double normal_weight, double left) {
   const double edge = std::sqrt(extent.triangle_area() * 2.3);  // of an equilateral triangle
-  const double color_scale = 0.5 * normal_weight * edge;
+  const double color_scale = 0.45 * normal_weight * edge;
   const double normal_scale =
       normal_weight * std::pow(left, kNormalPower) * typical_share(extent) * edge;
   for (std::size_t l = 0; l < work.layers.size(); ++l) {

@@ -31,6 +31,11 @@ namespace {
 constexpr double kCoarseShare = 0.1, kCoarseLeavesPair = 0.9;
 constexpr std::size_t kCoarse = 2000;
 
+// Above this share, and this many, a vertex that stays where it was is not moved for the volume
+// either: most vertices are here, and what is cut off is little.
+constexpr double kFineShare = 0.4;
+constexpr std::size_t kFine = 10'000;
+
 // The first pass contracts pairs that cost no more than this share of all do: with more of them its
 // borders show in levels of half the triangles, with fewer the first band is hardly worth a file's
 // while.
@@ -159,6 +164,7 @@ class Simplifier {
       Steering steering;
       steering.placement = options_.placement;
       steering.normal_scale = set_scales(work_, extent, options_.normal_weight, left);
+      steering.stays_at_ends = left > kFineShare && before > kFine;
       if (left < kCoarseShare || before < kCoarse) {
         steering.leaves_ends = 1;
         steering.leaves_pair = kCoarseLeavesPair;

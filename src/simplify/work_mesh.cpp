@@ -168,6 +168,7 @@ WorkMesh make_work(const Mesh& mesh, const Grid& grid) {
         work.positions.reserve(mesh.vertex_count());
         for (const Vec3d& p : mesh.positions) work.positions.push_back(grid.nearest(p));
         work.error_of_vertex.resize(mesh.vertex_count());
+        work.grown_of_vertex.resize(mesh.vertex_count());
         work.vertex_of_corner.reserve(3 * mesh.triangle_count());
         for (const Triangle& triangle : mesh.triangles) {
           for (VertexId v : triangle) {

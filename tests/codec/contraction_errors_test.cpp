@@ -126,7 +126,7 @@ Understated most_understated(const Mesh& full, const ContractionSequence& sequen
 // Witnesses are points, all of them of the full mesh, and a tenth farther away does not count. Of
 // what the level adds, as where a flat region fills its notch, only the displacement of lines is
 // told, which is a mean. Without witnesses it was up to 4.1, decoded or not.
-constexpr Understated kSimplified{1.8, 3}, kDecoded{1.4, 2.1};
+constexpr Understated kSimplified{1.8, 3}, kDecoded{1.6, 2.1};
 
 bool operator<=(const Understated& a, const Understated& b) {
   return a.lost <= b.lost && a.added <= b.added;
