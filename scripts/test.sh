@@ -28,8 +28,7 @@ run_stage() {
     asan)
       scripts/build.sh asan
       # LeakSanitizer sees the driver's own leaks once a GL context has been made.
-      ASAN_OPTIONS=detect_stack_use_after_return=1 \
-        LSAN_OPTIONS=suppressions=$PWD/scripts/leaks.supp:print_suppressions=0 \
+      LSAN_OPTIONS=suppressions=$PWD/scripts/leaks.supp:print_suppressions=0 \
         ctest --preset asan -j "$tests"
       ;;
     tsan)
