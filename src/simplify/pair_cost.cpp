@@ -336,6 +336,12 @@ inline Quadric PatchSimplifier::sum_of(Index a, Index b) const {
   return sum;
 }
 
+inline void PatchSimplifier::add_turns(Index a, Index b, Quadric& sum) const {
+  if (turn_.empty()) return;
+  sum.add(turn_[a]);
+  sum.add(turn_[b]);
+}
+
 CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, double bound,
                                                            Joins& joins) const {
   const Vec3d &pa = positions_[a], &pb = positions_[b];
@@ -343,11 +349,6 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
   const double length2 = dot(along, along);
   Quadric sum = sum_of(a, b);
   const double tie = kLengthShare * length2 * sum.weight;
-  const auto add_turns = [&](Quadric& q) {
-    if (turn_.empty()) return;
-    q.add(turn_[a]);
-    q.add(turn_[b]);
-  };
   const auto placed_at = [&](const Vec3d& x, double cost, const Quadric& free) {
     Placed placed{cost + tie, cost + tie, x};
     if (!turn_.empty() && placed.cost <= bound) {
@@ -361,8 +362,8 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
     add_endpoint_attribute_costs(a, b, if_a, joins);
     add_endpoint_attribute_costs(b, a, if_b, joins);
     const Quadric free_a = if_a, free_b = if_b;
-    add_turns(if_a);
-    add_turns(if_b);
+    add_turns(a, b, if_a);
+    add_turns(a, b, if_b);
     const double cost_a = if_a.at(pa), cost_b = if_b.at(pb);
     return cost_a < cost_b ? placed_at(pa, cost_a, pa == pb ? free_b : free_a)
                            : placed_at(pb, cost_b, free_b);
@@ -370,7 +371,7 @@ CREASE_WIDE PatchSimplifier::Placed PatchSimplifier::place(Index a, Index b, dou
 
   add_attribute_costs(a, b, sum, joins);
   const Quadric free = sum;
-  add_turns(sum);
+  add_turns(a, b, sum);
   const Chosen chosen = choose(sum, a, b, bound);
   return placed_at(chosen.position, chosen.cost, free);
 }
@@ -441,10 +442,7 @@ CREASE_WIDE float PatchSimplifier::keep_volume(Index a, Index b, Placed& placed)
     return static_cast<float>(grown);
   }
   add_attribute_costs(a, b, sum, joins_);
-  if (!turn_.empty()) {
-    sum.add(turn_[a]);
-    sum.add(turn_[b]);
-  }
+  add_turns(a, b, sum);
   sum.add_plane(volume.gradient, volume.offset, scale);
   const Chosen chosen = choose(sum, a, b, std::numeric_limits<double>::infinity());
   const double gain = sum.at(now) - chosen.cost;

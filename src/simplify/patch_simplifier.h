@@ -216,6 +216,7 @@ class PatchSimplifier {
   // `bound`: a cost above it need not be exact.
   Placed place(Index a, Index b, double bound, Joins& joins) const;
   Quadric sum_of(Index a, Index b) const;
+  void add_turns(Index a, Index b, Quadric& sum) const;
   // A place, and what it costs by `sum`.
   struct Chosen {
     Vec3d position;
