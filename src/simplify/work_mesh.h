@@ -58,7 +58,7 @@ struct WorkMesh {
   std::vector<Vec3i> positions;                 // per input vertex, grid units
   std::vector<LevelError> error_of_vertex;      // of the contractions under it, surface and line in
                                                 // grid units
-  std::vector<float> grown_of_vertex;           // by how much volume those have added, grid units
+  std::vector<float> grown_of_vertex;           // volume that those have added, grid units^3
   std::vector<std::uint32_t> owner_of_vertex;   // patch, or kShared, or kNone; of the present band
   std::vector<std::uint32_t> vertex_of_corner;  // 3 a triangle
   std::vector<std::uint32_t> category_of_triangle;  // part * material_count + material; empty: all
