@@ -255,6 +255,7 @@ Result<GltfReader::View> GltfReader::view_of(const Json& owner, const std::strin
   const Json& compressed = meshopt_of(json);
   const Json& layout = compressed.is_object() ? compressed : json;
   view.stride = as_index(at(layout, "byteStride")).value_or(value_bytes);
+  if (view.stride == 0) view.stride = value_bytes;  // as exporters of Unity wrote it
   const std::size_t offset = as_index(at(owner, "byteOffset")).value_or(0);
   if (view.stride < value_bytes) {
     return fail_at_place(Error::BadValue, source_, here + ".byteStride",

@@ -2,6 +2,7 @@
 
 #include "io/images.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -24,7 +25,18 @@ std::optional<std::size_t> source_of(const Json& texture) {
 
 }  // namespace
 
+bool shows_emission(const Json& material) {
+  const auto most_of = [](const Json& color) {
+    double most = 0;
+    for (std::size_t k = 0; k < 3; ++k) most = std::max(most, as_number(at(color, k), 0));
+    return most;
+  };
+  const Json& base = at(at(material, "pbrMetallicRoughness"), "baseColorFactor");
+  return base.is_array() && most_of(base) == 0 && most_of(at(material, "emissiveFactor")) > 0;
+}
+
 const Json& base_color_texture(const Json& material) {
+  if (shows_emission(material)) return at(material, "emissiveTexture");
   const Json& model = at(material, "pbrMetallicRoughness");
   const Json& older = at(at(material, "extensions"), "KHR_materials_pbrSpecularGlossiness");
   return !model.is_object() && older.is_object() ? at(older, "diffuseTexture")

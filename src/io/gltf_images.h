@@ -24,7 +24,10 @@ struct TextureUse {
 };
 TextureUse texture_use(const Json& texture_info);
 
-// The textureInfo of a material's base colour, or null.
+// Whether a material is black but for the light that it gives off, which is what one sees of it.
+bool shows_emission(const Json& material);
+
+// The textureInfo of a material's base colour, or of its emission if it shows that; or null.
 const Json& base_color_texture(const Json& material);
 
 class GltfImages {

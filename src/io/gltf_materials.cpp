@@ -53,7 +53,7 @@ void count_losses(const Json& json, const Json& entry, Losses& losses) {
   losses.add("metallic and roughness", !has_other_model && !is_plain(model));
   losses.add("normalTexture", has(entry, "normalTexture"));
   losses.add("occlusionTexture", has(entry, "occlusionTexture"));
-  losses.add("emission", !is_black(at(entry, "emissiveFactor")));
+  losses.add("emission", !is_black(at(entry, "emissiveFactor")) && !shows_emission(entry));
   for (auto it = extensions.begin(); extensions.is_object() && it != extensions.end(); ++it) {
     losses.add(in_quotes(it.key()), true);
   }
@@ -83,6 +83,12 @@ Material read_material(const Json& entry, std::size_t index, GltfImages& images)
   for (std::size_t k = 0; k < 4; ++k) {
     material.base_color[k] = static_cast<float>(as_number(at(color, k), 1));
   }
+  if (shows_emission(entry)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      material.base_color[k] = static_cast<float>(
+          std::clamp(as_number(at(at(entry, "emissiveFactor"), k), 0), 0.0, 1.0));
+    }
+  }
   material.double_sided = as_bool(at(entry, "doubleSided"));
   const std::string alpha_mode = as_text(at(entry, "alphaMode"));
   if (alpha_mode == "MASK") {
@@ -104,12 +110,19 @@ Material read_material(const Json& entry, std::size_t index, GltfImages& images)
 GltfMaterials read_gltf_materials(const Json& json, GltfImages& images) {
   GltfMaterials result;
   Losses losses;
+  std::size_t shown_count = 0;
   const Json& entries = at(json, "materials");
   for (std::size_t i = 0; i < size_of(entries); ++i) {
     result.materials.push_back(read_material(entries[i], i, images));
     count_losses(json, entries[i], losses);
+    shown_count += shows_emission(entries[i]) ? 1 : 0;
   }
   result.notes = losses.notes();
+  if (shown_count > 0) {
+    result.notes.push_back(
+        (shown_count == 1 ? "a material is" : std::to_string(shown_count) + " materials are") +
+        std::string(" black but for emission, which becomes the base colour"));
+  }
   return result;
 }
 

@@ -3,8 +3,10 @@
 #include "io/text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -51,13 +53,8 @@ std::string_view without_comment(std::string_view name) {
 }
 
 // What a line says that no material here has; empty: nothing.
-std::string lost_by(std::string_view word, Line& line) {
+std::string lost_by(std::string_view word) {
   if (word == "bump" || word == "map_bump" || word == "map_Bump") return "'map_bump'";
-  if (word == "Ke") {
-    double most = 0;
-    for (double x; line.number(x);) most = std::max(most, x);
-    return most > 0 ? "emission" : "";
-  }
   // Ambient light is nobody's but old programs', which name the texture of map_Kd again.
   const bool is_other_texture = (word.starts_with("map_") && word != "map_Ka") || word == "norm" ||
                                 word == "disp" || word == "decal" || word == "refl";
@@ -66,6 +63,20 @@ std::string lost_by(std::string_view word, Line& line) {
 
 float share(double x) {
   return std::isfinite(x) ? static_cast<float>(std::fmin(std::fmax(x, 0), 1)) : 1;
+}
+
+// One number stands for three.
+bool read_color(Line& line, std::array<float, 4>& color) {
+  double r, g, b;
+  if (!line.number(r)) return false;
+  g = b = r;
+  if (line.number(g)) line.number(b);
+  color = {share(r), share(g), share(b), color[3]};
+  return true;
+}
+
+bool is_black(const std::array<float, 4>& color) {
+  return color[0] == 0 && color[1] == 0 && color[2] == 0;
 }
 
 }  // namespace
@@ -80,6 +91,7 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
   bool has_dissolve = false;   // of the current one
   bool tells_opacity = false;  // by d, or by a Tr that is not 1
   std::vector<Material*> of_tr;
+  std::map<Material*, std::array<float, 4>> emission_of;
   std::set<std::string> lost;  // of the current one
   LineReader lines(text, true);
   for (Line line; lines.next(line);) {
@@ -93,11 +105,10 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
       lost.clear();
       if (current) is_known[static_cast<std::size_t>(current - materials.data())] = true;
     } else if (current && word == "Kd") {
-      double r, g, b;
-      if (!line.number(r)) continue;
-      g = b = r;  // one number stands for three
-      if (line.number(g)) line.number(b);
-      current->base_color = {share(r), share(g), share(b), current->base_color[3]};
+      read_color(line, current->base_color);
+    } else if (current && word == "Ke") {
+      std::array<float, 4> emission{};
+      if (read_color(line, emission) && !is_black(emission)) emission_of[current] = emission;
     } else if (word == "d") {
       double x;
       if (!line.number(x)) continue;
@@ -119,9 +130,15 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
               ? name
               : (std::filesystem::path(folder) / name).lexically_normal().generic_string();
     } else if (current) {
-      const std::string what = lost_by(word, line);
+      const std::string what = lost_by(word);
       if (!what.empty()) losses.add(what, lost.insert(what).second);
     }
+  }
+  for (const auto& [material, emission] : emission_of) {
+    // Black but for the light that it gives off, which is what one sees of it.
+    const bool shows = is_black(material->base_color);
+    losses.add("emission", !shows);
+    if (shows) std::copy_n(emission.begin(), 3, material->base_color.begin());
   }
   if (tells_opacity) return;
   for (Material* m : of_tr) m->base_color[3] = 1;

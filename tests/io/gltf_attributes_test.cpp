@@ -208,6 +208,10 @@ TEST_CASE("glTF: what materials say beyond a base colour is told, kind by kind")
                    {"emissiveFactor", {1, 0.5, 0}}},
                   {{"pbrMetallicRoughness", plain}, {"doubleSided", true}}}) ==
         Notes{"a material loses emission"});
+  CHECK(notes_of(
+            {{{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"baseColorFactor", {0, 0, 0, 1}}}},
+              {"emissiveFactor", {1, 0.5, 0}}}}) ==
+        Notes{"a material is black but for emission, which becomes the base colour"});
   CHECK(notes_of({{{"pbrMetallicRoughness",
                     {{"metallicFactor", 0}, {"metallicRoughnessTexture", texture}}},
                    {"normalTexture", texture},
@@ -220,6 +224,22 @@ TEST_CASE("glTF: what materials say beyond a base colour is told, kind by kind")
         Notes{"a material loses 'KHR_materials_unlit'",
               "a material loses wrapS or wrapT, which become REPEAT",
               "a material loses magFilter NEAREST"});
+}
+
+TEST_CASE("glTF: what is black but for emission is painted with that") {
+  GltfBuilder b = one_triangle();
+  b.json["materials"] = {{{"pbrMetallicRoughness",
+                           {{"metallicFactor", 0},
+                            {"baseColorFactor", {0, 0, 0, 1}},
+                            {"baseColorTexture", {{"index", 0}}}}},
+                          {"emissiveFactor", {1, 0.5, 3}},
+                          {"emissiveTexture", {{"index", 1}}}}};
+  b.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+  b.json["images"] = {{{"uri", "black.png"}}, {{"uri", "lamp.png"}}};
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  const Mesh mesh = import_text(b.gltf(), "m.gltf").mesh;
+  CHECK(mesh.materials[0].base_color == std::array<float, 4>{1, 0.5f, 1, 1});
+  CHECK(mesh.materials[0].base_color_texture == "lamp.png");
 }
 
 TEST_CASE("glTF: techniques of glTF 1.0 may be required, and are lost like other materials") {

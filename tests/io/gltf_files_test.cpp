@@ -76,6 +76,12 @@ TEST_CASE("glTF: what cannot be meant is refused, with its place") {
   });
 }
 
+TEST_CASE("glTF: a stride of 0 is none") {
+  GltfBuilder b = one_triangle();
+  b.json["bufferViews"][0]["byteStride"] = 0;
+  CHECK(import_text(b.gltf(), "m.gltf").mesh.triangle_count() == 1);
+}
+
 TEST_CASE("glTF: what is none of its three forms is told so") {
   for (const std::string text : {"error\x01", "  ", "[]"}) {
     CHECK(refusal_of(text, "tile.b3dm") ==

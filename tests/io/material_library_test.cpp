@@ -1,5 +1,7 @@
 // What an OBJ's material libraries say, and where they are found.
 #include "crease/import.h"
+#include "io/losses.h"
+#include "io/read_mtl.h"
 #include "test_folder.h"
 
 #include <doctest/doctest.h>
@@ -131,6 +133,20 @@ TEST_CASE("what materials lose of a library is told, of those that the model has
   CHECK(colors_of(folder, "mtllib a.mtl\n").notes ==
         std::vector<std::string>{"2 materials lose 'map_d'", "a material loses 'map_bump'",
                                  "a material loses emission"});
+}
+
+TEST_CASE("what is black but for emission has that as its colour") {
+  std::vector<Material> materials(2);
+  materials[0].name = "red";
+  materials[1].name = "blue";
+  std::vector<TexturePlacement> placements(2);
+  std::vector<bool> is_known(2);
+  Losses losses;
+  read_mtl("newmtl red\nKe 1 0.5 0\nKd 0 0 0\nd 0.5\nnewmtl blue\nKd 0 0 0\n", "", materials,
+           placements, is_known, losses);
+  CHECK(materials[0].base_color == std::array<float, 4>{1, 0.5f, 0, 0.5f});
+  CHECK(materials[1].base_color == std::array<float, 4>{0, 0, 0, 1});
+  CHECK(losses.notes().empty());
 }
 
 TEST_CASE("a library that is not there, or outside, is told once; so are materials without one") {
