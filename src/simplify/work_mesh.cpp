@@ -15,7 +15,13 @@ namespace {
 // Seams are lines where they are few: that is what tells a chart's border from values by triangle
 // or corner, with which a surface full of lines could not be simplified. All of their weight they
 // have up to the first share of corners off their vertex's value, and the least from the second on.
-constexpr double kFewSeams = 0.2, kManySeams = 0.35, kLeastSeam = 0.01;
+// A texture shows what belongs elsewhere where a chart goes beyond its border, so its charts may be
+// as small as photogrammetry makes them (0.3 to 0.5), but not of a triangle each (0.8).
+struct SeamShares {
+  double few, many;
+};
+constexpr SeamShares kSeams{0.2, 0.35}, kTextureSeams{0.35, 0.6};
+constexpr double kLeastSeam = 0.01;
 
 double weight_of_seams(const Mesh& mesh, const AttributeLayer& layer) {
   std::vector<std::uint32_t> first(mesh.vertex_count(), kNone);
@@ -27,7 +33,8 @@ double weight_of_seams(const Mesh& mesh, const AttributeLayer& layer) {
     off += at_vertex != id;
   }
   const double share = double(off) / double(std::max<std::size_t>(1, layer.of_corner.size()));
-  const double many = std::clamp((share - kFewSeams) / (kManySeams - kFewSeams), 0.0, 1.0);
+  const SeamShares& seams = layer.role == AttributeRole::TexCoord ? kTextureSeams : kSeams;
+  const double many = std::clamp((share - seams.few) / (seams.many - seams.few), 0.0, 1.0);
   return 1 + many * (kLeastSeam - 1);
 }
 
