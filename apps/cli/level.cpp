@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace crease::cli {
 
@@ -85,11 +87,17 @@ Chosen choose_by_count(ProgressiveMesh& mesh, std::size_t count) {
 // No distance tells that a patch of another material is gone, or a window that stood on a wall,
 // where something else lies. Recorded errors do, but as sums over bands: up to sixteen times what
 // is measured on surfaces that have nothing of that kind. Where they say more, no level is tried.
+// Nor do they see a chart that another one has grown over: of what is painted no more than a
+// twentieth may show another material, or a place of its texture that is far from its own.
 class ErrorSearch {
  public:
   ErrorSearch(ProgressiveMesh& mesh, const Mesh& full, double limit, std::size_t samples,
               const Common& common)
-      : mesh_(mesh), full_(full), limit_(limit), samples_(samples), common_(common) {}
+      : mesh_(mesh), full_(full), limit_(limit), samples_(samples), common_(common) {
+    for (const AttributeLayer& layer : full.layers) {
+      if (layer.role == AttributeRole::TexCoord) textures_.push_back({layer.name, unit_of(layer)});
+    }
+  }
 
   Result<Chosen> run() {
     std::size_t good = 0;                             // full resolution is within any limit
@@ -133,10 +141,30 @@ class ErrorSearch {
   }
 
  private:
-  static constexpr double kMostRecorded = 16;
+  static constexpr double kMostRecorded = 16, kMostMoved = 4, kMostWrong = 0.05;
+  static constexpr std::size_t kPaintSamples = 20'000;  // for shares of a twentieth
   static constexpr double kRounding = 1e-6;  // of the diagonal: recorded where nothing changes
 
-  float most_recorded() const {
+  struct Texture {
+    std::string name;  // of the layer
+    double unit = 0;   // how long one of it is on the surface; 0: nothing is painted
+  };
+
+  double unit_of(const AttributeLayer& layer) const {
+    double area = 0, painted = 0;
+    for (std::size_t t = 0; t < full_.triangle_count(); ++t) {
+      const auto at = [&](std::size_t c) {
+        return full_.positions[index_of(full_.triangles[t][c])];
+      };
+      const auto value = [&](std::size_t c) { return layer.value(layer.of_corner[3 * t + c]); };
+      area += length(cross(at(1) - at(0), at(2) - at(0)));
+      const auto a = value(0), b = value(1), c = value(2);
+      painted += std::abs(double(b[0] - a[0]) * double(c[1] - a[1]) -
+                          double(c[0] - a[0]) * double(b[1] - a[1]));
+    }
+    return painted > 0 ? std::sqrt(area / painted) : 0;
+  }
+  double rounding() const {
     Vec3d low = full_.positions.front(), high = low;
     for (const Vec3d& p : full_.positions) {
       for (int i = 0; i < 3; ++i) {
@@ -144,8 +172,9 @@ class ErrorSearch {
         high[i] = std::max(high[i], p[i]);
       }
     }
-    return static_cast<float>(kMostRecorded * limit_ + kRounding * length(high - low));
+    return kRounding * length(high - low);
   }
+  float most_recorded() const { return static_cast<float>(kMostRecorded * limit_ + rounding()); }
   std::size_t triangles_at(std::size_t applied) {
     mesh_.set_applied(applied);
     return mesh_.triangle_count();
@@ -162,10 +191,27 @@ class ErrorSearch {
     wipe_progress_bar();
     if (!within.ok()) return false;  // interrupted, which run() sees
     ++tries_;
-    return *within;
+    return *within && is_painted_right();
+  }
+  bool is_painted_right() {
+    if (textures_.empty() && full_.materials.size() < 2) return true;
+    const Result<Comparison> measured =
+        measure_level(full_, mesh_.extract(), std::min(samples_, kPaintSamples), common_);
+    if (!measured.ok()) return false;
+    for (const AttributeDeviation& of : measured->attributes) {
+      if (of.unit == DeviationUnit::Share && of.name == "material" && of.spread.mean > kMostWrong) {
+        return false;
+      }
+      for (const Texture& texture : textures_) {
+        if (of.name != texture.name) continue;
+        if (of.spread.p95 * texture.unit > kMostMoved * limit_ + rounding()) return false;
+      }
+    }
+    return true;
   }
 
   int tries_ = 0;
+  std::vector<Texture> textures_;
   ProgressiveMesh& mesh_;
   const Mesh& full_;
   double limit_;

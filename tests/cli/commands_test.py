@@ -160,6 +160,31 @@ class Commands(tool.Case):
         self.assertEqual(level["triangles"], 4)
         self.assertLess(level["error_measured"]["surface_max"], 1e-12)
 
+    def test_extract_by_error_keeps_charts_where_they_are(self):
+        # A plane of 16 x 16 squares, each with a chart of its own, anywhere in the texture.
+        lines, count = [], 16
+        places = list(range(count * count))
+        random.Random(1).shuffle(places)
+        for j in range(count + 1):
+            lines += [f"v {i} {j} {0.01 * ((7 * i + 3 * j) % 5)}" for i in range(count + 1)]
+        for place in places:
+            u, v = place % count / count, place // count / count
+            for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                lines.append(f"vt {u + x / 20:.6f} {v + y / 20:.6f}")
+        for j in range(count):
+            for i in range(count):
+                a, b = j * (count + 1) + i + 1, 4 * (j * count + i)
+                c, d = a + count + 2, a + count + 1
+                lines.append(f"f {a}/{b + 1} {a + 1}/{b + 2} {c}/{b + 3} {d}/{b + 4}")
+        plane = self.write("charts.obj", "\n".join(lines) + "\n")
+        level = self.json("extract", plane, "-o", self.path("level.obj"), "--error", 0.05)
+        uv = next(a for a in level["error_measured"]["attributes"] if a["name"] == "uv")
+        self.assertLess(20 * uv["p95"], 4 * 0.05)
+        ratio = self.json("extract", plane, "-o", self.path("level.obj"), "--ratio", 0.5)
+        uv = next(a for a in ratio["error_measured"]["attributes"] if a["name"] == "uv")
+        self.assertLess(ratio["error_measured"]["surface_max"], 0.05)
+        self.assertGreater(20 * uv["p95"], 1)
+
     def test_extract_by_error_keeps_the_patches_of_another_material(self):
         # A plane of 32 x 32 squares, every eighth one blue: no distance sees them go.
         lines, count = ["mtllib none.mtl"], 32
