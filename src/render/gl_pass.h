@@ -5,6 +5,7 @@
 #include "render/palette.h"
 #include "render/transform.h"
 
+#include <cstdint>
 #include <optional>
 
 namespace crease {
@@ -16,6 +17,9 @@ struct DrawPass {
   DepthRange depth{};
   Window window{};  // the part of the picture that the viewport shows
 };
+
+// What is seen through apart from the rest: where a texture is, by its alpha there.
+enum class Shown : std::uint8_t { All, Opaque, SeenThrough };
 
 struct DrawStyle {
   Coloring coloring = Coloring::Shaded;
@@ -31,7 +35,7 @@ struct DrawStyle {
   // grain. Else they are the same ones at each depth, and what covers no more and lies behind is
   // not seen.
   std::optional<unsigned> turn{};
-  bool only_opaque = false;  // without what is seen through
+  Shown shown = Shown::All;
 };
 
 }  // namespace crease

@@ -198,12 +198,12 @@ ProgramKey GlScene::key_for(const Part& part, TriangleKind kind, const DrawStyle
     if (style.coloring == Coloring::Level) key.albedo = AlbedoSource::Levels;
   }
   key.see_through = key.has_materials() && materials_->has_translucent();
-  key.only_opaque = key.see_through && style.only_opaque;
-  key.chooses_samples = key.see_through && style.turn && !style.only_opaque;
+  if (key.see_through) key.shown = style.shown;
+  key.chooses_samples = key.see_through && style.turn && style.shown != Shown::Opaque;
   // FN triangles are indexed, and each fragment fetches its triangle's normal: vertices are worked
   // out once and not once a triangle (bench_flat_normals; Berlin on a GPU 6.3 to 2.1 ms a frame).
   key.pulled = kind == TriangleKind::NSN || key.wireframe || key.textures ||
-               key.albedo == AlbedoSource::Corners;
+               key.albedo == AlbedoSource::Corners || key.shown == Shown::SeenThrough;
   return key;
 }
 

@@ -113,6 +113,10 @@ void main() {
 
   v_from_eye = unit * (position - eye_in_list);
   gl_Position = clip_from_list * vec4(position, 1);
+#if ONLY_SEEN_THROUGH
+  // Triangles of other materials are nowhere: to discard their fragments takes as long as to draw.
+  if (texelFetch(material_colors, material + 1).w == 0) gl_Position = vec4(2, 2, 2, 1);
+#endif
 }
 )";
 
@@ -250,6 +254,8 @@ void main() {
   vec4 base = surface_color();
 #if ONLY_OPAQUE
   if (base.a < 1) discard;
+#elif ONLY_SEEN_THROUGH
+  if (base.a >= 1) discard;
 #endif
   vec3 ambient = mix(vec3(0.110, 0.100, 0.092), vec3(0.290, 0.312, 0.345), 0.5 + 0.5 * dot(n, up));
   // Wrapped round the surface, so that no terminator cuts a dome in two.
@@ -311,7 +317,8 @@ std::string preamble(const ProgramKey& key) {
          define("NORMALS", int(key.normals)) + define("ALBEDO", int(key.albedo)) +
          define("MATERIALS", key.has_materials()) + define("TEXTURES", key.textures) +
          define("WIREFRAME", key.wireframe) + define("PULLED", key.pulled) +
-         define("ONLY_OPAQUE", key.only_opaque);
+         define("ONLY_OPAQUE", key.shown == Shown::Opaque) +
+         define("ONLY_SEEN_THROUGH", key.shown == Shown::SeenThrough);
 }
 
 Result<Program> build_program(const ProgramKey& key) {

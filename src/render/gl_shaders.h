@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/gl_objects.h"
+#include "render/gl_pass.h"
 
 #include <cstdint>
 #include <map>
@@ -32,7 +33,7 @@ struct ProgramKey {
   bool wireframe = false;
   bool see_through = false;      // some of the materials are
   bool chooses_samples = false;  // of those
-  bool only_opaque = false;      // without those
+  Shown shown = Shown::All;      // of those, too
   // Vertices are fetched by the shader, three per triangle, so that each may have its own
   // attributes though positions are shared. Otherwise drawn indexed, positions being attributes.
   bool pulled = false;

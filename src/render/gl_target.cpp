@@ -44,6 +44,13 @@ bool attach(GlFramebuffer& framebuffer, const GlTexture& color) {
   return is_complete();
 }
 
+void copy(const GlFramebuffer& from, const GlFramebuffer& to, int width, int height) {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, from.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.id());
+  glBlitFramebuffer(0, 0, width, height, 0, 0, width, height,
+                    GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+}
+
 }  // namespace
 
 Result<GlTarget> GlTarget::make(const GlLimits& gl, int width, int height) {
@@ -51,7 +58,7 @@ Result<GlTarget> GlTarget::make(const GlLimits& gl, int width, int height) {
   target.reversed_depth_ = gl.can_reverse_depth;
   target.width_ = width;
   target.height_ = height;
-  const int samples = std::min(kSamples, gl.max_samples);
+  const int samples = target.samples_ = std::min(kSamples, gl.max_samples);
   target.color_ = make_storage(samples, GL_SRGB8_ALPHA8, width, height);
   target.depth_ = make_storage(samples, GL_DEPTH_COMPONENT32F, width, height);
   target.resolved_color_ = make_texture(width, height);
@@ -111,6 +118,26 @@ Result<const GlTexture*> GlTarget::resolve_depth(int width, int height) {
   glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, multisampled_.id());
   return &depths_;
+}
+
+Status GlTarget::keep(int width, int height) {
+  if (!kept_) {
+    kept_color_ = make_storage(samples_, GL_SRGB8_ALPHA8, width_, height_);
+    kept_depth_ = make_storage(samples_, GL_DEPTH_COMPONENT32F, width_, height_);
+    if (!attach(kept_, kept_color_, kept_depth_)) {
+      return fail(Error::NotSupported, "OpenGL has no second framebuffer of " +
+                                           std::to_string(width_) + " x " +
+                                           std::to_string(height_) + " pixels");
+    }
+  }
+  copy(multisampled_, kept_, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, multisampled_.id());
+  return Done{};
+}
+
+void GlTarget::go_back(int width, int height) {
+  copy(kept_, multisampled_, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, multisampled_.id());
 }
 
 void GlTarget::read(int width, int height, std::span<std::uint8_t> rgba) {

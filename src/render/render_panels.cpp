@@ -166,27 +166,28 @@ Status draw_view(Image& image, const PixelRect& view_rect, const GlScene& scene,
       pass.window.bottom = 1 - double(y + height) / view_rect.height;
       const int draw_width = width * kSupersampling, draw_height = height * kSupersampling;
       pixels.resize(4 * std::size_t(draw_width) * std::size_t(draw_height));
-      // What is seen through keeps no light away.
-      Result<const GlTexture*> depths = nullptr;
-      if (style.ambient_occlusion && scene.is_seen_through(style)) {
-        target.begin(draw_width, draw_height);
-        DrawStyle opaque = style;
-        opaque.only_opaque = true;
-        if (const Status drawn = scene.draw(programs, pass, opaque); !drawn.ok()) return drawn;
-        depths = target.resolve_depth(draw_width, draw_height);
+      // What is seen through keeps no light away, and is drawn over the rest.
+      const bool is_seen_through = scene.is_seen_through(style);
+      DrawStyle of_turn = style;
+      if (is_seen_through) of_turn.shown = Shown::Opaque;
+      target.begin(draw_width, draw_height);
+      if (const Status drawn = scene.draw(programs, pass, of_turn); !drawn.ok()) return drawn;
+      if (style.ambient_occlusion) {
+        const Result<const GlTexture*> depths = target.resolve_depth(draw_width, draw_height);
         if (!depths.ok()) return depths.failure();
+        const Status drawn = draw_occlusion(programs, **depths, pass, style);
+        if (!drawn.ok()) return drawn;
+      }
+      if (is_seen_through) {
+        if (const Status kept = target.keep(draw_width, draw_height); !kept.ok()) return kept;
+        of_turn.shown = Shown::SeenThrough;
       }
       AveragedTile tile(width, height);
       for (unsigned turn = 0; turn < turns; ++turn) {
-        target.begin(draw_width, draw_height);
-        DrawStyle of_turn = style;
+        if (turn > 0) target.go_back(draw_width, draw_height);
         of_turn.turn = turn;
-        if (const Status drawn = scene.draw(programs, pass, of_turn); !drawn.ok()) return drawn;
-        if (style.ambient_occlusion) {
-          if (*depths == nullptr) depths = target.resolve_depth(draw_width, draw_height);
-          if (!depths.ok()) return depths.failure();
-          const Status drawn = draw_occlusion(programs, **depths, pass, style);
-          if (!drawn.ok()) return drawn;
+        if (is_seen_through) {
+          if (const Status drawn = scene.draw(programs, pass, of_turn); !drawn.ok()) return drawn;
         }
         const Status drawn = draw_lines(programs, lines, pass, style);
         if (!drawn.ok()) return drawn;
