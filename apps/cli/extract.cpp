@@ -137,7 +137,7 @@ std::vector<std::string> lost_parts(const ModelFile& file, const Mesh& mesh,
 Status add_images_and_up(const ExtractArguments& options, const ModelFile& file, Mesh& mesh) {
   mesh.up = file.blocks().facts().up;
   const std::string ending = ending_of(options.output);
-  if (ending != ".glb" && ending != ".obj") return Done{};
+  if (ending == ".stl") return Done{};
   Result<std::vector<ImageFile>> images = file.images(mesh.materials);
   if (!images.ok()) return images.failure();
   mesh.images = *std::move(images);

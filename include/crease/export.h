@@ -6,9 +6,9 @@
 // split vertices, as those formats want. Positions are written in double precision where the format
 // has text or doubles (OBJ, PLY), and in GLB as floats relative to a node translation, so that 10^6
 // m offsets lose nothing visible. STL has floats alone: so far out it is written elsewhere, which
-// the report says. The mesh's images go into a GLB; beside level.obj they become level_wood.png and
-// the like, which level.mtl names; PLY and STL have none. The file appears under its name only when
-// it is complete.
+// the report says. The mesh's images go into a GLB; beside level.obj and level.ply they become
+// level_wood.png and the like, which level.mtl and the PLY name; STL has none. The file appears
+// under its name only when it is complete.
 #pragma once
 
 #include "crease/mesh.h"

@@ -62,8 +62,9 @@ std::vector<std::string> image_files(const Mesh& mesh, const std::string& stem) 
   return files;
 }
 
-// An OBJ, its library and its images: the OBJ last, so that whoever sees it finds the others.
-Status export_obj(const Mesh& mesh, const std::filesystem::path& path) {
+// An OBJ or a PLY, its images and an OBJ's library: itself last, so that whoever sees it finds the
+// others.
+Status export_with_images(const Mesh& mesh, const std::filesystem::path& path, bool is_obj) {
   const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
   const std::vector<std::string> names = image_files(mesh, path.stem().string());
   std::vector<OutputFile> files;
@@ -80,8 +81,11 @@ Status export_obj(const Mesh& mesh, const std::filesystem::path& path) {
     const Status done = write(path.parent_path() / names[i], *mesh.images[i].bytes);
     if (!done.ok()) return done;
   }
-  if (const Status done = write(library, write_mtl(mesh, names)); !done.ok()) return done;
-  const Status done = write(path, write_obj(mesh, library.filename().string()));
+  if (is_obj) {
+    if (const Status done = write(library, write_mtl(mesh, names)); !done.ok()) return done;
+  }
+  const Status done =
+      write(path, is_obj ? write_obj(mesh, library.filename().string()) : write_ply(mesh, names));
   if (!done.ok()) return done;
   for (OutputFile& file : files) {
     if (const Status there = file.commit(); !there.ok()) return there;
@@ -105,8 +109,9 @@ ExportReport export_report(const Mesh& mesh, std::string_view extension) {
 
 Result<ExportReport> export_mesh(const Mesh& mesh, const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
-  if (lower_case(extension) == ".obj" && !mesh.materials.empty()) {
-    const Status written = export_obj(mesh, path);
+  const bool is_obj = lower_case(extension) == ".obj" && !mesh.materials.empty();
+  if (is_obj || (lower_case(extension) == ".ply" && !mesh.images.empty())) {
+    const Status written = export_with_images(mesh, path, is_obj);
     if (!written.ok()) return written.failure();
     return export_report(mesh, extension);
   }

@@ -62,9 +62,10 @@ inline constexpr std::string_view kStlAttribute = "stl_attribute";
 
 // `mtl_name` is the material library that the OBJ refers to; empty: none.
 std::vector<std::byte> write_obj(const Mesh& mesh, std::string_view mtl_name);
-// `image_files`: what the mesh's images are called in the library.
+// `image_files`: what the mesh's images are called in the library; likewise in a PLY, if they are
+// written beside it.
 std::vector<std::byte> write_mtl(const Mesh& mesh, std::span<const std::string> image_files);
-std::vector<std::byte> write_ply(const Mesh& mesh);
+std::vector<std::byte> write_ply(const Mesh& mesh, std::span<const std::string> image_files = {});
 std::vector<std::byte> write_stl(const Mesh& mesh);
 Result<std::vector<std::byte>> write_glb(const Mesh& mesh);
 

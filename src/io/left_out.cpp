@@ -92,13 +92,9 @@ std::vector<std::string> left_out_of_glb(const Mesh& mesh) {
 }
 
 std::vector<std::string> left_out_of_ply(const Mesh& mesh) {
-  const auto count =
-      static_cast<std::size_t>(std::ranges::count_if(mesh.materials, [](const Material& material) {
-        return !material.base_color_texture.empty();
-      }));
   std::vector<std::string> words;
-  if (count > 0) words.push_back("the images that textures name");
   add_hints(mesh, words);
+  add_images(mesh, words);
   return words;
 }
 

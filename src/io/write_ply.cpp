@@ -137,7 +137,7 @@ void write_layer_comments(ByteSink& out, const char* element, const std::vector<
 
 }  // namespace
 
-std::vector<std::byte> write_ply(const Mesh& mesh) {
+std::vector<std::byte> write_ply(const Mesh& mesh, std::span<const std::string> image_files) {
   std::vector<PlyLayer> of_vertex, of_face;
   std::vector<const AttributeLayer*> splitting;
   std::set<std::string> taken;
@@ -160,14 +160,20 @@ std::vector<std::byte> write_ply(const Mesh& mesh) {
   const SplitVertices split = split_vertices(mesh, splitting);
   const bool has_materials = !mesh.material_of_triangle.empty();
   const bool has_parts = !mesh.part_of_triangle.empty();
-  const PlyTextures textures(has_materials ? std::span(mesh.materials)
-                                           : std::span<const Material>{});
+  std::vector<Material> materials;
+  if (has_materials) materials = mesh.materials;
+  for (Material& material : materials) {
+    const ImageFile* image = find_image(mesh.images, material.base_color_texture);
+    if (!image || image_files.empty()) continue;
+    material.base_color_texture = image_files[static_cast<std::size_t>(image - mesh.images.data())];
+  }
+  const PlyTextures textures(materials);
 
   ByteSink out;
   out.reserve(1024 + split.count() * 48 + mesh.triangle_count() * 17);
   out.text("ply\nformat binary_little_endian 1.0\ncomment written by crease\n");
   write_up_comment(out, mesh.up);
-  if (has_materials) write_material_comments(out, mesh.materials, textures);
+  if (has_materials) write_material_comments(out, materials, textures);
   if (has_parts) write_part_comments(out, mesh.parts);
   write_layer_comments(out, "vertex", of_vertex);
   write_layer_comments(out, "face", of_face);

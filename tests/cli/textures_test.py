@@ -43,7 +43,10 @@ class Textures(tool.Case):
         self.json("extract", out, "-o", obj, "--ratio", 0.3)
         self.assertEqual((self.folder / "level_quarters.png").read_bytes(), image)
         self.assertIn("map_Kd level_quarters.png", (self.folder / "level.mtl").read_text())
-        for mesh in (glb, obj):
+        ply = self.path("other.ply")
+        self.json("extract", out, "-o", ply, "--ratio", 0.3)
+        self.assertEqual((self.folder / "other_quarters.png").read_bytes(), image)
+        for mesh in (glb, obj, ply):
             info = self.json("info", mesh)
             self.assertEqual([i["bytes"] for i in info["images"]], [len(image)])
             self.assertEqual(words(info), "")
@@ -90,7 +93,7 @@ class Textures(tool.Case):
         # Cut within the images: the geometry is all there, and nothing that has no place for them
         # misses them.
         cut = self.write("cut.crease", bytes(data[:-20]))
-        self.json("extract", cut, "-o", self.path("x.ply"))
+        self.json("extract", cut, "-o", self.path("x.stl"))
         for command in (("info", cut), ("extract", cut, "-o", self.path("x.glb"))):
             self.assertEqual(self.run_tool(*command, exit_status=2).stdout, "")
 
