@@ -7,9 +7,11 @@
 #include "io/text.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cctype>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,6 +42,28 @@ Vec3d origin_in(std::string_view header) {
   return origin;
 }
 
+// The colour of facets that have none of their own, if the header says COLOR= as Materialise's
+// programs write it; then attribute bytes are colours of five bits a component.
+std::optional<std::array<float, 3>> color_in(std::string_view header) {
+  constexpr std::string_view kColorFollows = "COLOR=";
+  const std::size_t at = header.find(kColorFollows);
+  if (at == header.npos || at + kColorFollows.size() + 4 > header.size()) return {};
+  std::array<float, 3> color{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    color[k] =
+        static_cast<float>(static_cast<unsigned char>(header[at + kColorFollows.size() + k])) / 255;
+  }
+  return color;
+}
+
+void add_color(unsigned attribute, const std::array<float, 3>& of_others, RawLayer& colors) {
+  constexpr unsigned kNotItsOwn = 0x8000;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float own = static_cast<float>(attribute >> (5 * k) & 31) / 31;
+    colors.values.push_back((attribute & kNotItsOwn) != 0 ? of_others[k] : own);
+  }
+}
+
 void add_triangle(RawMesh& raw) {
   const auto first = static_cast<std::uint32_t>(raw.positions.size() - 3);
   raw.triangles.push_back({first, first + 1, first + 2});
@@ -58,8 +82,11 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
                      1,
                      {},
                      {}};
+  RawLayer colors = color_layer(RawLayer::Per::Face, 3);
   bool has_attribute = false;
-  const Vec3d origin = origin_in(source.text().substr(0, kHeaderBytes - 4));
+  const std::string_view header = source.text().substr(0, kHeaderBytes - 4);
+  const Vec3d origin = origin_in(header);
+  const std::optional<std::array<float, 3>> color = color_in(header);
   if (origin != Vec3d{}) raw.report.notes.push_back("moved by what its header says it is less");
   for (std::size_t f = 0; f < facet_count; ++f) {
     const std::size_t facet = kHeaderBytes + kFacetBytes * f;
@@ -76,8 +103,16 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
     add_triangle(raw);
     const auto low = std::to_integer<unsigned>(source.bytes[facet + 48]);
     const auto high = std::to_integer<unsigned>(source.bytes[facet + 49]);
+    if (color) {
+      add_color(low | high << 8, *color, colors);
+      continue;
+    }
     attribute.values.push_back(static_cast<float>(low | high << 8));
     has_attribute = has_attribute || attribute.values.back() != 0;
+  }
+  if (color && facet_count > 0) {
+    raw.layers.push_back(std::move(colors));
+    raw.report.notes.push_back("attribute bytes are colours, as its header says");
   }
   if (has_attribute) raw.layers.push_back(std::move(attribute));
   if (source.bytes.size() > kHeaderBytes + kFacetBytes * facet_count) {

@@ -62,6 +62,22 @@ TEST_CASE("attribute bytes are carried as a category") {
   CHECK(mesh.layers[1].values == std::vector<float>{0x1234});
 }
 
+TEST_CASE("attribute bytes are colours where the header says so") {
+  std::string bytes = binary_stl(2, 2, 31 << 10 | 31);  // red and blue
+  bytes.replace(30, 10, std::string("COLOR=\0\xff\0\xff", 10));
+  bytes[84 + 50 + 49] = static_cast<char>(0x80);  // of the second: not its own
+  const Mesh mesh = import_text(bytes, "a.stl").mesh;
+  REQUIRE(mesh.layers.size() == 2);
+  const AttributeLayer& colors = mesh.layers[1];
+  CHECK(colors.role == AttributeRole::Color);
+  const auto of_triangle = [&](std::size_t t) {
+    const auto value = colors.value(colors.of_corner[3 * t]);
+    return std::vector<float>(value.begin(), value.end());
+  };
+  CHECK(of_triangle(0) == std::vector<float>{1, 0, 1});
+  CHECK(of_triangle(1) == std::vector<float>{0, 1, 0});
+}
+
 TEST_CASE("several solids in a text are parts; case and layout do not matter") {
   const std::string facet =
       "FACET NORMAL 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop ENDFACET\n";
