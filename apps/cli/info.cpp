@@ -141,7 +141,7 @@ Command add_info(CLI::App& app, const Common& common) {
   CLI::App* command = app.add_subcommand("info", "what is inside a .crease or a mesh file");
   command->add_option("FILE", options->file, "the file, or the URL of a .crease")->required();
   command->add_flag("--head", options->head_only,
-                    "what the head of a .crease says; reads 64 KiB at most");
+                    "what the head of a .crease says, 64 KiB at most; else all of it is decoded");
   add_import_options(*command, options->read);
   command->footer(
       "Examples:\n  crease info bunny.crease --json\n"
