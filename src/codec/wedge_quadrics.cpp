@@ -30,7 +30,7 @@ WedgeQuadrics::WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSc
                              std::span<const char> is_contracted)
     : layers_(layers.size()), has_several_(block.end.positions.size(), 0) {
   for (std::uint32_t t = 0; t < block.end.triangles.size(); ++t) {
-    area_ += 0.5 * geometry.normal(t).size;
+    sizes_.add(0.5 * geometry.normal(t).size);
   }
   for (std::size_t l = 0; l < layers.size(); ++l) {
     const LayerSchema& schema = layers[l];
@@ -43,7 +43,7 @@ WedgeQuadrics::WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSc
     layer.is_direction = schema.interpolation == Interpolation::Direction;
     load_wedges(block, values[l], l, is_contracted, layer);
     load_quadrics(block.end, geometry, layer);
-    set_scale(block, schema, layer);
+    set_scale(block, schema, geometry, layer);
   }
 }
 
@@ -128,26 +128,29 @@ CREASE_WIDE void WedgeQuadrics::load_quadrics(const PatchMesh& mesh, const Patch
 
 // What the simplifier takes for the whole model, for this block.
 void WedgeQuadrics::set_scale(const UnfoldedBlock& block, const LayerSchema& schema,
-                              Layer& layer) const {
-  double texture_area = 0;
+                              const PatchGeometry& geometry, Layer& layer) const {
+  TextureSize texture(sizes_.most());
   if (schema.role == AttributeRole::TexCoord && layer.dimension >= 2) {
-    for (std::size_t t = 0; t < block.end.triangles.size(); ++t) {
-      const std::uint32_t* w = &layer.values.of_corner[3 * t];
-      const std::array<float, 4>&a = layer.values.value[w[0]], &b = layer.values.value[w[1]],
-                              &c = layer.values.value[w[2]];
-      texture_area += 0.5 * std::abs(double(b[0] - a[0]) * double(c[1] - a[1]) -
-                                     double(c[0] - a[0]) * double(b[1] - a[1]));
+    for (std::uint32_t t = 0; t < block.end.triangles.size(); ++t) {
+      const std::uint32_t* w = &layer.values.of_corner[3 * std::size_t(t)];
+      const std::vector<std::array<float, 4>>& values = layer.values.value;
+      texture.add(0.5 * geometry.normal(t).size, values[w[0]].data(), values[w[1]].data(),
+                  values[w[2]].data());
     }
   }
-  const double edge2 = 2.3 * area_ / double(std::max<std::size_t>(1, block.end.triangles.size()));
+  const double edge2 = 2.3 * sizes_.mean();
   if (schema.role == AttributeRole::Normal) {
-    layer.scale = kNormalWeight * kNormalWeight * edge2;
-  } else if (texture_area > 0) {
-    layer.scale = 0.09 * area_ / texture_area;
-    layer.values.same = same_texture(std::sqrt(edge2 * texture_area / area_));
+    layer.scale = radian() * radian();
+  } else if (texture.unit2() > 0) {
+    layer.scale = 0.09 * texture.unit2();
+    layer.values.same = same_texture(std::sqrt(edge2 / texture.unit2()));
   } else {
     layer.scale = 0.25 * kNormalWeight * kNormalWeight * edge2;
   }
+}
+
+double WedgeQuadrics::radian() const {
+  return kNormalWeight * std::sqrt(2.3 * sizes_.mean());
 }
 
 double WedgeQuadrics::contract(const ContractingPatch& patch,

@@ -16,6 +16,7 @@
 #include "crease/block_file.h"
 #include "hierarchy/quadric.h"
 #include "hierarchy/same_value.h"
+#include "hierarchy/triangle_sizes.h"
 
 #include <array>
 #include <cstdint>
@@ -55,6 +56,9 @@ class WedgeQuadrics {
   // How far textures and colours are displaced, grid units.
   double displacement() const { return displacement_; }
 
+  // What one that a normal is off is worth beside a distance, grid units.
+  double radian() const;
+
   // Whether wedges are kept of a layer; and, per vertex, whether it has several of some layer.
   bool has_wedges(std::size_t layer) const { return !layers_[layer].wedges.empty(); }
   std::span<const char> has_several() const { return has_several_; }
@@ -83,7 +87,8 @@ class WedgeQuadrics {
   void load_wedges(const UnfoldedBlock& block, const LayerValues& values, std::size_t l,
                    std::span<const char> is_contracted, Layer& layer);
   static void load_quadrics(const PatchMesh& mesh, const PatchGeometry& geometry, Layer& layer);
-  void set_scale(const UnfoldedBlock& block, const LayerSchema& schema, Layer& layer) const;
+  void set_scale(const UnfoldedBlock& block, const LayerSchema& schema,
+                 const PatchGeometry& geometry, Layer& layer) const;
   double contract(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
                   std::uint32_t first, std::uint32_t second, const Vec3d& at, Layer& layer);
   double join(std::span<const std::uint32_t> members, const Vec3d& at, Layer& layer);
@@ -91,8 +96,8 @@ class WedgeQuadrics {
 
   std::vector<Layer> layers_;
   std::vector<char> has_several_;  // per vertex
-  double area_ = 0;                // of all triangles
-  double worst_square_ = 0;        // of one contraction and layer
+  TriangleSizes sizes_;
+  double worst_square_ = 0;  // of one contraction and layer
   double displacement_ = 0;
   float degrees_ = 0, texture_ = 0;
   // Scratch of one contraction: the wedges at its vertices, and by which of them each is joined.

@@ -9,14 +9,11 @@
 
 namespace crease::simplification {
 
-// Of the live triangles in space and, by layer, of their texture coordinates.
+// Of the live triangles, in grid units.
 struct Extent {
-  std::size_t triangles = 0;
-  double area = 0;                    // grid units squared
-  double typical_area = 0;            // of a triangle: about the geometric mean of all
-  std::vector<double> area_of_layer;  // texture units squared; 0 for other layers
-
-  double triangle_area() const { return std::max(area / double(triangles), 1e-9); }
+  double mean_area = 0;                 // but for a few that are far larger (triangle_sizes.h)
+  double typical_area = 0;              // about the geometric mean of all
+  std::vector<double> length_of_layer;  // that one unit of its texture takes; 0 for other layers
 };
 Extent measure_extent(const WorkMesh& work);
 

@@ -158,7 +158,7 @@ class Simplifier {
                     [&] {
                       if (!limits || limits->begins_band()) start_band(band);
                     });
-      const double triangle_area = extent.triangle_area();
+      const double triangle_area = extent.mean_area;
       const double left = double(before) / double(input_triangles);
 
       Steering steering;
