@@ -171,6 +171,7 @@ class CostEstimator {
   void give_back_witnesses(Witnesses& model) const {
     witnesses_.give_back(block_.triangles, block_.coarse_triangle_count(), model);
   }
+  double radian() const { return wedges_.radian(); }
   std::vector<WedgeValues> take_wedges() { return std::move(wedges_).take(); }
 
  private:
@@ -365,7 +366,9 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
   if (estimator.flat_count() > order.size() / kFewOfThem)
     order = defer_folds(block, std::move(order));
   keep_islands_whole(block, split_of_vanished, order);
-  if (estimator.any_part_vanishes()) keep_parts_whole(block, vanished_of_split, order);
+  if (estimator.any_part_vanishes()) {
+    keep_parts_whole(block, vanished_of_split, estimator.radian(), order);
+  };
   if (estimator.astray_count() > order.size() / kFewAstray) {
     measure_in_order(block, schema, values, error_of_slot, witnesses, order);
   } else {

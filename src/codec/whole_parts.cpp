@@ -15,7 +15,7 @@ namespace {
 
 struct PartOfBlock {
   PartDamage damage_of_triangles;
-  double damage = 0;  // of a part that vanishes
+  double damage = 0, loss = 0;  // of a part that vanishes
   std::uint32_t triangles = 0, vanishing = 0;
   double cost = 0;  // of each contraction once one has broken it
   bool is_broken = false;
@@ -23,7 +23,7 @@ struct PartOfBlock {
 };
 
 // By their first vertices; the others stay empty.
-std::vector<PartOfBlock> parts_of(const UnfoldedBlock& block,
+std::vector<PartOfBlock> parts_of(const UnfoldedBlock& block, double radian,
                                   std::span<const std::uint32_t> vanished_of_split,
                                   DisjointSets& sets) {
   const PatchPlaces places(block.end);
@@ -37,7 +37,10 @@ std::vector<PartOfBlock> parts_of(const UnfoldedBlock& block,
     if (part.vanishing != part.triangles) continue;
     part.damage_of_triangles.add(places.place(t[0]), places.place(t[1]), places.place(t[2]));
   }
-  for (PartOfBlock& part : parts) part.damage = part.damage_of_triangles.value();
+  for (PartOfBlock& part : parts) {
+    part.damage = part.damage_of_triangles.distances();
+    part.loss = part.damage_of_triangles.all(radian);
+  }
   return parts;
 }
 
@@ -82,7 +85,7 @@ struct Rank {
 }  // namespace
 
 void keep_parts_whole(const UnfoldedBlock& block, std::span<const std::uint32_t> vanished_of_split,
-                      std::vector<OrderedContraction>& order) {
+                      double radian, std::vector<OrderedContraction>& order) {
   DisjointSets sets(block.end.positions.size());
   for (const Corners& t : block.end.triangles) {
     sets.unite(t[0], t[1]);
@@ -91,7 +94,7 @@ void keep_parts_whole(const UnfoldedBlock& block, std::span<const std::uint32_t>
   for (std::size_t i = 0; i < block.splits.size(); ++i) {
     sets.unite(block.splits[i].vertex, block.second_child(i));
   }
-  std::vector<PartOfBlock> parts = parts_of(block, vanished_of_split, sets);
+  std::vector<PartOfBlock> parts = parts_of(block, radian, vanished_of_split, sets);
   std::vector<std::uint32_t> number_of(order.size());  // of each contraction's part
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     const std::uint32_t number = number_of[i] = sets.find(block.splits[order[i].split].vertex);
@@ -99,7 +102,7 @@ void keep_parts_whole(const UnfoldedBlock& block, std::span<const std::uint32_t>
     if (!part.is_broken && breaks_part(order[i].cost, part.damage, part.triangles)) {
       part.is_broken = true;
       part.first_place = i;
-      part.cost = std::max(order[i].cost, price_of_part(part.damage, part.triangles));
+      part.cost = std::max(order[i].cost, price_of_part(part.loss, part.triangles));
     }
     part.triangles -= vanished_of_split[order[i].split];
   }

@@ -146,6 +146,7 @@ class PatchSimplifier {
 
   // A connected part, of which the patch may have no more than some vertices.
   struct Part {
+    double loss = 0;      // PartDamage::all()
     double damage = 0;    // see hierarchy/whole_part.h; 0 if it is large
     double reach2 = 0;    // squared, how far its box's corners are from the middle
     Index triangles = 0;  // those that are left

@@ -58,7 +58,8 @@ void PatchSimplifier::load_parts() {
   const std::vector<Index> rests_on = only_contacts(boxes);
   for (Index i = 0; i < parts_.size(); ++i) {
     const Vec3d half = boxes[i].half();
-    parts_[i].damage = damages[i].value();
+    parts_[i].damage = damages[i].distances();
+    parts_[i].loss = damages[i].all(steering_.normal_scale);
     parts_[i].reach2 = dot(half, half);
     if (rests_on[i] == kNone || !parts_[i].whole) continue;
     parts_[i].next_on_same = std::exchange(parts_[rests_on[i]].first_on_it, i);
@@ -79,6 +80,7 @@ void PatchSimplifier::contract_parts(Index kept, Index removed) {
   if (into != other) {
     parts_[other].into = into;
     part.damage += parts_[other].damage;
+    part.loss += parts_[other].loss;
     part.reach2 = std::max(part.reach2, parts_[other].reach2);
     part.triangles += parts_[other].triangles;
     part.whole = part.whole && parts_[other].whole;
@@ -109,8 +111,7 @@ double PatchSimplifier::price_of_what_rests_on(Index part, Index but) const {
     if (i == but || !on_it.whole || on_it.into != kNone || on_it.triangles == 0) continue;
     // By then it has no more triangles than a small one.
     const std::size_t few = std::min<std::size_t>(on_it.triangles, std::size_t(kSmallPart));
-    const double own =
-        std::max(price_of_part(on_it.damage, few), steering_.far_area * on_it.reach2);
+    const double own = std::max(price_of_part(on_it.loss, few), steering_.far_area * on_it.reach2);
     price = std::max(price, kAfter * own);
   }
   return price;
@@ -126,7 +127,7 @@ double PatchSimplifier::cost_with_part(Index a, Index b, double cost) {
   }
   if (broken == kNone) return cost;
   const Part& part = parts_[broken];
-  return std::max({cost, price_of_part(part.damage, part.triangles),
+  return std::max({cost, price_of_part(part.loss, part.triangles),
                    price_of_what_rests_on(broken, kNone), steering_.far_area * part.reach2});
 }
 

@@ -5,6 +5,7 @@
 #include "support/mesh_builder.h"
 #include "support/sanitized.h"
 #include "support/steeples.h"
+#include "support/trunk.h"
 #include "support/village.h"
 
 #include <doctest/doctest.h>
@@ -99,6 +100,16 @@ TEST_CASE("no spire of a model from a file floats over a drum that is gone") {
     any_gone |= steeples.whole > kSteeples / 10 && steeples.whole < kSteeples * 9 / 10;
   }
   CHECK(any_gone);
+}
+
+TEST_CASE("small pieces amid what is larger are worth their shading") {
+  const EncodedCase c = simplified_case(trunk_amid_hills(), 2'000, 14, kCoarsePrecision);
+  const Result<DecodedModel> model = decode_model(opened(c.bytes));
+  REQUIRE(model.ok());
+  for (const double share : {0.5, 0.7, 0.8, 0.85}) {
+    CAPTURE(share);
+    CHECK(count_pieces(level_after(share, *model)) == kPieces);  // 6 of the last by distances
+  }
 }
 
 }  // namespace crease

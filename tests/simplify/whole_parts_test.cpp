@@ -15,7 +15,7 @@
 
 namespace crease {
 
-TEST_CASE("what is lost with a cube is its area times nine of its squared distances") {
+TEST_CASE("what is lost with a cube is nine times its squared distances and its shading, by area") {
   constexpr double kSide = 2;
   MeshBuilder builder;
   builder.box({5, 5, 5}, {5 + kSide, 5 + kSide, 5 + kSide}, 24);
@@ -27,8 +27,16 @@ TEST_CASE("what is lost with a cube is its area times nine of its squared distan
   }
   // Of a point of a face from the middle: half a side, and two uniform coordinates.
   const double mean_square = kSide * kSide * (1.0 / 4 + 2.0 / 12);
-  CHECK(damage.value() == doctest::Approx(9 * 6 * kSide * kSide * mean_square).epsilon(0.01));
-  CHECK(PartDamage().value() == 0);
+  const double by_distance = 9 * 6 * kSide * kSide * mean_square;
+  CHECK(damage.distances() == doctest::Approx(by_distance).epsilon(0.01));
+  CHECK(damage.all(0) == damage.distances());
+  CHECK(damage.all(3) == doctest::Approx(by_distance + 9 * 6 * kSide * kSide * 9).epsilon(0.01));
+  CHECK(PartDamage().all(1) == 0);
+
+  PartDamage flat;  // as what lies behind it
+  flat.add({0, 0, 0}, {1, 0, 0}, {1, 1, 0});
+  flat.add({0, 0, 0}, {1, 1, 0}, {0, 1, 0});
+  CHECK(flat.all(100) == doctest::Approx(flat.distances()));
 }
 
 TEST_CASE("what breaks a part is dearer the more triangles it has, and nothing breaks large ones") {
