@@ -134,8 +134,7 @@ std::vector<std::string> lost_parts(const ModelFile& file, const Mesh& mesh,
 }
 
 // Where the output has a place for them.
-Status add_images_and_up(const ExtractArguments& options, const ModelFile& file, Mesh& mesh) {
-  mesh.up = file.blocks().facts().up;
+Status add_images(const ExtractArguments& options, const ModelFile& file, Mesh& mesh) {
   const std::string ending = ending_of(options.output);
   if (ending == ".stl") return Done{};
   Result<std::vector<ImageFile>> images = file.images(mesh.materials);
@@ -146,7 +145,7 @@ Status add_images_and_up(const ExtractArguments& options, const ModelFile& file,
 
 Result<ExportReport> write_level(const ExtractArguments& options, const ModelFile& file,
                                  Mesh& level, const Common& common) {
-  const Status painted = add_images_and_up(options, file, level);
+  const Status painted = add_images(options, file, level);
   if (!painted.ok()) return painted.failure();
   return write_mesh(level, options.output, common, lost_parts(file, level, options.output, common));
 }
@@ -261,7 +260,6 @@ Result<Report> extract_levels(const ExtractArguments& options, const ModelFile& 
   if (!images.ok()) return images.failure();
   LodChainOptions chain = options.chain;
   chain.strict = options.strict;
-  chain.up = file.blocks().facts().up;
   Result<Report> report =
       extract_chain(mesh, *images, options.output, chain, options.level.samples, common);
   if (!report.ok()) return report;

@@ -56,7 +56,6 @@ Result<ChainLevel> make_level(ProgressiveMesh& mesh, const std::vector<ImageFile
                               const Common& common) {
   Mesh level = mesh.extract();
   level.images = images;
-  level.up = options.up;
   ChainLevel made;
   made.json = {{"triangles", level.triangle_count()},
                {"vertices", level.vertex_count()},

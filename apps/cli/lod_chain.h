@@ -15,7 +15,6 @@ struct LodChainOptions {
   int levels = 0;     // 0: no chain
   double step = 0.5;  // triangles of a level beside the one before
   bool one_glb = false;
-  UpAxis up = UpAxis::Unknown;  // of the model
   bool strict = false;  // write nothing where there are fewer levels, or one has more triangles
 };
 

@@ -243,6 +243,7 @@ struct MeshHierarchy {
   std::vector<AttributeHierarchy> layers;  // as in the mesh
   std::vector<Material> materials;
   std::vector<std::string> parts;
+  UpAxis up = UpAxis::Unknown;
   Placement placement = Placement::Optimal;
 
   // The attribute at v_s of a corner that stands at v_t, or v_u if `second`, with attribute a

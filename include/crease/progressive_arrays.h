@@ -114,6 +114,7 @@ struct ProgressiveArrays {
   std::vector<std::uint32_t> part_of_triangle;      // or empty
   std::vector<Material> materials;
   std::vector<std::string> parts;
+  UpAxis up = UpAxis::Unknown;
   PackedContractions contractions;
 };
 using ProgressiveArraysPtr = std::shared_ptr<const ProgressiveArrays>;

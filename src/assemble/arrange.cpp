@@ -308,6 +308,7 @@ class Arranger {
     }
     arrays_.materials = mesh_.materials;
     arrays_.parts = mesh_.parts;
+    arrays_.up = mesh_.up;
     arrays_.material_of_triangle.resize(mesh_.material_of_triangle.size());
     for (std::size_t t = 0; t < mesh_.material_of_triangle.size(); ++t) {
       arrays_.material_of_triangle[new_of_triangle_[t]] =

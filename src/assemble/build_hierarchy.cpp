@@ -22,6 +22,7 @@ Result<MeshHierarchy> build_hierarchy(const Mesh& snapped, const ContractionSequ
   MeshHierarchy hierarchy;
   hierarchy.materials = snapped.materials;
   hierarchy.parts = snapped.parts;
+  hierarchy.up = snapped.up;
   hierarchy.placement = sequence.placement;
   std::vector<Vec3i> leaf_positions;
   leaf_positions.reserve(snapped.vertex_count());

@@ -102,6 +102,7 @@ CutPiece extract_piece(const ActiveCut& cut) {
   Mesh& mesh = piece.mesh;
   mesh.materials = hierarchy.materials;
   mesh.parts = hierarchy.parts;
+  mesh.up = hierarchy.up;
   extract_vertices(cut, triangles, piece);
   for (std::uint32_t l = 0; l < hierarchy.layers.size(); ++l) {
     mesh.layers.push_back(extract_layer(cut, triangles, l));

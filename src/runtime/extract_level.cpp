@@ -169,6 +169,7 @@ void extract_geometry(const ProgressiveArrays& arrays, const LinearState& state,
   }
   mesh.materials = arrays.materials;
   mesh.parts = arrays.parts;
+  mesh.up = arrays.up;
 }
 
 AttributeLayer extract_normals(const ProgressiveArrays& arrays, const LinearState& state,

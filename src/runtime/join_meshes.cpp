@@ -29,6 +29,7 @@ class MeshJoiner {
   Mesh run() {
     joined_.materials = meshes_[0].mesh.materials;
     joined_.parts = meshes_[0].mesh.parts;
+    joined_.up = meshes_[0].mesh.up;
     for (const NamedMesh& piece : meshes_) add_triangles(piece);
     for (std::size_t l = 0; l < meshes_[0].mesh.layers.size(); ++l) join_layer(l);
     return std::move(joined_);
