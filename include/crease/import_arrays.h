@@ -35,7 +35,7 @@ template <typename Number>
 struct Rows {
   const Number* first = nullptr;  // caller's; read by import_arrays() alone
   std::size_t count = 0;          // rows
-  std::size_t stride = 0;         // bytes from one row to the next; 0: packed
+  std::size_t stride = 0;         // bytes from one row to the next, no less than one; 0: packed
 };
 
 // One attribute: a value a vertex or, with indices of its own as OBJ has them, a corner.
@@ -45,8 +45,9 @@ struct ArrayLayer {
   Interpolation interpolation = Interpolation::Linear;  // normals are Direction whatever this says
   std::uint32_t dimension = 1;  // floats a row, 1 to 4; Normal 3, TexCoord 2, Color 3 or 4
   Rows<float> values{};         // units and ranges of AttributeRole
-  // 3 * triangle_count, rows of `values`, 0xffffffff where a corner has none; empty: row v is of
-  // vertex v.
+  Rows<std::uint8_t> bytes{};   // or these: 0 to 255 for 0 to 1, as colours mostly are
+  // 3 * triangle_count, rows of `values` or `bytes`, 0xffffffff where a corner has none; empty: row
+  // v is of vertex v.
   std::span<const std::uint32_t> of_corner{};
 };
 
@@ -55,6 +56,7 @@ struct VertexArrays {
   std::variant<Rows<float>, Rows<double>> positions{};
   // 3 * triangle_count, counter-clockwise from outside; empty: every three vertices are a triangle.
   std::span<const std::uint32_t> indices{};
+  std::span<const std::uint16_t> short_indices{};         // or these
   std::vector<ArrayLayer> layers{};                       // one of them Normal, at most
   std::span<const std::uint32_t> material_of_triangle{};  // triangle_count; empty: all the first
   std::vector<Material> materials{};
@@ -67,9 +69,9 @@ struct VertexArrays {
 
 // Reads the arrays before it returns. `name` begins messages; import_mesh() says what becomes of
 // ugly input. Fails with BadValue for an index out of range, an array of another length than the
-// others ask for, rows at a null pointer, an image without bytes, or a position or a material's
-// number that is not finite, and says which and where; with NoTriangles where none is left. Time
-// and memory as import_mesh().
+// others ask for, two arrays where one is asked for, rows at a null pointer or that overlap, an
+// image without bytes, or a position or a material's number that is not finite, and says which and
+// where; with NoTriangles where none is left. Time and memory as import_mesh().
 Result<Imported> import_arrays(const VertexArrays& arrays, std::string_view name,
                                const ImportOptions& options);
 

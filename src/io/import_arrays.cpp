@@ -4,6 +4,8 @@
 #include "io/raw_mesh.h"
 #include "mesh/finite_material.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <type_traits>
@@ -84,7 +86,12 @@ class ArrayReader {
   }
 
   template <typename Number>
-  bool check_rows(const std::string& array, const Rows<Number>& rows) {
+  bool check_rows(const std::string& array, const Rows<Number>& rows, std::size_t dimension) {
+    const std::size_t row = dimension * sizeof(Number);
+    if (rows.stride != 0 && rows.stride < row) {
+      return refuse(array + " overlap: rows of " + std::to_string(row) + " bytes, each " +
+                    std::to_string(rows.stride) + " after the last");
+    }
     return rows.count == 0 || rows.first != nullptr ||
            refuse(array + " are nowhere: a null pointer");
   }
@@ -102,7 +109,7 @@ class ArrayReader {
   }
 
   bool read_positions() {
-    if (!std::visit([&](const auto& rows) { return check_rows("positions", rows); },
+    if (!std::visit([&](const auto& rows) { return check_rows("positions", rows, 3); },
                     arrays_.positions)) {
       return false;
     }
@@ -125,8 +132,13 @@ class ArrayReader {
   }
 
   bool read_triangles() {
-    const bool is_indexed = !arrays_.indices.empty();
-    const std::size_t corners = is_indexed ? arrays_.indices.size() : vertex_count_;
+    if (!arrays_.indices.empty() && !arrays_.short_indices.empty()) {
+      return refuse("both indices and short_indices");
+    }
+    std::vector<std::uint32_t> widened(arrays_.short_indices.begin(), arrays_.short_indices.end());
+    const std::span<const std::uint32_t> indices = widened.empty() ? arrays_.indices : widened;
+    const bool is_indexed = !indices.empty();
+    const std::size_t corners = is_indexed ? indices.size() : vertex_count_;
     if (vertex_count_ >= kNone || corners >= kNone) {
       return refuse("more than 2^32 - 2 vertices or corners");
     }
@@ -134,11 +146,11 @@ class ArrayReader {
       return refuse(std::string(is_indexed ? "indices" : "positions, without indices,") +
                     " are three a triangle, and " + std::to_string(corners) + " are given");
     }
-    if (!check_indices("indices", arrays_.indices, vertex_count_)) return false;
+    if (!check_indices("indices", indices, vertex_count_)) return false;
     raw_.triangles.resize(corners / 3);
     for (std::size_t corner = 0; corner < corners; ++corner) {
       raw_.triangles[corner / 3][corner % 3] =
-          is_indexed ? arrays_.indices[corner] : static_cast<std::uint32_t>(corner);
+          is_indexed ? indices[corner] : static_cast<std::uint32_t>(corner);
     }
     return true;
   }
@@ -160,19 +172,26 @@ class ArrayReader {
       return refuse(array + " has dimension " + std::to_string(layer.dimension) +
                     ", which its role does not allow");
     }
-    if (layer.values.count >= kNone) return refuse(array + " has more than 2^32 - 2 values");
+    if (layer.values.count > 0 && layer.bytes.count > 0) {
+      return refuse(array + " has both values and bytes");
+    }
+    const std::size_t count = std::max(layer.values.count, layer.bytes.count);
+    if (count >= kNone) return refuse(array + " has more than 2^32 - 2 values");
     const bool is_per_corner = !layer.of_corner.empty();
     const std::size_t corners = 3 * raw_.triangles.size();
-    if (!is_per_corner && layer.values.count != vertex_count_) {
-      return refuse_length(array, layer.values.count, vertex_count_, "vertices");
+    if (!is_per_corner && count != vertex_count_) {
+      return refuse_length(array, count, vertex_count_, "vertices");
     }
     if (is_per_corner && layer.of_corner.size() != corners) {
       return refuse_length(array + ", of_corner", layer.of_corner.size(), corners, "corners");
     }
-    if (!check_indices(array + ", of_corner", layer.of_corner, layer.values.count, true)) {
+    if (!check_indices(array + ", of_corner", layer.of_corner, count, true)) {
       return false;
     }
-    if (!check_rows(array + ": values", layer.values)) return false;
+    if (!check_rows(array + ": values", layer.values, layer.dimension) ||
+        !check_rows(array + ": bytes", layer.bytes, layer.dimension)) {
+      return false;
+    }
     RawLayer raw;
     raw.name = layer.name;
     raw.role = layer.role;
@@ -181,9 +200,15 @@ class ArrayReader {
     raw.per = is_per_corner ? RawLayer::Per::Corner : RawLayer::Per::Vertex;
     raw.dimension = layer.dimension;
     raw.of_corner.assign(layer.of_corner.begin(), layer.of_corner.end());
-    raw.values.resize(layer.values.count * layer.dimension);
+    raw.values.resize(count * layer.dimension);
     for (std::size_t i = 0; i < layer.values.count; ++i) {
       copy_row(layer.values, i, layer.dimension, &raw.values[i * layer.dimension]);
+    }
+    for (std::size_t i = 0; i < layer.bytes.count; ++i) {
+      std::uint8_t row[4];
+      copy_row(layer.bytes, i, layer.dimension, row);
+      std::transform(row, row + layer.dimension, &raw.values[i * layer.dimension],
+                     [](std::uint8_t byte) { return float(byte) / 255; });
     }
     raw_.layers.push_back(std::move(raw));
     return true;

@@ -182,6 +182,35 @@ TEST_CASE("materials, parts, texture coordinates and other numbers come along") 
   CHECK(mesh.parts.at(index_of(mesh.part_of_triangle[1])) == "pane");
 }
 
+TEST_CASE("short indices and bytes are widened") {
+  const std::vector<std::uint16_t> short_indices(kTwoTriangles.begin(), kTwoTriangles.end());
+  const std::vector<std::uint8_t> colors = {255, 0, 0, 9, 0, 51, 0, 9, 0, 0, 102, 9, 1, 2, 3, 9};
+  VertexArrays arrays = square();
+  arrays.indices = {};
+  arrays.short_indices = short_indices;
+  arrays.layers.push_back({.name = "color",
+                           .role = AttributeRole::Color,
+                           .dimension = 3,
+                           .bytes = {colors.data(), 4, 4}});
+  const Mesh mesh = mesh_of(arrays);
+  CHECK(mesh.triangles == mesh_of(square()).triangles);
+  const AttributeLayer& layer = mesh.layers.back();
+  REQUIRE(layer.value_count() == 4);
+  for (std::size_t c = 0; c < 6; ++c) {
+    const std::size_t v = index_of(mesh.triangles[c / 3][c % 3]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      CHECK(layer.value(layer.of_corner[c])[k] == float(colors[4 * v + k]) / 255);
+    }
+  }
+
+  arrays.indices = kTwoTriangles;
+  CHECK(refusal(arrays) == "part 17: both indices and short_indices");
+  arrays.indices = {};
+  const std::vector<float> values(12);
+  arrays.layers[0].values = {values.data(), 4};
+  CHECK(refusal(arrays) == "part 17: layer 'color' has both values and bytes");
+}
+
 TEST_CASE("arrays that do not fit together are refused, by name and place") {
   const std::vector<std::uint32_t> beyond = {0, 1, 2, 0, 4, 3}, one = {0}, far = {0, 1};
   const std::vector<float> three = {0, 0, 0};
@@ -222,6 +251,9 @@ TEST_CASE("arrays that do not fit together are refused, by name and place") {
   arrays = square();
   arrays.positions = Rows<float>{nullptr, 4};
   CHECK(refusal(arrays) == "part 17: positions are nowhere: a null pointer");
+  arrays = square();
+  arrays.positions = Rows<float>{kUnitSquare.data(), 4, 8};
+  CHECK(refusal(arrays) == "part 17: positions overlap: rows of 12 bytes, each 8 after the last");
 
   arrays = VertexArrays{};
   CHECK(refusal(arrays) == "part 17: no triangles in it");
