@@ -81,7 +81,8 @@ class AdaptiveMesh {
   UpdateReport update(const ViewParameters& view, double seconds = 0);
 
   // The same error everywhere: splits exactly the vertices with a larger surface or line error,
-  // model units. Negative: all, which restores the snapped input. Time O(active vertices + moves).
+  // model units. Negative or no number: all, which restores the snapped input. Time O(active
+  // vertices + moves).
   UpdateReport set_error(float error, double seconds = 0);
 
   // Splits independently of their neighbours leave flat surfaces folded over in places: triangles

@@ -7,6 +7,8 @@
 // Values are snapped once, before simplification, as positions are; from there on they are exact.
 #pragma once
 
+#include "crease/result.h"
+
 #include <cstdint>
 
 namespace crease {
@@ -16,7 +18,7 @@ enum class NormalCoding : std::uint8_t {
   Deering,     // G03's sextants: bits an angle, 4 to 12; 6 are its 17 bits a normal
 };
 
-inline constexpr int kExactBits = 0;  // values as they are, floats
+inline constexpr int kExactBits = 0;  // values as they are, floats; beside all ranges
 
 struct AttributePrecision {
   NormalCoding normal_coding = NormalCoding::Octahedral;
@@ -25,9 +27,12 @@ struct AttributePrecision {
   int normal_bits = 12;
   // Over the range of each component: off by at most its 2^-(bits + 1), and, where textures repeat,
   // by about 2^(1 - bits) of one. Values that already lie on a lattice as coarse, or are few, are
-  // kept exactly.
+  // kept exactly. 4 to 16, both.
   int texcoord_bits = 14;
   int color_bits = 10;
 };
+
+// Fails with BadValue, saying which bits are out of their range.
+Status check_attribute_precision(const AttributePrecision& precision);
 
 }  // namespace crease

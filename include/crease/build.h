@@ -33,7 +33,7 @@ struct SnappedLayer {
 
 // Snaps the values of every attribute layer in place, as build_model() does before simplification.
 // Corners that share a value go on sharing it; values that meet at a vertex and became equal to the
-// bit become one. One report a layer.
+// bit become one. `precision` must pass check_attribute_precision(). One report a layer.
 std::vector<SnappedLayer> snap_attributes(Mesh& mesh, const AttributePrecision& precision);
 
 struct Built {
@@ -44,8 +44,8 @@ struct Built {
   std::vector<std::byte> file_bytes;
 };
 
-// `mesh` must hold check_mesh(), and the bits be in their ranges. Fails with Invalid where it has
-// no normals, when check_precision() does and when interrupted. The file was opened and all its
+// `mesh` must hold check_mesh(). Fails with Invalid where it has no normals, when check_precision()
+// or check_attribute_precision() does, and when interrupted. The file was opened and all its
 // checksums were looked at; its blocks were not decoded (crease validate does).
 Result<Built> build_model(Mesh mesh, const BuildOptions& options);
 

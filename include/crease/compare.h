@@ -69,22 +69,23 @@ struct Comparison {
 };
 
 struct CompareOptions {
-  std::size_t samples = 200'000;  // on each surface
+  std::size_t samples = 200'000;  // on each surface, at most a billion
   std::uint32_t seed = 1;
   int threads = 0;                 // 0: all
   ProgressCallback progress = {};  // stage "compare"
 };
 
 // Both meshes need triangles and normals. The result does not depend on the number of threads.
-// Fails where `progress` asks it to stop, and with BadValue where the two are further apart than
-// 1000 times the larger one's diagonal: one is in other units then, or somewhere else. Time
+// Fails where `progress` asks it to stop, and with BadValue for more samples than that and
+// where the two are further apart than 1000 times the larger one's diagonal: one is in other units
+// then, or somewhere else. Time
 // O(samples log triangles) and what the largest distance takes, at most 9 closest points a triangle
 // for the meshes and levels that were measured; memory about 150 bytes a triangle.
 Result<Comparison> compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options);
 
 // Whether no point of either mesh is further from the other than `distance` and a billionth of
 // their extent. Takes no samples and ends at the first point that is. False, too, where the search
-// was given up. Else as compare_meshes.
+// was given up. A distance that is no number is a BadValue. Else as compare_meshes.
 Result<bool> meshes_within(const Mesh& a, const Mesh& b, double distance,
                            const CompareOptions& options);
 

@@ -1,6 +1,6 @@
 // Meshes out: .obj, .ply (binary little-endian), .stl (binary), .glb, told from the name.
 //
-//   Status done = export_mesh(mesh, "level.glb");
+//   Result<ExportReport> told = export_mesh(mesh, "level.glb");
 //
 // Normals are always written. In OBJ hard edges are separate vn indices; in PLY and GLB they are
 // split vertices, as those formats want. Positions are written in double precision where the format

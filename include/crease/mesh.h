@@ -100,7 +100,7 @@ struct Mesh {
   std::vector<std::string> parts;  // names of objects, groups or scene nodes
   // Those that materials name, as far as they are known. Levels and cuts are extracted without.
   std::vector<ImageFile> images;
-  UpAxis up = UpAxis::Unknown;  // levels and cuts are extracted without
+  UpAxis up = UpAxis::Unknown;
 
   std::size_t vertex_count() const { return positions.size(); }
   std::size_t triangle_count() const { return triangles.size(); }
@@ -145,7 +145,8 @@ struct Precision {
 double finest_step(const Mesh& mesh);
 
 // Fails with CommandLine where a length is so long that little would be left of the mesh, more than
-// a 16th of the longest side; or shorter than finest_step().
+// a 16th of the longest side; or shorter than finest_step(), negative or no number; and where bits
+// are not 0 to 30.
 Status check_precision(const Mesh& mesh, const Precision& precision);
 
 // Few vertices far from all others, as a stray triangle has them. A grid's steps are a share of the

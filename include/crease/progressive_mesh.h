@@ -33,7 +33,8 @@ class ProgressiveMesh {
 
   // The finest level with at most `count` triangles (the coarsest one if there is none).
   void set_triangle_count(std::size_t count);
-  // The coarsest level whose surface error is at most `surface_error`, model units.
+  // The coarsest level whose surface error is at most `surface_error`, model units. Negative or no
+  // number: full resolution.
   void set_error(float surface_error);
   // How many contractions that level has in force. Negative: 0.
   std::size_t applied_for_error(float surface_error) const;

@@ -95,8 +95,9 @@ struct Image {
 // not drawn.
 //
 // Each list is uploaded once. llvmpipe on two cores, 1920 x 1080: 2 M triangles in 4 s. Fails with
-// NotSupported when no EGL device can draw, saying what was tried, and with BadValue for a size or
-// a list that cannot be meant. Threads: call from any; an OpenGL context that is current stays so.
+// NotSupported when no EGL device can draw, saying what was tried, and with BadValue for a size, a
+// list or a camera that cannot be meant. Threads: call from any; an OpenGL context that is current
+// stays so.
 Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& options);
 
 // What each of `panel_count` panels shows of `options.camera`, which must be there: a camera of the

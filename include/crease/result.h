@@ -1,10 +1,11 @@
 // How the outside world fails: a value or a Failure that says what, where and what to do.
 //
-//   Result<Mesh> mesh = import_mesh("model.obj");
-//   if (!mesh.ok()) return report(mesh.failure());  // "model.obj:17: face index 9 of 8 vertices"
-//   use(*mesh);
+//   Result<Imported> in = import_mesh("model.obj", {});
+//   if (!in.ok()) return report(in.failure().message);  // "model.obj:17: face index 9 of 8
+//   vertices" use(in->mesh);
 //
-// A broken promise inside the program fails through CREASE_ASSERT instead.
+// Who takes the value without asking ends the program with the failure's message, as every broken
+// promise does.
 #pragma once
 
 #include <cstdint>
@@ -41,6 +42,10 @@ struct Failure {
   std::string message;  // one line: what, where (file, line, byte offset or block), what to do
 };
 
+// Says what was taken that is not there, and ends the program.
+[[noreturn]] void end_without_value(const Failure& failure);
+[[noreturn]] void end_without_failure();
+
 template <typename T>
 class [[nodiscard]] Result {
  public:
@@ -49,15 +54,27 @@ class [[nodiscard]] Result {
 
   bool ok() const { return state_.index() == 0; }
   // ok() must hold.
-  T& operator*() & { return *std::get_if<0>(&state_); }
-  const T& operator*() const& { return *std::get_if<0>(&state_); }
-  T&& operator*() && { return std::move(*std::get_if<0>(&state_)); }
-  T* operator->() { return std::get_if<0>(&state_); }
-  const T* operator->() const { return std::get_if<0>(&state_); }
+  T& operator*() & { return *value(); }
+  const T& operator*() const& { return *value(); }
+  T&& operator*() && { return std::move(*value()); }
+  T* operator->() { return value(); }
+  const T* operator->() const { return value(); }
   // !ok() must hold.
-  const Failure& failure() const { return *std::get_if<1>(&state_); }
+  const Failure& failure() const {
+    if (ok()) end_without_failure();
+    return *std::get_if<1>(&state_);
+  }
 
  private:
+  T* value() {
+    if (!ok()) end_without_value(failure());
+    return std::get_if<0>(&state_);
+  }
+  const T* value() const {
+    if (!ok()) end_without_value(failure());
+    return std::get_if<0>(&state_);
+  }
+
   std::variant<T, Failure> state_;
 };
 

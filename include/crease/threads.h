@@ -11,7 +11,8 @@ namespace crease {
 using ParallelLoop =
     std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 
-// Calls body(i) for every i < count, on `threads` threads; 0: as many as the machine has.
+// Calls body(i) for every i < count, on `threads` threads; 0: as many as the machine has;
+// at most 1024, as everywhere in the library.
 ParallelLoop loop_on_threads(int threads);
 
 }  // namespace crease

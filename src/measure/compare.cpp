@@ -10,12 +10,16 @@
 #include "parallel/shared_progress.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <string>
 #include <vector>
 
 namespace crease {
 
 namespace {
+
+constexpr std::size_t kMostSamples = 1'000'000'000;
 
 // Two triangles count as equally near when their distances differ by less than this share of the
 // diagonal: a sample on a hard edge sees both sides of it.
@@ -179,12 +183,17 @@ void check_comparable(const Mesh& a, const Mesh& b) {
 
 Result<Comparison> compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options) {
   check_comparable(a, b);
+  if (options.samples > kMostSamples) {
+    return fail(Error::BadValue, std::to_string(options.samples) + " samples: at most " +
+                                     std::to_string(kMostSamples));
+  }
   return run_on(options.threads, [&] { return compare(a, b, options); });
 }
 
 Result<bool> meshes_within(const Mesh& a, const Mesh& b, double distance,
                            const CompareOptions& options) {
   check_comparable(a, b);
+  if (std::isnan(distance)) return fail(Error::BadValue, "within a distance that is no number");
   return run_on(options.threads, [&] { return within(a, b, distance, options); });
 }
 

@@ -30,8 +30,14 @@ double finest_step(const Mesh& mesh) {
 
 Status check_precision(const Mesh& mesh, const Precision& precision) {
   constexpr double kFewestSteps = 16;
+  constexpr int kMostBits = 30;
   const double longest = box_of(mesh.positions).longest;
   char text[200];
+  if (!(precision.length >= 0) || precision.bits < 0 || precision.bits > kMostBits) {
+    std::snprintf(text, sizeof text, "a precision of %g or %d bits: a length or 1 to %d bits",
+                  precision.length, precision.bits, kMostBits);
+    return fail(Error::CommandLine, text);
+  }
   if (const double finest = finest_step(mesh); precision.length > 0 && precision.length < finest) {
     const double rounded_up = finest * 1.001;  // so that it may be asked for as it is written
     std::snprintf(

@@ -9,6 +9,12 @@
 
 namespace crease::parallel {
 
+namespace {
+
+constexpr int kMostThreads = 1024;  // what no machine is short of, and none makes without end
+
+}  // namespace
+
 void run_ranges(std::size_t count, std::size_t grain, RangeTask task) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [task](const tbb::blocked_range<std::size_t>& range) {
@@ -23,7 +29,7 @@ void run_both(Task a, Task b) {
 void run_on(int threads, Task task) {
   if (threads <= 0) return task.run(task.context);
   constexpr auto kAllowed = tbb::global_control::max_allowed_parallelism;
-  const std::size_t wanted = static_cast<std::size_t>(threads);
+  const auto wanted = static_cast<std::size_t>(std::min(threads, kMostThreads));
   std::optional<tbb::global_control> raise;
   if (tbb::global_control::active_value(kAllowed) < wanted) raise.emplace(kAllowed, wanted);
   // The program may have set a lower limit, which wins; a larger arena would print a warning.

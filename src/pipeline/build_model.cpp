@@ -39,6 +39,8 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
   if (const Status sound = check_mesh(mesh); !sound.ok()) return sound.failure();
   const Status precise = check_precision(mesh, options.precision);
   if (!precise.ok()) return precise.failure();
+  const Status in_range = check_attribute_precision(options.attributes);
+  if (!in_range.ok()) return in_range.failure();
   const Grid grid = make_grid(mesh, options.precision);
   Built built;
   built.grid_step = grid.step;

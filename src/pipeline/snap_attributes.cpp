@@ -163,6 +163,24 @@ LayerCoding coding_of(const AttributeLayer& layer, const AttributePrecision& pre
 
 }  // namespace
 
+Status check_attribute_precision(const AttributePrecision& precision) {
+  const bool octahedral = precision.normal_coding == NormalCoding::Octahedral;
+  struct Range {
+    const char* name;
+    int bits, low, high;
+  };
+  for (const Range& range :
+       {Range{"normal_bits", precision.normal_bits, octahedral ? 8 : 4, octahedral ? 16 : 12},
+        Range{"texcoord_bits", precision.texcoord_bits, 4, kMaxAskedBits},
+        Range{"color_bits", precision.color_bits, 4, kMaxAskedBits}}) {
+    if (range.bits == kExactBits || (range.bits >= range.low && range.bits <= range.high)) continue;
+    return fail(Error::BadValue, std::string(range.name) + " of " + std::to_string(range.bits) +
+                                     ": " + std::to_string(range.low) + " to " +
+                                     std::to_string(range.high) + ", or 0 for exact values");
+  }
+  return Done{};
+}
+
 std::vector<LayerCoding> codings_of(const Mesh& mesh, const AttributePrecision& precision) {
   std::vector<LayerCoding> codings;
   for (const AttributeLayer& layer : mesh.layers) codings.push_back(coding_of(layer, precision));

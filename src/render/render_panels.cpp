@@ -256,6 +256,9 @@ GlMaterialsPtr upload_materials(const DrawList& list, const GlLimits& gl,
 Result<Layout> lay_out_panels(std::size_t panel_count, bool has_titles, double content_aspect,
                               const RenderOptions& options) {
   if (panel_count == 0) return fail(Error::BadValue, "no panel to draw");
+  if (options.camera && !can_see(*options.camera)) {
+    return fail(Error::BadValue, "a camera that sees nothing: not finite, or without a direction");
+  }
   if (options.width_px < 1 || options.height_px < 1 || options.width_px > kMaxSide ||
       options.height_px > kMaxSide) {
     return fail(Error::BadValue, "a picture of " + std::to_string(options.width_px) + " x " +

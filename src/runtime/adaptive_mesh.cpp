@@ -76,7 +76,8 @@ UpdateReport AdaptiveMesh::update(const ViewParameters& view, double seconds) {
 }
 UpdateReport AdaptiveMesh::set_error(float error, double seconds) {
   impl_->geomorphs.advance(seconds);
-  return impl_->arrive(impl_->refiner.set_error(impl_->cut, error));
+  const float most = std::isnan(error) ? -1 : error;
+  return impl_->arrive(impl_->refiner.set_error(impl_->cut, most));
 }
 
 std::size_t AdaptiveMesh::unfold(std::size_t max_triangles, std::span<const char> faces_away) {

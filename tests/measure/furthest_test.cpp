@@ -149,6 +149,9 @@ TEST_CASE("a covered window is found whatever the samples are") {
     CHECK(*meshes_within(open, whole, half * 1.001, {}));
     CHECK(!*meshes_within(open, whole, half * 0.999, {}));
     CHECK(!*meshes_within(whole, open, half * 0.999, {}));
+    const Result<bool> no_number = meshes_within(whole, open, std::nan(""), {});
+    REQUIRE(!no_number.ok());
+    CHECK(no_number.failure().error == Error::BadValue);
   }
 }
 

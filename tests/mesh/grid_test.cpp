@@ -34,6 +34,10 @@ TEST_CASE("a length shorter than the finest step is refused, with one that is no
     CHECK(finest == std::max(std::ldexp(1.0, -30), std::ldexp(away.y + (away.y > 0), -49)));
     CHECK(check_precision(mesh, {.length = finest}).ok());
     CHECK(check_precision(mesh, {.bits = 30}).ok());
+    CHECK_FALSE(check_precision(mesh, {.bits = 31}).ok());
+    CHECK_FALSE(check_precision(mesh, {.bits = -1}).ok());
+    CHECK_FALSE(check_precision(mesh, {.length = -finest}).ok());
+    CHECK_FALSE(check_precision(mesh, {.length = std::nan("")}).ok());
     const Status refused = check_precision(mesh, {.length = 0.99 * finest});
     REQUIRE(!refused.ok());
     CHECK(refused.failure().error == Error::CommandLine);

@@ -110,6 +110,15 @@ TEST_CASE("a mesh that is none, and options out of their ranges, are refused") {
   CHECK(refusal([](Mesh&, BuildOptions& o) { o.simplify.patch_triangles = 0; }) == Error::Invalid);
   CHECK(refusal([&](Mesh&, BuildOptions& o) { o.simplify.normal_weight = nan; }) == Error::Invalid);
   CHECK(refusal([](Mesh&, BuildOptions& o) { o.simplify.normal_weight = -1; }) == Error::Invalid);
+  for (const int bits : {-1, 1, 3, 17, 50}) {
+    CAPTURE(bits);
+    CHECK(refusal([&](Mesh&, BuildOptions& o) { o.attributes.normal_bits = bits; }) ==
+          Error::BadValue);
+    CHECK(refusal([&](Mesh&, BuildOptions& o) { o.attributes.texcoord_bits = bits; }) ==
+          Error::BadValue);
+    CHECK(refusal([&](Mesh&, BuildOptions& o) { o.attributes.color_bits = bits; }) ==
+          Error::BadValue);
+  }
 }
 
 TEST_CASE("a built file is the same for 1, 2 and 7 threads, and so is what is decoded" *

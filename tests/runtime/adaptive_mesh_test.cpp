@@ -140,6 +140,8 @@ TEST_CASE("full refinement restores the snapped input, corner for corner, from a
       }
       mesh.set_error(std::numeric_limits<float>::infinity());
       CHECK(shown_triangles(mesh.draw_list()) == coarsest);
+      mesh.set_error(std::nanf(""));
+      check_full(c, mesh.extract());
     }
   }
 }
