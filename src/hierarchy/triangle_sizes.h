@@ -75,15 +75,28 @@ class TextureSize {
   void add(double area, const float* a, const float* b, const float* c) {
     const double of_texture = 0.5 * std::abs(double(b[0] - a[0]) * double(c[1] - a[1]) -
                                              double(c[0] - a[0]) * double(b[1] - a[1]));
+    for (const float* uv : {a, b, c}) {
+      for (int i = 0; i < 2; ++i) {
+        low_[i] = std::min(low_[i], uv[i]);
+        high_[i] = std::max(high_[i], uv[i]);
+      }
+    }
     space_ += std::min(area, most_);
     texture_ += area > most_ ? of_texture * (most_ / area) : of_texture;
   }
 
-  // Squared length in space of one unit of the texture; 0: it has no area.
-  double unit2() const { return texture_ > 0 ? space_ / texture_ : 0; }
+  // Squared length in space of one unit of the texture. 0: triangles have next to no area there, as
+  // where each shows one texel of a palette; what is left of it is rounding.
+  double unit2() const {
+    const double range = (double(high_[0]) - low_[0]) * (double(high_[1]) - low_[1]);
+    return texture_ > kPalette * std::max(range, 0.0) ? space_ / texture_ : 0;
+  }
 
  private:
+  static constexpr double kPalette = 1e-3;  // of what the coordinates span; charts have 0.05 to 1
+
   double most_, space_ = 0, texture_ = 0;
+  float low_[2] = {HUGE_VALF, HUGE_VALF}, high_[2] = {-HUGE_VALF, -HUGE_VALF};
 };
 
 }  // namespace crease

@@ -27,6 +27,13 @@ TEST_CASE("few triangles far larger than the others count as large ones do") {
   texture.add(9600, corners[0], corners[1], corners[2]);  // a hundredth of it
   CHECK(texture.unit2() == doctest::Approx((8 + 96) / 2.02));
   CHECK(TextureSize(1).unit2() == 0);
+
+  TextureSize palette(96);  // each triangle one texel of it, but for rounding
+  for (const float u : {0.1f, 0.6f}) {
+    const float texel[3][2] = {{u, u}, {u + 1e-6f, u}, {u, u + 1e-6f}};
+    palette.add(8, texel[0], texel[1], texel[2]);
+  }
+  CHECK(palette.unit2() == 0);
 }
 
 namespace {
