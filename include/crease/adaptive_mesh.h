@@ -16,6 +16,8 @@
 // Cost: that of the splits and merges done, of asking some 20 bytes per active vertex whether it is
 // seen to be wrong, four at a time, where the camera has moved far enough to change the answer, and
 // of comparing two numbers per four of them. A camera that has not moved costs nothing.
+//
+// Threads: one at a time calls a mesh; meshes on several threads may share a hierarchy.
 #pragma once
 
 #include "crease/camera.h"

@@ -1,5 +1,6 @@
 // Feeds a BlockMesh from a source that takes its time: asks for what the view misses, decodes it on
-// threads of its own, and never makes a frame wait.
+// threads of its own, and never makes a frame wait for either. What a frame takes beside is its own
+// moves, by vertex those of all that came: view.max_seconds bounds them.
 //
 //   Result<BlockStreamer> streamer = BlockStreamer::open(open_async_http(url));
 //   every frame:

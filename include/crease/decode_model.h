@@ -50,11 +50,14 @@ struct StreamBits {
 };
 
 struct DecodeOptions {
-  std::uint16_t finest_band = 0;  // finer ones are left out
+  // Finer ones are left out. As many as there are bands: the base alone; more: nothing, an empty
+  // mesh.
+  std::uint16_t finest_band = 0;
   // How many of the finest bands that are decoded get their contractions. A level of such a model
   // is looked for in these; 0: the mesh alone, and no sequence.
   std::uint16_t contracted_bands = 0xffff;
-  // Blocks that it wants are decoded, and all that those need. Empty: wants all.
+  // Blocks that it wants are decoded, and all that those need, and the base always. Empty: wants
+  // all.
   std::function<bool(const BlockEntry&)> wants{};
   // Calls body(i) for every i < count, in any order and on any threads. Empty: one after the other.
   std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)> for_each{};
@@ -76,6 +79,7 @@ struct DecodedModel {
 // Fails naming the block or page that is wrong. Whatever the bytes are, it takes no more memory
 // than a small multiple of max_bytes and of the blocks' payloads, and what decoding takes of one
 // block on each thread. The result depends on the set of blocks alone.
+// Threads: any, several on one file too.
 Result<DecodedModel> decode_model(const BlockFile& file, const DecodeOptions& options = {});
 
 }  // namespace crease

@@ -20,7 +20,7 @@
 //     }
 //
 // The three parts of a draw list need fewer bytes (README), and of a level only its changes are
-// uploaded; here each change makes the arrays anew.
+// uploaded; here each change makes the arrays anew. Threads: pure, call from any.
 #pragma once
 
 #include "crease/draw_changes.h"
