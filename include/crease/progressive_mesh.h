@@ -46,9 +46,9 @@ class ProgressiveMesh {
   // Geomorphs: how long a vertex is on its way from where the one stood that it comes out of, and
   // back before it is contracted. 0, the default: levels are seen at once. While something is on
   // its way draw_list() shows it there; a coarser level waits for its contractions, all of them go
-  // at once, and applied() and triangle_count() are still those of the finer one. A switch then goes
-  // through the levels in between, there and back (docs/geomorphs.md): it takes about ten times as
-  // long, so that far jumps of large models are better made without.
+  // at once, and applied() and triangle_count() are still those of the finer one. A switch then
+  // goes through the levels in between, there and back (docs/geomorphs.md): it takes about ten
+  // times as long, so that far jumps of large models are better made without.
   void set_geomorph_seconds(double seconds);
   // So much time goes by; changes() has what moved. Time O(what is on its way).
   void advance(double seconds);

@@ -2,8 +2,7 @@
 //
 //   TriangleSizes sizes;
 //   for each triangle: sizes.add(area);
-//   sizes.mean()        // of all, those beyond most() counted as that large
-//   sizes.share(area)   // of a triangle's area, that counts
+//   sizes.mean()   // of all, those beyond most() counted as that large
 //
 // A model on a ground a thousand times its size has two triangles with nearly all of the area. What
 // a normal is worth beside a distance follows from how large triangles are: measured by the
@@ -41,13 +40,12 @@ class TriangleSizes {
     return 0;
   }
 
-  double area() const {
+  double mean() const {
     const double limit = most();
     double sum = 0;
     for (const Bin& bin : bins_) sum += std::min(bin.area, limit * double(bin.count));
-    return sum;
+    return count_ > 0 ? sum / double(count_) : 0;
   }
-  double mean() const { return count_ > 0 ? area() / double(count_) : 0; }
 
  private:
   struct Bin {
@@ -58,10 +56,12 @@ class TriangleSizes {
   static constexpr double kTimes = 64;
 
   static std::size_t exponent_of(double area) {
-    return std::bit_cast<std::uint32_t>(static_cast<float>(area)) >> 23;
+    const std::uint32_t exponent = std::bit_cast<std::uint32_t>(static_cast<float>(area)) >> 23;
+    return std::min<std::size_t>(exponent, kBins - 1);  // whatever the number is
   }
 
-  std::array<Bin, 256> bins_{};  // by powers of two
+  static constexpr std::size_t kBins = 256;
+  std::array<Bin, kBins> bins_{};  // by powers of two
   std::uint64_t count_ = 0;
 };
 
