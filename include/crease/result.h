@@ -1,8 +1,8 @@
 // How the outside world fails: a value or a Failure that says what, where and what to do.
 //
 //   Result<Imported> in = import_mesh("model.obj", {});
-//   if (!in.ok()) return report(in.failure().message);  // "model.obj:17: face index 9 of 8
-//   vertices" use(in->mesh);
+//   if (!in.ok()) return report(in.failure().message);  // "model.obj:17: face index 9 of 8"
+//   use(in->mesh);
 //
 // Who takes the value without asking ends the program with the failure's message, as every broken
 // promise does.

@@ -368,7 +368,7 @@ ContractionOrder order_contractions(const UnfoldedBlock& block, const ModelSchem
   keep_islands_whole(block, split_of_vanished, order);
   if (estimator.any_part_vanishes()) {
     keep_parts_whole(block, vanished_of_split, estimator.radian(), order);
-  };
+  }
   if (estimator.astray_count() > order.size() / kFewAstray) {
     measure_in_order(block, schema, values, error_of_slot, witnesses, order);
   } else {
