@@ -13,6 +13,10 @@ constexpr double kMargin = 1.06;        // the picture over the scene
 
 constexpr double kSameSize = 2;  // sizes of what lies at one place, larger over smaller
 
+constexpr double kStrays = 0.01;  // of the points at each end of each axis: not where most are
+constexpr double kFarLarger = 8;  // the whole than where most points are, so that these are shown
+constexpr double kSurrounding = 0.2;  // and as much of their size around them
+
 struct Direction {
   Vec3d towards_eye, up;
 };
@@ -53,19 +57,23 @@ Direction beside(const Box& box, const Vec3d& forward, const Vec3d& up_wanted) {
   return {out * std::cos(elevation) + up * std::sin(elevation), up};
 }
 
-// Calls `visit` with every point less the first set's origin.
-template <typename Visit>
-void for_each(Scene scene, Visit visit) {
-  const Vec3d common = scene.empty() ? Vec3d{} : scene[0].origin;
-  for (const PointSet& set : scene) {
-    const Vec3d shift = set.origin - common;
-    for (const Vec3f& p : set.points) visit(shift + Vec3d{p.x, p.y, p.z});
-  }
+Vec3d origin_of(Scene scene) {
+  return scene.empty() ? Vec3d{} : scene[0].origin;
 }
 
-Box box_of(Scene scene) {
+// All points, less the first set's origin.
+std::vector<Vec3d> points_of(Scene scene) {
+  std::vector<Vec3d> points;
+  for (const PointSet& set : scene) {
+    const Vec3d shift = set.origin - origin_of(scene);
+    for (const Vec3f& p : set.points) points.push_back(shift + Vec3d{p.x, p.y, p.z});
+  }
+  return points;
+}
+
+Box box_of(std::span<const Vec3d> points) {
   Box box;
-  for_each(scene, [&](const Vec3d& p) { box.add(p); });
+  for (const Vec3d& p : points) box.add(p);
   return box;
 }
 
@@ -74,6 +82,41 @@ bool contains(const Box& box, const Vec3d& p) {
     if (p[i] < box.low[i] || p[i] > box.high[i]) return false;
   }
   return true;
+}
+
+// The box of the points but for the outermost at both ends of each axis.
+Box box_without_strays(std::span<const Vec3d> points) {
+  const auto strays = std::ptrdiff_t(kStrays * double(points.size()));
+  Vec3d low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Vec3d& p : points) values.push_back(p[axis]);
+    const auto first = values.begin() + strays, last = values.end() - 1 - strays;
+    std::nth_element(values.begin(), first, values.end());
+    low[axis] = *first;
+    std::nth_element(first, last, values.end());
+    high[axis] = *last;
+  }
+  Box box;
+  box.add(low);
+  box.add(high);
+  return box;
+}
+
+// What a picture is of: all points, or those near the others where a few make the scene many times
+// as large. A town on a ground of two triangles would be some pixels, and so would a scan with one
+// vertex far away.
+std::vector<Vec3d> points_in_picture(Scene scene) {
+  std::vector<Vec3d> points = points_of(scene);
+  if (points.empty()) return points;
+  const Box all = box_of(points), most = box_without_strays(points);
+  const Vec3d size = most.high - most.low;
+  if (length(all.high - all.low) < kFarLarger * length(size) || length(size) == 0) return points;
+  Box near;
+  near.add(most.low - size * kSurrounding);
+  near.add(most.high + size * kSurrounding);
+  std::erase_if(points, [&](const Vec3d& p) { return !contains(near, p); });
+  return points;
 }
 
 bool is_one_place(const Box& a, const Box& b) {
@@ -85,7 +128,8 @@ bool is_one_place(const Box& a, const Box& b) {
          std::max(size_a, size_b) <= kSameSize * std::min(size_a, size_b);
 }
 
-Camera fit(Scene scene, const Direction& direction, int width_px, int height_px) {
+Camera fit(const Vec3d& origin, std::span<const Vec3d> points, const Direction& direction,
+           int width_px, int height_px) {
   Camera camera;
   camera.up = direction.up;
   camera.width_px = width_px;
@@ -100,7 +144,7 @@ Camera fit(Scene scene, const Direction& direction, int width_px, int height_px)
   // and min(r - tan_x b) + tan_x eb, which leaves room for eb from half their distance on.
   double r_high = -1e300, r_low = 1e300, u_high = -1e300, u_low = 1e300, b_high = -1e300;
   double b_low = 1e300;
-  for_each(scene, [&](const Vec3d& p) {
+  for (const Vec3d& p : points) {
     const double r = dot(p, frame.right), u = dot(p, frame.above), b = dot(p, frame.back);
     r_high = std::max(r_high, r + tan_x * b);
     r_low = std::min(r_low, r - tan_x * b);
@@ -108,11 +152,11 @@ Camera fit(Scene scene, const Direction& direction, int width_px, int height_px)
     u_low = std::min(u_low, u - tan_y * b);
     b_high = std::max(b_high, b);
     b_low = std::min(b_low, b);
-  });
+  }
   double eye_back = std::max((r_high - r_low) / (2 * tan_x), (u_high - u_low) / (2 * tan_y));
   const double reach = std::abs(eye_back) + std::abs(b_high);
   eye_back = std::max(eye_back, b_high + (reach > 0 ? 1e-6 * reach : 1.0));  // a single point
-  camera.position = scene[0].origin + frame.right * ((r_high + r_low) / 2) +
+  camera.position = origin + frame.right * ((r_high + r_low) / 2) +
                     frame.above * ((u_high + u_low) / 2) + frame.back * eye_back;
   camera.target = camera.position - frame.back * (eye_back - (b_low + b_high) / 2);
   return camera;
@@ -121,16 +165,17 @@ Camera fit(Scene scene, const Direction& direction, int width_px, int height_px)
 }  // namespace
 
 Camera fit_camera_to(Scene scene, const Vec3d& up, int width_px, int height_px) {
-  const Box box = box_of(scene);
-  if (!box.empty) return fit(scene, three_quarter(box, up), width_px, height_px);
-  const Vec3f origin{};
-  const PointSet point{{}, std::span(&origin, 1)};
-  return fit(std::span(&point, 1), three_quarter(Box{}, up), width_px, height_px);
+  std::vector<Vec3d> points = points_in_picture(scene);
+  const Direction direction = three_quarter(box_of(points), up);
+  if (points.empty()) points.push_back({});
+  return fit(origin_of(scene), points, direction, width_px, height_px);
 }
 
 Camera fit_camera_beside(Scene scene, const Vec3d& forward, const Vec3d& up, int width_px,
                          int height_px) {
-  return fit(scene, beside(box_of(scene), forward, up), width_px, height_px);
+  const std::vector<Vec3d> points = points_of(scene);
+  const Direction direction = beside(box_of(points), forward, up);
+  return fit(origin_of(scene), points, direction, width_px, height_px);
 }
 
 Camera fit_camera(const Vec3d& low, const Vec3d& high, int width_px, int height_px,
@@ -148,15 +193,15 @@ Camera fit_camera(const Vec3d& low, const Vec3d& high, int width_px, int height_
 }
 
 double projected_aspect(Scene scene, const Vec3d& up) {
-  const Box box = box_of(scene);
-  if (box.empty) return 1;
-  const Direction direction = three_quarter(box, up);
+  const std::vector<Vec3d> points = points_in_picture(scene);
+  if (points.empty()) return 1;
+  const Direction direction = three_quarter(box_of(points), up);
   Camera camera;
   camera.up = direction.up;
   camera.position = direction.towards_eye;
   const View frame = make_view(camera, 1);
   Box flat;
-  for_each(scene, [&](const Vec3d& p) { flat.add({dot(p, frame.right), dot(p, frame.above), 0}); });
+  for (const Vec3d& p : points) flat.add({dot(p, frame.right), dot(p, frame.above), 0});
   const Vec3d size = flat.high - flat.low;
   return std::clamp((size.x + 1e-30) / (size.y + 1e-30), 0.1, 10.0);
 }
@@ -164,7 +209,7 @@ double projected_aspect(Scene scene, const Vec3d& up) {
 std::vector<std::size_t> places_of(Scene scene, std::span<const std::uint32_t> models) {
   std::map<std::uint32_t, Box> boxes;
   for (std::size_t i = 0; i < scene.size(); ++i) {
-    const Box box = box_of(scene.subspan(i, 1));
+    const Box box = box_of(points_of(scene.subspan(i, 1)));
     if (box.empty) continue;
     boxes[models[i]].add(scene[i].origin + box.low);
     boxes[models[i]].add(scene[i].origin + box.high);

@@ -16,7 +16,9 @@ struct PointSet {
 };
 using Scene = std::span<const PointSet>;
 
-// As fit_camera, but as close as the points themselves allow, and not their box.
+// As fit_camera, but as close as the points themselves allow, and not their box. Where nearly all
+// of them lie within an eighth of the whole, such as a town on a wide ground, these and what is
+// around. Time and memory linear in points.
 Camera fit_camera_to(Scene scene, const Vec3d& up, int width_px, int height_px);
 
 // The same from behind and to the right of someone who looks along `forward`; where that is up or

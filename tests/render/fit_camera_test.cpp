@@ -69,6 +69,35 @@ TEST_CASE("the fitted camera looks from above and has the scene's up up") {
   }
 }
 
+TEST_CASE("few points that are far from all others do not make these small") {
+  // 1,000 points in a unit cube, and a ground or one vertex `times` as far away.
+  const auto share_of_cube = [](std::vector<Vec3f> points, double times, bool ground) {
+    for (int x = 0; x < 10; ++x) {
+      for (int y = 0; y < 10; ++y) {
+        for (int z = 0; z < 10; ++z) points.push_back({float(x) / 9, float(y) / 9, float(z) / 9});
+      }
+    }
+    const auto far = float(times);
+    points.push_back({far, far, 0});
+    if (ground) points.insert(points.end(), {{-far, far, 0}, {far, -far, 0}, {-far, -far, 0}});
+    const PointSet set{{700, 0, 0}, points};
+    const Camera camera = fit_camera_to(std::span(&set, 1), {0, 0, 1}, 800, 800);
+    const Extent e = extent_of_box(camera, {700, 0, 0}, {701, 1, 1});
+    const double share = std::max(e.right - e.left, e.bottom - e.top) / 800;
+    CHECK(e.left >= 0);
+    CHECK(e.right <= 800);
+    CHECK(e.top >= 0);
+    CHECK(e.bottom <= 800);
+    return share;
+  };
+  CHECK(share_of_cube({}, 3, true) < 0.4);  // all of that is shown
+  CHECK(share_of_cube({}, 40, true) > 0.6);
+  CHECK(share_of_cube({}, 40, false) > 0.6);
+  // Two groups far apart are both shown.
+  const std::vector<Vec3f> group(500, Vec3f{40, 40, 0});
+  CHECK(share_of_cube(group, 3, true) < 0.1);
+}
+
 TEST_CASE("a box without extent still gives a camera") {
   const Camera camera = fit_camera({5, 5, 5}, {5, 5, 5}, 640, 480);
   const auto [x, y] = project(camera, {5, 5, 5});
