@@ -4,7 +4,7 @@
 #include "cli/fields.h"
 #include "cli/number_check.h"
 #include "cli/text.h"
-#include "crease/block_view.h"
+#include "cli/view_blocks.h"
 #include "crease/build_progressive_arrays.h"
 #include "crease/http_source.h"
 #include "crease/threads.h"
@@ -215,24 +215,21 @@ std::uint16_t finest_band_for(const ModelFacts& facts, std::size_t triangles) {
   return band;
 }
 
-// Of the errors allowed. Until a block is read its worst vertex stands for all of them, and the
-// blocks that lead to it get as many splits as that asks for: with those alone that are seen to be
-// wrong, up to 60 % more triangles than with the whole file; with those that are wrong by a quarter
-// of that, at most a few.
-constexpr double kKnownErrors = 0.25;
-
 // A host was asked for more than the head, a disk is as if it had not been.
 ModelFile::ModelFile(BlockFile blocks, std::vector<std::byte> built, const Common& common)
     : built_(std::move(built)),
       blocks_(std::move(blocks)),
       read_to_open_(blocks_.source().bytes_read()),
-      bytes_to_open_(is_http_url(blocks_.source().name()) ? read_to_open_
-                                                          : blocks_.head().head_bytes),
+      bytes_to_open_(is_remote() ? read_to_open_ : blocks_.head().head_bytes),
       common_(&common) {}
+
+bool ModelFile::is_remote() const {
+  return is_http_url(blocks_.source().name());
+}
 
 std::uint64_t ModelFile::bytes_read() const {
   const std::uint64_t read = blocks_.source().bytes_read() - read_to_open_ + bytes_to_open_;
-  if (is_http_url(blocks_.source().name())) return read;
+  if (is_remote()) return read;
   return std::min(read, blocks_.source().size());
 }
 
@@ -249,15 +246,7 @@ Result<Model> ModelFile::load(const Detail& detail) const {
   }
   if (detail.is_mesh_only) options.contracted_bands = 0;
   options.part_names = detail.part_names;
-  ViewParameters view;
-  if (detail.view) {
-    view = *detail.view;
-    view.camera.pixels *= kKnownErrors;
-    view.degrees *= kKnownErrors;
-    options.wants = [&](const BlockEntry& entry) {
-      return needs_block(entry.facts, facts.grid, view);
-    };
-  }
+  if (detail.view) options.wants = blocks_for_view(facts, *detail.view);
   const std::uint64_t before = blocks_.source().bytes_read();
   Result<DecodedModel> decoded = decode_model(blocks_, options);
   if (!decoded.ok()) return decoded.failure();
@@ -274,7 +263,7 @@ Result<std::vector<ImageFile>> ModelFile::images(std::span<const Material> mater
   if (!has_textures) return std::vector<ImageFile>();
   const std::string& name = blocks_.source().name();
   Result<std::vector<ImageFile>> images = blocks_.read_images();
-  if (!images.ok() || was_built() || is_http_url(name)) return images;
+  if (!images.ok() || was_built() || is_remote()) return images;
   std::vector<std::filesystem::path> folders{std::filesystem::path(name).parent_path()};
   if (!texture_folder_.empty()) folders.push_back(texture_folder_);
   for (const std::string& note : find_images(folders, materials, *images)) {

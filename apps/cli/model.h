@@ -77,6 +77,7 @@ class ModelFile {
   std::size_t triangle_count() const {
     return static_cast<std::size_t>(blocks_.facts().triangle_count);
   }
+  bool is_remote() const;  // on a host
   std::uint64_t bytes_to_open() const { return bytes_to_open_; }
   // All that came from a host until now. Of a file here, which may be read again and again, how
   // much of it that is.

@@ -2,6 +2,7 @@
 
 #include "cli/console.h"
 #include "cli/number_check.h"
+#include "cli/view_blocks.h"
 #include "crease/render.h"
 
 #include <algorithm>
@@ -47,14 +48,35 @@ Result<ModelHierarchy> load_hierarchy(const ModelFile& file, const Detail& detai
 namespace {
 
 // The views with more error that are tried before what is asked for: so that of a view that needs
-// far more triangles than it may have, no more is read than they take. All together read a third
-// more at most, and make as much of it.
+// far more triangles than it may have, not much more is read than they take.
 constexpr double kCoarsest = 256, kStep = 4;
+// What a try may read over the one before it that would do, so that there are few.
+constexpr double kNearlyAll = 1.5;
 
 ViewParameters with_errors(ViewParameters view, double times) {
   view.camera.pixels *= times;
   view.degrees *= times;
   return view;
+}
+
+// Times the errors asked for: 1 in the end. Those whose blocks, as the file's directory knows, have
+// no more triangles than are allowed need no try, nor those that read little less than the next.
+Result<std::vector<double>> tries_of(const BlockFile& file, const ViewParameters& view) {
+  const Result<BlockDirectory> directory = BlockDirectory::read(file);
+  if (!directory.ok()) return directory.failure();
+  std::vector<double> tries;
+  double triangles_before = 0;  // of the first try that the last one of `tries` stands for
+  for (double times = kCoarsest; times >= 1; times /= kStep) {
+    const double triangles = double(directory->triangles_at_most(with_errors(view, times)));
+    if (tries.empty() && times > 1 && triangles <= double(view.max_triangles)) continue;
+    if (!tries.empty() && triangles <= kNearlyAll * triangles_before) {
+      tries.back() = times;
+    } else {
+      tries.push_back(times);
+      triangles_before = triangles;
+    }
+  }
+  return tries;
 }
 
 // What unfolding takes is left free by the view, which is looked at again until there is enough:
@@ -103,24 +125,33 @@ Result<ViewedModel> load_viewed(const ModelFile& file, const ViewParameters& vie
   ViewParameters unlimited = view;
   unlimited.max_triangles = ViewParameters{}.max_triangles;
   const bool has_limit = view.max_triangles != unlimited.max_triangles;
-  for (double times = has_limit && !reads.all ? kCoarsest : 1;; times /= kStep) {
+  const std::uint64_t read_before = file.bytes_read();
+  Result<std::vector<double>> tries = std::vector<double>{1};
+  if (has_limit && !reads.all) tries = tries_of(file.blocks(), view);
+  if (!tries.ok()) return tries.failure();
+  for (std::size_t i = 0;; ++i) {
+    const double times = (*tries)[i];
     Detail detail{.part_names = reads.part_names};
     if (!reads.all) detail.view = with_errors(unlimited, times);
     Result<ModelHierarchy> model = load_hierarchy(file, detail);
     if (!model.ok()) return model.failure();
-    const std::vector<char> faces_away = triangles_facing_away(model->finest, model->maps);
     AdaptiveMesh mesh(model->hierarchy);
     mesh.update(with_errors(unlimited, times));
-    mesh.unfold(unlimited.max_triangles, faces_away);
+    if (times > 1 && mesh.triangle_count() <= view.max_triangles) continue;
+
+    // A host was asked for what came with the tries before as well.
+    const std::uint64_t read = file.is_remote()
+                                   ? file.bytes_read() - read_before + file.bytes_to_open()
+                                   : model->bytes_read;
     const auto viewed = [&](AdaptiveMesh& as, StoppedBy stop) {
-      return ViewedModel{std::move(as), stop, model->error, model->bytes_read, model->blocks_read};
+      return ViewedModel{std::move(as), stop, model->error, read, model->blocks_read};
     };
-    if (mesh.triangle_count() > view.max_triangles) {
-      AdaptiveMesh limited = limited_cut(model->hierarchy, with_errors(view, times), faces_away);
-      const bool fits = limited.triangle_count() <= view.max_triangles;
-      return viewed(limited, fits ? StoppedBy::Triangles : StoppedBy::Topology);
-    }
-    if (times <= 1) return viewed(mesh, StoppedBy::View);
+    const std::vector<char> faces_away = triangles_facing_away(model->finest, model->maps);
+    mesh.unfold(unlimited.max_triangles, faces_away);
+    if (mesh.triangle_count() <= view.max_triangles) return viewed(mesh, StoppedBy::View);
+    AdaptiveMesh limited = limited_cut(model->hierarchy, with_errors(view, times), faces_away);
+    const bool fits = limited.triangle_count() <= view.max_triangles;
+    return viewed(limited, fits ? StoppedBy::Triangles : StoppedBy::Topology);
   }
 }
 

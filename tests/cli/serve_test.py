@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -82,6 +83,19 @@ class Serve(tool.Case):
                             ("render", url + "city.crease", "-o", self.path("a.png"), "--size", "64x48")):
                 coarse = self.json(*command, "--triangles", 100)
                 self.assertEqual(coarse["bytes_read"], 65536)
+
+    def test_all_that_came_is_counted_whatever_had_to_be_tried(self):
+        self.built(40000)
+        camera = self.write("camera.json", json.dumps(
+            {"position": [-150, -200, 40], "target": [0, 0, 0], "up": [0, 0, 1], "pixels": 0.25}))
+        for target in ((), ("--triangles", 1500), ("--triangles", 6000)):
+            with self.served() as (url, server):
+                told = self.json("extract", url + "city.crease", "-o", self.path("seen.stl"),
+                                 "--view", camera, *target, "--samples", 0)
+                server.send_signal(signal.SIGTERM)
+                _, log = server.communicate()
+            ranges = re.findall(r"bytes=(\d+)-(\d+)", log)
+            self.assertEqual(told["bytes_read"], sum(int(b) + 1 - int(a) for a, b in ranges))
 
     def test_what_is_asked_to_be_measured_is(self):
         self.built()
