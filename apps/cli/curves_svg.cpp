@@ -13,6 +13,7 @@ namespace {
 
 // Of the drawing, in units of its viewBox.
 constexpr double kWidth = 480, kHeight = 300;
+constexpr double kSmallest = 1e-7;  // over the largest value: what is less is as good as none
 constexpr double kLeft = 64, kRight = 34, kTop = 12, kBottom = 46;
 
 std::string svg_number(double value) {
@@ -106,11 +107,11 @@ std::string grid_svg(const Plot& plot, const LogScale& x, const LogScale& y) {
   return svg;
 }
 
-std::string curve_svg(const Curve& curve, const LogScale& x, const LogScale& y) {
+std::string curve_svg(const Curve& curve, const LogScale& x, const LogScale& y, double lowest) {
   const std::string style = "curve" + std::to_string(curve.color);
   std::string line, marks;
   for (const auto& [px, py] : curve.points) {
-    if (!(px > 0) || !(py > 0)) continue;
+    if (!(px > 0) || py < lowest) continue;
     line += (line.empty() ? "" : " ") + svg_number(x.at(px)) + "," + svg_number(y.at(py));
     marks += "<circle class=\"" + style + "\" cx=\"" + svg_number(x.at(px)) + "\" cy=\"" +
              svg_number(y.at(py)) + "\" r=\"3\"/>\n";
@@ -168,19 +169,24 @@ std::string curves_svg(const Plot& plot) {
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {0, 0};
   for (const Curve& curve : plot.curves) {
     for (const auto& [px, py] : curve.points) {
-      if (!(px > 0) || !(py > 0)) continue;
+      if (px > 0) high[1] = std::max(high[1], py);
+    }
+  }
+  if (high[1] == 0) return html + "<p>Nothing to plot: no level is off.</p></figure>\n";
+  const double lowest = kSmallest * high[1];
+  for (const Curve& curve : plot.curves) {
+    for (const auto& [px, py] : curve.points) {
+      if (!(px > 0) || py < lowest) continue;
       low[0] = std::min(low[0], px);
       high[0] = std::max(high[0], px);
       low[1] = std::min(low[1], py);
-      high[1] = std::max(high[1], py);
     }
   }
-  if (high[0] == 0) return html + "<p>Nothing to plot: no level is off.</p></figure>\n";
   const LogScale x(low[0], high[0], kLeft, kWidth - kRight);
   const LogScale y(low[1], high[1], kHeight - kBottom, kTop);
   html += "<svg viewBox=\"0 0 " + svg_number(kWidth) + " " + svg_number(kHeight) +
           "\" role=\"img\" aria-label=\"" + escaped(plot.title) + "\">\n" + grid_svg(plot, x, y);
-  for (const Curve& curve : plot.curves) html += curve_svg(curve, x, y);
+  for (const Curve& curve : plot.curves) html += curve_svg(curve, x, y, lowest);
   return html + "</svg>\n" + legend_html(plot) + "</figure>\n";
 }
 

@@ -15,7 +15,7 @@ struct Curve {
   int color = 0;           // 0 to 2: the page's style has .curve0 to .curve2
   bool is_dashed = false;  // and without marks
   std::vector<std::pair<double, double>>
-      points;  // what is not above 0 has no place and is left out
+      points;  // left out: x of 0, and y of 0 or next to nothing beside the plot's largest
 };
 
 struct Axis {

@@ -17,6 +17,10 @@
 namespace crease::cli {
 
 Result<Camera> read_camera(const std::filesystem::path& path) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) {
+    return fail(Error::ReadFailed, path.string() + ": a folder, not a camera file");
+  }
   std::ifstream in(path, std::ios::binary);
   if (!in) return fail(Error::NotFound, path.string() + ": no such camera file");
   const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());

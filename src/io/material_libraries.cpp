@@ -77,7 +77,7 @@ class LibraryReader {
     // Where libraries were named and none was read, all are, and each has a note of its own.
     if (any_ || named.empty()) {
       is_known_.flip();
-      note_materials(materials_, is_known_, "in no library: white", libraries_.notes);
+      note_materials(materials_, is_known_, "in no library: without a colour", libraries_.notes);
     }
     return std::move(libraries_);
   }

@@ -65,7 +65,9 @@ Frame common_frame(const Mesh& a, const Mesh& b) {
 }
 
 double angle_between(const Vec3d& a, const Vec3d& b) {
-  return std::atan2(length(cross(a, b)), dot(a, b));
+  constexpr double kRounding = 1e-12;  // of doubles that went ways of their own
+  const double angle = std::atan2(length(cross(a, b)), dot(a, b));
+  return angle < kRounding ? 0 : angle;
 }
 
 struct Surface::Query {

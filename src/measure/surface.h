@@ -81,7 +81,8 @@ class Surface {
   std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
 };
 
-// 0 to pi; exact for small angles too. Zero vectors deviate by nothing.
+// 0 to pi; exact for small angles too, down to 1e-12, below which it is rounding and none. Zero
+// vectors deviate by nothing.
 double angle_between(const Vec3d& a, const Vec3d& b);
 
 }  // namespace crease

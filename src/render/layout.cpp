@@ -56,6 +56,7 @@ Layout make_layout(const LayoutRequest& request) {
   if (request.columns > 0) return lay_out(request, std::min(request.columns, count));
   Layout best = lay_out(request, count);
   for (int columns = count - 1; columns >= 1; --columns) {
+    if (columns % request.group != 0 && request.group % columns != 0) continue;
     Layout other = lay_out(request, columns);
     // A row reads better than a grid: leave it only for a fifth more.
     const double bonus = best.rows == 1 ? 1.2 : 1.001;

@@ -23,6 +23,8 @@ struct LayoutRequest {
   std::size_t panel_count = 1;
   int width_px = 1920, height_px = 1080;
   int columns = 0;            // 0: those that show the content largest
+  int group = 1;              // so many one after the other belong together: a row has some of
+                              // them, all in it, or a part of one
   double content_aspect = 1;  // width over height of what each panel shows
   bool titles = false, legend = false;
 };

@@ -252,9 +252,20 @@ GlMaterialsPtr upload_materials(const DrawList& list, const GlLimits& gl,
   return materials;
 }
 
-// `content_aspect` counts where there is no camera.
+// Panels of one model, where all have as many one after the other; else 1.
+int panels_a_model(std::span<const std::uint32_t> models) {
+  std::size_t group = 0;
+  for (std::size_t begin = 0, end = 0; begin < models.size(); begin = end) {
+    while (end < models.size() && models[end] == models[begin]) ++end;
+    if (begin == 0) group = end;
+    if (end - begin != group) return 1;
+  }
+  return int(std::max<std::size_t>(1, group));
+}
+
+// `content_aspect` and `group` count where there is no camera.
 Result<Layout> lay_out_panels(std::size_t panel_count, bool has_titles, double content_aspect,
-                              const RenderOptions& options) {
+                              int group, const RenderOptions& options) {
   if (panel_count == 0) return fail(Error::BadValue, "no panel to draw");
   if (options.camera && !can_see(*options.camera)) {
     return fail(Error::BadValue, "a camera that sees nothing: not finite, or without a direction");
@@ -269,6 +280,7 @@ Result<Layout> lay_out_panels(std::size_t panel_count, bool has_titles, double c
                                .width_px = options.width_px,
                                .height_px = options.height_px,
                                .columns = options.columns,
+                               .group = options.camera ? 1 : group,
                                .content_aspect = options.camera ? double(options.camera->width_px) /
                                                                       options.camera->height_px
                                                                 : content_aspect,
@@ -328,7 +340,7 @@ std::vector<Camera> choose_cameras(Scene scene, std::span<const std::size_t> pla
 Result<Camera> camera_of_panel(std::size_t panel_count, bool has_titles,
                                const RenderOptions& options) {
   CREASE_ASSERT(options.camera);
-  const Result<Layout> layout = lay_out_panels(panel_count, has_titles, 1, options);
+  const Result<Layout> layout = lay_out_panels(panel_count, has_titles, 1, 1, options);
   if (!layout.ok()) return layout.failure();
   return camera_for_shape(*options.camera, layout->views.front().width,
                           layout->views.front().height);
@@ -351,8 +363,8 @@ Result<Image> render_panels(std::span<const Panel> panels, const RenderOptions& 
   const std::vector<std::size_t> places = options.camera || options.frustum
                                               ? std::vector<std::size_t>(panels.size(), 0)
                                               : places_of(scene, models);
-  const Result<Layout> layout =
-      lay_out_panels(panels.size(), has_titles, aspect_of(scene, places, ups), options);
+  const Result<Layout> layout = lay_out_panels(
+      panels.size(), has_titles, aspect_of(scene, places, ups), panels_a_model(models), options);
   if (!layout.ok()) return layout.failure();
   const PixelRect& size = layout->views.front();
   const std::vector<Camera> cameras = choose_cameras(scene, places, ups, options, size);

@@ -74,9 +74,11 @@ void geomorph_slider(double& seconds) {
 void budget_slider(const char* label, const char* id, std::size_t& value, ImU64 unit, ImU64 low,
                    ImU64 high, const char* format) {
   ImU64 units = std::min<ImU64>(value / unit, high);
+  const std::string exact = grouped(value);  // less than the slider can say
+  const char* shown = units >= high ? "no limit" : units < low ? exact.c_str() : format;
   slider_above(label);
-  if (ImGui::SliderScalar(id, ImGuiDataType_U64, &units, &low, &high,
-                          units >= high ? "no limit" : format, ImGuiSliderFlags_Logarithmic)) {
+  if (ImGui::SliderScalar(id, ImGuiDataType_U64, &units, &low, &high, shown,
+                          ImGuiSliderFlags_Logarithmic)) {
     value = units >= high ? std::numeric_limits<std::size_t>::max() : std::size_t(units * unit);
   }
 }
@@ -261,9 +263,9 @@ void half_panels(std::span<const HalfLabel> halves) {
 void help_panel() {
   ImGui::SetNextWindowPos({screen().x / 2, screen().y / 2}, 0, {0.5f, 0.5f});
   ImGui::Begin("help", nullptr, kSeenThrough);
-  for (const MouseRow& row : mouse_rows()) name_and_value(row.how, row.text, 11 * line_px());
+  for (const MouseRow& row : mouse_rows()) name_and_value(row.how, row.text, 14 * line_px());
   ImGui::Separator();
-  for (const KeyRow& row : key_rows()) name_and_value(row.keys, row.text, 11 * line_px());
+  for (const KeyRow& row : key_rows()) name_and_value(row.keys, row.text, 14 * line_px());
   ImGui::End();
 }
 

@@ -167,10 +167,10 @@ TEST_CASE("a library that is not there, or outside, is told once; so are materia
       below("mtllib ../red.mtl\n") ==
       Notes{"material library left out: '../red.mtl' is outside the model's folder, where nothing "
             "is read, and 'red.mtl' is not in it"});
-  CHECK(below("") == Notes{"1 material is in no library: white ('red')"});
+  CHECK(below("") == Notes{"1 material is in no library: without a colour ('red')"});
   CHECK(colors_of(folder, "mtllib red.mtl gone.mtl\n").notes ==
         Notes{"material library left out: no file 'gone.mtl'",
-              "1 material is in no library: white ('blue')"});
+              "1 material is in no library: without a colour ('blue')"});
 }
 
 TEST_CASE("a line of names without end is no long search") {

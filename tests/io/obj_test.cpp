@@ -170,7 +170,7 @@ TEST_CASE("one line may name several material libraries") {
   CHECK(both.mesh.materials[1].base_color == std::array<float, 4>{0, 0, 1, 1});
   CHECK(import_with("a.mtl c.mtl").report.notes ==
         std::vector<std::string>{"material library left out: no file 'c.mtl'",
-                                 "1 material is in no library: white ('blue')"});
+                                 "1 material is in no library: without a colour ('blue')"});
   CHECK(import_with("c d.mtl").report.notes ==
         std::vector<std::string>{"material library left out: no file 'c d.mtl'"});
   std::filesystem::remove_all(folder);
@@ -259,8 +259,8 @@ TEST_CASE("materials that no library has are told, and comments are none of thei
   CHECK(color_of(2) == std::array<float, 4>{0, 1, 0, 1});
   CHECK(color_of(3) == std::array<float, 4>{0, 0, 1, 1});
   CHECK(color_of(4) == std::array<float, 4>{1, 1, 1, 1});
-  CHECK(std::ranges::count(in->report.notes, "1 material is in no library: white ('undefined')") ==
-        1);
+  CHECK(std::ranges::count(in->report.notes,
+                           "1 material is in no library: without a colour ('undefined')") == 1);
   std::filesystem::remove_all(folder);
 }
 

@@ -57,6 +57,19 @@ TEST_CASE("columns that are asked for are given, up to the number of panels") {
   CHECK(make_layout({.panel_count = 3, .columns = 7}).columns == 3);
 }
 
+TEST_CASE("levels of one model stay together") {
+  for (const double aspect : {0.3, 1.0, 2.0, 4.0}) {
+    CAPTURE(aspect);
+    const int columns =
+        make_layout({.panel_count = 9, .group = 3, .content_aspect = aspect}).columns;
+    CHECK((columns == 9 || columns == 6 || columns == 3 || columns == 1));
+    // A single model's levels may stand in any grid.
+    const int alone = make_layout({.panel_count = 4, .group = 4, .content_aspect = aspect}).columns;
+    CHECK((alone == 4 || alone == 2 || alone == 1));
+  }
+  CHECK(make_layout({.panel_count = 9, .group = 3, .content_aspect = 1.0}).columns == 3);
+}
+
 TEST_CASE("tall things stand in a row, wide things one above the other") {
   CHECK(make_layout({.panel_count = 3, .content_aspect = 0.5}).columns == 3);
   CHECK(make_layout({.panel_count = 2, .content_aspect = 1.0}).columns == 2);
