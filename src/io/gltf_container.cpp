@@ -149,7 +149,45 @@ Result<GltfDocument> open_b3dm(const Source& source) {
   return document;
 }
 
+// Extensions that a file may require although nothing here depends on them: materials (techniques
+// are glTF 1.0's), textures and lights change no triangle. KHR_mesh_quantization, CESIUM_RTC, the
+// two compressions, instances and what is visible are read.
+bool is_harmless(const std::string& extension) {
+  static constexpr std::array kPrefixes = {"KHR_materials_",
+                                           "KHR_texture_",
+                                           "EXT_texture_",
+                                           "MSFT_texture_",
+                                           "KHR_lights_",
+                                           "KHR_techniques_webgl",
+                                           "KHR_xmp",
+                                           "KHR_mesh_quantization",
+                                           "CESIUM_RTC",
+                                           "MSFT_lod",
+                                           "EXT_mesh_features",
+                                           "EXT_mesh_gpu_instancing",
+                                           "KHR_node_visibility",
+                                           "EXT_structural_metadata",
+                                           "EXT_meshopt_compression",
+                                           "KHR_meshopt_compression",
+                                           "KHR_draco_mesh_compression"};
+  return std::ranges::any_of(kPrefixes, [&](const char* p) { return extension.starts_with(p); });
+}
+
 }  // namespace
+
+Status check_required_extensions(const Source& source, const Json& json) {
+  const Json& required = at(json, "extensionsRequired");
+  for (std::size_t i = 0; i < size_of(required); ++i) {
+    const std::string extension = as_text(required[i]);
+    if (is_harmless(extension)) continue;
+    const bool compressed = extension.find("compression") != std::string::npos;
+    return fail_at_place(
+        Error::NotSupported, source, place_of("extensionsRequired", i),
+        in_quotes(extension) + " is not supported" +
+            (compressed ? "; KHR_meshopt_compression and KHR_draco_mesh_compression are" : ""));
+  }
+  return Done{};
+}
 
 Result<GltfDocument> open_gltf(const Source& source) {
   Result<GltfDocument> document = GltfDocument{};

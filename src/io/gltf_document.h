@@ -36,6 +36,9 @@ struct GltfDocument {
 // Told by the first bytes. The document keeps views into the source's bytes.
 Result<GltfDocument> open_gltf(const Source& source);
 
+// NotSupported where the file cannot be read without an extension that is not read here.
+Status check_required_extensions(const Source& source, const Json& json);
+
 // The binary data of a "data:" URI. Fails if it is not base64.
 Result<std::vector<std::byte>> decode_data_uri(const Source& source, const std::string& place,
                                                std::string_view uri);

@@ -8,6 +8,7 @@
 #include "io/gltf_materials.h"
 #include "io/gltf_scene.h"
 #include "io/gltf_skin.h"
+#include "io/gltf_used_vertices.h"
 #include "io/text.h"
 
 #include <algorithm>
@@ -20,44 +21,6 @@
 
 namespace crease {
 namespace {
-
-// Extensions that a file may require although nothing here depends on them: materials (techniques
-// are glTF 1.0's), textures and lights change no triangle. KHR_mesh_quantization, CESIUM_RTC, the
-// two compressions, instances and what is visible are read.
-bool is_harmless(const std::string& extension) {
-  static constexpr std::array kPrefixes = {"KHR_materials_",
-                                           "KHR_texture_",
-                                           "EXT_texture_",
-                                           "MSFT_texture_",
-                                           "KHR_lights_",
-                                           "KHR_techniques_webgl",
-                                           "KHR_xmp",
-                                           "KHR_mesh_quantization",
-                                           "CESIUM_RTC",
-                                           "MSFT_lod",
-                                           "EXT_mesh_features",
-                                           "EXT_mesh_gpu_instancing",
-                                           "KHR_node_visibility",
-                                           "EXT_structural_metadata",
-                                           "EXT_meshopt_compression",
-                                           "KHR_meshopt_compression",
-                                           "KHR_draco_mesh_compression"};
-  return std::ranges::any_of(kPrefixes, [&](const char* p) { return extension.starts_with(p); });
-}
-
-Status check_required_extensions(const Source& source, const Json& json) {
-  const Json& required = at(json, "extensionsRequired");
-  for (std::size_t i = 0; i < size_of(required); ++i) {
-    const std::string extension = as_text(required[i]);
-    if (is_harmless(extension)) continue;
-    const bool compressed = extension.find("compression") != std::string::npos;
-    return fail_at_place(
-        Error::NotSupported, source, place_of("extensionsRequired", i),
-        in_quotes(extension) + " is not supported" +
-            (compressed ? "; KHR_meshopt_compression and KHR_draco_mesh_compression are" : ""));
-  }
-  return Done{};
-}
 
 // 3.7.2.1: primitive.mode.
 enum class Mode : std::size_t { Triangles = 4, Strip = 5, Fan = 6 };
@@ -229,9 +192,9 @@ class MeshBuilder {
     if (!decompressed.ok()) return decompressed;
     Status morphed = morph(primitive, place, weights);
     if (!morphed.ok()) return morphed;
-    const auto positions = reader_.floats(at(attributes, "POSITION"), 3, 3, position_place);
+    auto positions = reader_.floats(at(attributes, "POSITION"), 3, 3, position_place);
     if (!positions.ok()) return positions.failure();
-    const std::size_t vertex_count = positions->count();
+    std::size_t vertex_count = positions->count();
 
     std::vector<std::uint32_t> indices;
     const bool indexed = !at(primitive, "indices").is_null();
@@ -248,6 +211,14 @@ class MeshBuilder {
     }
     const std::size_t run = indexed ? indices.size() : vertex_count;
     if (mode == 4 && run % 3 != 0) ++odd_runs_;
+    const std::vector<std::uint32_t> used =
+        keep_used_vertices(attributes, vertex_count, indices, reader_);
+    if (!used.empty()) {
+      positions = reader_.floats(at(attributes, "POSITION"), 3, 3, position_place);
+      if (!positions.ok()) return positions.failure();
+      work_ += vertex_count;
+      vertex_count = used.size();
+    }
     if (!within_limit(instances.size(), vertex_count, run)) {
       return fail_at_place(Error::OverLimit, source_, place,
                            "instances and shared accessors multiply the file beyond reason");
@@ -262,7 +233,7 @@ class MeshBuilder {
     const std::size_t first_triangle = raw_.triangles.size();
     for (std::size_t i = 0; i < instances.size(); ++i) {
       const auto base = static_cast<std::uint32_t>(raw_.positions.size());
-      const auto mirrored = add_positions(*positions, (*placements)[i], position_place);
+      const auto mirrored = add_positions(*positions, used, (*placements)[i], position_place);
       if (!mirrored.ok()) return mirrored.failure();
       const auto vertex = [&](std::size_t c) {
         return base + (indexed ? indices[c] : static_cast<std::uint32_t>(c));
@@ -280,7 +251,9 @@ class MeshBuilder {
   }
 
   // True if the placement mirrors: if most vertices are, as a primitive has one winding (3.7.4).
-  Result<bool> add_positions(const GltfReader::Floats& positions, const Placement& placement,
+  // `used`: which of the accessor's they are, or empty: all.
+  Result<bool> add_positions(const GltfReader::Floats& positions,
+                             std::span<const std::uint32_t> used, const Placement& placement,
                              const std::string& place) {
     Transform to_world;
     bool is_mirrored = false;
@@ -293,7 +266,7 @@ class MeshBuilder {
       }
       const Vec3d p = to_world.point({stored[0], stored[1], stored[2]}) + center_;
       if (!is_position(p)) {
-        return fail_at_place(Error::BadValue, source_, place_of(place, v),
+        return fail_at_place(Error::BadValue, source_, place_of(place, used.empty() ? v : used[v]),
                              std::string("position is ") + fault_of(p));
       }
       raw_.positions.push_back(p);

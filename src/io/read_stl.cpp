@@ -10,8 +10,10 @@
 #include <array>
 #include <bit>
 #include <cctype>
+#include <cstdint>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -56,12 +58,19 @@ std::optional<std::array<float, 3>> color_in(std::string_view header) {
   return color;
 }
 
-void add_color(unsigned attribute, const std::array<float, 3>& of_others, RawLayer& colors) {
+// Writers that know the colour of the whole alone leave all attributes 0, which would be black.
+RawLayer colors_of(std::span<const std::uint16_t> attributes,
+                   const std::array<float, 3>& of_others) {
   constexpr unsigned kNotItsOwn = 0x8000;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float own = static_cast<float>(attribute >> (5 * k) & 31) / 31;
-    colors.values.push_back((attribute & kNotItsOwn) != 0 ? of_others[k] : own);
+  const bool has_own = std::ranges::any_of(attributes, [](std::uint16_t a) { return a != 0; });
+  RawLayer colors = color_layer(RawLayer::Per::Face, 3);
+  for (const unsigned attribute : attributes) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float own = static_cast<float>(attribute >> (5 * k) & 31) / 31;
+      colors.values.push_back(!has_own || (attribute & kNotItsOwn) != 0 ? of_others[k] : own);
+    }
   }
+  return colors;
 }
 
 void add_triangle(RawMesh& raw) {
@@ -75,15 +84,7 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
   raw.usual_up = UpAxis::Z;
   raw.positions.reserve(3 * facet_count);
   raw.triangles.reserve(facet_count);
-  RawLayer attribute{std::string(kStlAttribute),
-                     AttributeRole::Other,
-                     Interpolation::Categorical,
-                     RawLayer::Per::Face,
-                     1,
-                     {},
-                     {}};
-  RawLayer colors = color_layer(RawLayer::Per::Face, 3);
-  bool has_attribute = false;
+  std::vector<std::uint16_t> attributes;
   const std::string_view header = source.text().substr(0, kHeaderBytes - 4);
   const Vec3d origin = origin_in(header);
   const std::optional<std::array<float, 3>> color = color_in(header);
@@ -103,22 +104,32 @@ Result<RawMesh> read_binary(const Source& source, std::size_t facet_count) {
     add_triangle(raw);
     const auto low = std::to_integer<unsigned>(source.bytes[facet + 48]);
     const auto high = std::to_integer<unsigned>(source.bytes[facet + 49]);
-    if (color) {
-      add_color(low | high << 8, *color, colors);
-      continue;
-    }
-    attribute.values.push_back(static_cast<float>(low | high << 8));
-    has_attribute = has_attribute || attribute.values.back() != 0;
+    attributes.push_back(static_cast<std::uint16_t>(low | high << 8));
   }
+  const bool has_attributes = std::ranges::any_of(attributes, [](auto a) { return a != 0; });
   if (color && facet_count > 0) {
-    raw.layers.push_back(std::move(colors));
-    raw.report.notes.push_back("attribute bytes are colours, as its header says");
+    raw.layers.push_back(colors_of(attributes, *color));
+    raw.report.notes.push_back(has_attributes ? "attribute bytes are colours, as its header says"
+                                              : "all of the colour that its header has");
+  } else if (has_attributes) {
+    raw.layers.push_back({std::string(kStlAttribute),
+                          AttributeRole::Other,
+                          Interpolation::Categorical,
+                          RawLayer::Per::Face,
+                          1,
+                          {attributes.begin(), attributes.end()},
+                          {}});
   }
-  if (has_attribute) raw.layers.push_back(std::move(attribute));
   if (source.bytes.size() > kHeaderBytes + kFacetBytes * facet_count) {
     raw.report.notes.push_back("bytes after the last facet ignored");
   }
   return raw;
+}
+
+std::string next_word(Line& line) {
+  std::string word(line.word().substr(0, 16));
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return word;
 }
 
 Result<RawMesh> read_text(const Source& source) {
@@ -132,8 +143,8 @@ Result<RawMesh> read_text(const Source& source) {
   while (lines.next(line)) {
     // A line may hold several statements: some writers put a whole facet on one.
     while (!line.done()) {
-      std::string word(line.word().substr(0, 16));
-      for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      std::string word = next_word(line);
+      if (word == "end") word += next_word(line);  // "end solid", as Geomagic writes it
       const auto refuse = [&](Error error, const std::string& reason) {
         return fail_at_line(error, source, line.line_number, reason);
       };

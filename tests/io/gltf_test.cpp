@@ -7,7 +7,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace crease {
@@ -318,6 +321,62 @@ TEST_CASE("glTF: every index type, and none") {
   set(shorts, shorts.add<std::uint16_t>({0, 1, 2}, "SCALAR"));
   set(ints, ints.add<std::uint32_t>({0, 1, 2}, "SCALAR"));
   for (const GltfBuilder* b : {&none, &bytes, &shorts, &ints}) check(*b);
+}
+
+// One strip of squares, of which each primitive has a few: in buffers of their own, or all in one.
+TEST_CASE("glTF: primitives that share their vertices are as those with their own") {
+  constexpr std::size_t kPrimitives = 40, kSquares = 5;
+  constexpr std::size_t kOwn = 2 * (kSquares + 1);
+  std::vector<float> positions, texcoords;
+  std::vector<std::uint8_t> colors;
+  for (std::size_t i = 0; i < kPrimitives * kOwn; ++i) {
+    const auto x = float(i / 2);
+    positions.insert(positions.end(), {x, float(i % 2), x * x / 1000});
+    texcoords.insert(texcoords.end(), {x / 500, float(i % 2)});
+    for (int k = 0; k < 4; ++k)
+      colors.push_back(static_cast<std::uint8_t>(7 * i + 31 * std::size_t(k)));
+  }
+  const auto part = [](const auto& values, std::size_t components, std::size_t p) {
+    const auto first = values.begin() + std::ptrdiff_t(p * kOwn * components);
+    return std::decay_t<decltype(values)>(first, first + std::ptrdiff_t(kOwn * components));
+  };
+  GltfBuilder shared, own;
+  const std::size_t all_positions = shared.add(positions, "VEC3"),
+                    all_texcoords = shared.add(texcoords, "VEC2"),
+                    all_colors = shared.add(colors, "VEC4", true);
+  for (std::size_t p = 0; p < kPrimitives; ++p) {
+    std::vector<std::uint16_t> indices, in_all;
+    for (std::size_t i = 0; i < kSquares; ++i) {
+      for (const std::size_t corner : {0, 2, 3, 0, 3, 1}) {
+        indices.push_back(static_cast<std::uint16_t>(2 * i + corner));
+        in_all.push_back(static_cast<std::uint16_t>(p * kOwn + 2 * i + corner));
+      }
+    }
+    shared.primitive(
+        {{"POSITION", all_positions}, {"TEXCOORD_0", all_texcoords}, {"COLOR_0", all_colors}},
+        shared.add(in_all, "SCALAR"));
+    own.primitive({{"POSITION", own.add(part(positions, 3, p), "VEC3")},
+                   {"TEXCOORD_0", own.add(part(texcoords, 2, p), "VEC2")},
+                   {"COLOR_0", own.add(part(colors, 4, p), "VEC4", true)}},
+                  own.add(indices, "SCALAR"));
+  }
+  const Imported a = import_text(shared.glb(), "a.glb"), b = import_text(own.glb(), "b.glb");
+  CHECK(a.mesh.positions == b.mesh.positions);
+  CHECK(a.mesh.triangles == b.mesh.triangles);
+  REQUIRE(a.mesh.layers.size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    CHECK(a.mesh.layers[k].values == b.mesh.layers[k].values);
+    CHECK(a.mesh.layers[k].of_corner == b.mesh.layers[k].of_corner);
+  }
+  CHECK(a.mesh.triangle_count() == 2 * kPrimitives * kSquares);
+  CHECK(a.report.welded_vertices == b.report.welded_vertices);
+
+  // What is wrong with one of them is named by its place in the accessor.
+  positions[3 * 25] = std::numeric_limits<float>::infinity();
+  GltfBuilder broken;
+  broken.primitive({{"POSITION", broken.add(positions, "VEC3")}},
+                   broken.add(std::vector<std::uint16_t>{24, 25, 26}, "SCALAR"));
+  CHECK(refusal_of(broken.glb(), "c.glb").find("POSITION[25]: position is") != std::string::npos);
 }
 
 TEST_CASE("glTF: strips and fans run the way their first triangle does") {

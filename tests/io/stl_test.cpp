@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 namespace crease {
 namespace {
 
@@ -76,6 +78,24 @@ TEST_CASE("attribute bytes are colours where the header says so") {
   };
   CHECK(of_triangle(0) == std::vector<float>{1, 0, 1});
   CHECK(of_triangle(1) == std::vector<float>{0, 1, 0});
+}
+
+TEST_CASE("where no facet has a colour of its own all have the header's") {
+  std::string bytes = binary_stl(2, 2, 0);
+  bytes.replace(30, 10, std::string("COLOR=\x7f\x7f\x7f\xff", 10));
+  const Imported in = import_text(bytes, "a.stl");
+  REQUIRE(in.mesh.layers.size() == 2);
+  CHECK(in.mesh.layers[1].values == std::vector<float>(3, 127 / 255.0F));
+  CHECK(std::ranges::count(in.report.notes, "all of the colour that its header has") == 1);
+}
+
+TEST_CASE("an end may stand apart from what ends") {
+  const std::string text =
+      "solid a\n facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 0 0\n vertex 0 1 0\n"
+      " end loop\n END facet\nend solid\n";
+  CHECK(import_text(text, "a.stl").mesh.triangle_count() == 1);
+  CHECK(refusal_of(text + "end of file\n", "a.stl").find("not a word of STL: 'endof'") !=
+        std::string::npos);
 }
 
 TEST_CASE("several solids in a text are parts; case and layout do not matter") {
