@@ -51,10 +51,11 @@ constexpr int kMostStalls = 3;
 // More than any contraction costs, and less than what is never done (infinity).
 constexpr double kNoLimit = 1e300;
 
-// Parts join (virtual pairs) when they have fewer triangles than this on average. To join two takes
-// no triangle away but moves both: while they have triangles to give, it only tears them. A part of
-// fewer than kCard has none to give, a tile of a roof or a leaf, and may join at any time: else
-// half a roof of tiles would be single triangles.
+// To join two parts (virtual pairs) takes no triangle away but moves both: while they have
+// triangles to give, it only tears them. A part of fewer than kCard has none to give, a tile of a
+// roof or a leaf, and may join at any time: else half a roof of tiles would be single triangles.
+// One of fewer than this may where that is what parts have on average. Either joins its like, or
+// what is larger: a leaf on a thin branch would be dragged along by what the branch gives.
 constexpr std::uint32_t kFewTriangles = 6;
 
 // Positions are rounded to the grid: this much surface error is not error, grid units.
@@ -86,9 +87,9 @@ void find_parts(WorkMesh& work) {
   }
 }
 
-// The live triangles of each part, and how many parts have any. From then on `part_of_vertex` leads
-// to the parts of live vertices at once.
-std::size_t count_part_triangles(WorkMesh& work) {
+// The live triangles of each part and their area, and how many parts have any. From then on
+// `part_of_vertex` leads to the parts of live vertices at once.
+std::size_t measure_parts(WorkMesh& work) {
   std::vector<std::uint32_t>& part = work.part_of_vertex;
   if (3 * work.live.size() < work.positions.size()) {
     for (std::uint32_t t : work.live) {
@@ -102,8 +103,16 @@ std::size_t count_part_triangles(WorkMesh& work) {
   }
   std::vector<std::uint32_t>& count = work.triangles_of_part;
   count.assign(work.positions.size(), 0);
+  work.area_of_part.assign(work.positions.size(), 0);
   std::size_t live_parts = 0;
-  for (std::uint32_t t : work.live) live_parts += count[part[work.vertex_of_corner[3 * t]]]++ == 0;
+  for (std::uint32_t t : work.live) {
+    const std::uint32_t* v = &work.vertex_of_corner[3 * t];
+    const Vec3d p = to_double(work.positions[v[0]]);
+    const Vec3d cross_product =
+        cross(to_double(work.positions[v[1]]) - p, to_double(work.positions[v[2]]) - p);
+    live_parts += count[part[v[0]]]++ == 0;
+    work.area_of_part[part[v[0]]] += float(length(cross_product));
+  }
   return live_parts;
 }
 
@@ -153,7 +162,7 @@ class Simplifier {
       }
       Extent extent;
       bool parts_join = false;
-      if (work_.part_count > 1) parts_join = before < kFewTriangles * count_part_triangles(work_);
+      if (work_.part_count > 1) parts_join = before < kFewTriangles * measure_parts(work_);
       parallel_both([&] { extent = measure_extent(work_); },
                     [&] {
                       if (!limits || limits->begins_band()) start_band(band);
@@ -180,7 +189,7 @@ class Simplifier {
       steering.cost_limit = last ? kNoLimit : limits->limit();
       const double step = last ? kNoLimit : std::sqrt(limits->limit() / (triangle_area * 6));
       steering.virtual_distance = 2 * step;
-      steering.joins_below = last || parts_join ? kNone : kCard;
+      steering.joins_below = last ? kNone : parts_join ? kFewTriangles : kCard;
       steering.turn_distance = 4 * step;
       steering.far_area = far_area_.share() * triangle_area;
       steering.is_alone = options_.threads != 1 && patches_.count() == 1;

@@ -110,6 +110,7 @@ void PatchSimplifier::find_virtual_pairs() {
   cells.start();
   for (Index v = n; v-- > 0;) cells.put_backwards(positions_[v], v);
 
+  const std::vector<float>& area = work_->area_of_part;
   const double limit2 = steering_.virtual_distance * steering_.virtual_distance;
   const std::size_t edge_count = pairs_.size();
   for (Index v = 0; v < n; ++v) {
@@ -123,6 +124,7 @@ void PatchSimplifier::find_virtual_pairs() {
       if (searched * searched > best2) break;
       cells.near(c, reach, kCandidates, [&](Index u) {
         if (part[u] == part[v] || vertices_[u].locked) return;
+        if (!joins(u) && area[part[u]] < area[part[v]]) return;
         const Vec3d gap = positions_[u] - positions_[v];
         const double gap2 = dot(gap, gap);
         if (gap2 > best2 || (gap2 == best2 && u > best)) return;

@@ -73,6 +73,7 @@ struct WorkMesh {
   std::size_t part_count = 0;
   bool has_copies = false;                       // many of the input's triangles are there twice
   std::vector<std::uint32_t> triangles_of_part;  // by the part's vertex, at the pass's start
+  std::vector<float> area_of_part;               // likewise, twice the area, grid units
   std::vector<std::uint32_t> live;               // the triangles that are left, ascending
   std::vector<WorkLayer> layers;
   Witnesses witnesses;  // of the input, or none
