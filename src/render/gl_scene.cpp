@@ -233,6 +233,26 @@ void GlScene::set_uniforms(const Program& program, TriangleKind kind, const Draw
   if (program.turn >= 0) glUniform1ui(program.turn, *style.turn);
 }
 
+namespace {
+
+// Both sides are seen. Where they are at one place, as those of a thin plate in a coarse level, it
+// is the one that faces the eye: the others are a little behind.
+template <typename Draw>
+void draw_front_before_back(bool reversed_depth, Draw draw) {
+  constexpr float kBehind = 8;  // of the least differences in depth
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  draw();
+  glCullFace(GL_FRONT);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(0, reversed_depth ? -kBehind : kBehind);
+  draw();
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glDisable(GL_CULL_FACE);
+}
+
+}  // namespace
+
 Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind kind,
                           const DrawPass& pass, const DrawStyle& style, const Range& range) const {
   const ProgramKey key = key_for(part, kind, style);
@@ -257,15 +277,16 @@ Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind
 
   const AlphaToCoverage translucent(key.see_through);
   const GLsizei corner_count = GLsizei(3 * range.count);
-  if (key.pulled) {
-    glBindVertexArray(no_attributes_.id());
-    glDrawArrays(GL_TRIANGLES, GLint(3 * range.first), corner_count);
-  } else {
-    const std::size_t skipped = std::size_t(3) * range.first * sizeof(std::uint32_t);
-    glBindVertexArray(part.indexed.id());
-    glDrawElements(GL_TRIANGLES, corner_count, GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(skipped));
-  }
+  const std::size_t skipped = std::size_t(3) * range.first * sizeof(std::uint32_t);
+  glBindVertexArray(key.pulled ? no_attributes_.id() : part.indexed.id());
+  draw_front_before_back(style.reversed_depth, [&] {
+    if (key.pulled) {
+      glDrawArrays(GL_TRIANGLES, GLint(3 * range.first), corner_count);
+    } else {
+      glDrawElements(GL_TRIANGLES, corner_count, GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(skipped));
+    }
+  });
   return Done{};
 }
 

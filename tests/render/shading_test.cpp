@@ -377,4 +377,33 @@ TEST_CASE("a model has the same picture in whatever unit its lengths are") {
   }
 }
 
+TEST_CASE("of two sides at one place the one that faces the eye is seen") {
+  Mesh mesh = quad([](MeshBuilder& b, const std::array<VertexId, 4>& v) {
+    b.flat_triangle({v[1], v[0], v[2]});  // to +y, and first
+    b.flat_triangle({v[3], v[2], v[0]});
+    b.flat_triangle({v[0], v[1], v[2]});  // to -y
+    b.flat_triangle({v[0], v[2], v[3]});
+  });
+  mesh.materials = {{"back", {0.02F, 0.02F, 1, 1}, ""}, {"front", {1, 0.02F, 0.02F, 1}, ""}};
+  mesh.material_of_triangle = {MaterialId{0}, MaterialId{0}, MaterialId{1}, MaterialId{1}};
+  const MeshDrawArrays arrays(mesh);
+  for (const double y : {-4.0, 4.0}) {
+    for (const double x : {-3.0, -0.3, 0.0, 2.0}) {
+      for (const double distance : {0.5, 1.0, 40.0}) {
+        CAPTURE(x);
+        CAPTURE(y);
+        CAPTURE(distance);
+        RenderOptions options = look_at(Vec3d{x, y, 1} * distance, {0, 0, 0});
+        options.camera->vertical_fov_deg /= distance;
+        const Image image = draw(arrays.draw_list(), options);
+        for (int i = 0; i < 100; ++i) {
+          const Vec3d p{0.18 * (i % 10) - 0.81, 0, 0.18 * int(i / 10) - 0.81};
+          const Pixel pixel = pixel_of(image, options, p);
+          CHECK(pixel[y < 0 ? 0 : 2] > 2 * pixel[y < 0 ? 2 : 0]);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace crease
