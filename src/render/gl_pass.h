@@ -36,6 +36,7 @@ struct DrawStyle {
   // not seen.
   std::optional<unsigned> turn{};
   Shown shown = Shown::All;
+  bool shows_backs = true;  // triangles that face away, by their winding
 };
 
 }  // namespace crease

@@ -238,16 +238,18 @@ namespace {
 // Both sides are seen. Where they are at one place, as those of a thin plate in a coarse level, it
 // is the one that faces the eye: the others are a little behind.
 template <typename Draw>
-void draw_front_before_back(bool reversed_depth, Draw draw) {
+void draw_front_before_back(const DrawStyle& style, Draw draw) {
   constexpr float kBehind = 8;  // of the least differences in depth
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   draw();
-  glCullFace(GL_FRONT);
-  glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(0, reversed_depth ? -kBehind : kBehind);
-  draw();
-  glDisable(GL_POLYGON_OFFSET_FILL);
+  if (style.shows_backs) {
+    glCullFace(GL_FRONT);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(0, style.reversed_depth ? -kBehind : kBehind);
+    draw();
+    glDisable(GL_POLYGON_OFFSET_FILL);
+  }
   glDisable(GL_CULL_FACE);
 }
 
@@ -279,7 +281,7 @@ Status GlScene::draw_part(ProgramCache& programs, const Part& part, TriangleKind
   const GLsizei corner_count = GLsizei(3 * range.count);
   const std::size_t skipped = std::size_t(3) * range.first * sizeof(std::uint32_t);
   glBindVertexArray(key.pulled ? no_attributes_.id() : part.indexed.id());
-  draw_front_before_back(style.reversed_depth, [&] {
+  draw_front_before_back(style, [&] {
     if (key.pulled) {
       glDrawArrays(GL_TRIANGLES, GLint(3 * range.first), corner_count);
     } else {

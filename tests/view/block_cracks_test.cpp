@@ -69,15 +69,10 @@ class Stage {
     }
     pass.depth = depth_range(pass.view, box.low, box.high);
     target_->begin(kSide, kSide);
-    if (!faces_away_too) glEnable(GL_CULL_FACE);
-    const Result<DrawCount> drawn =
-        blocks.draw(programs_, pass, {.reversed_depth = gl_->limits().can_reverse_depth}, shown);
-    REQUIRE(drawn.ok());
-    if (!shown_cuts.empty()) {
-      const DrawStyle style{.reversed_depth = gl_->limits().can_reverse_depth};
-      REQUIRE(cuts->draw(programs_, pass, style, shown_cuts).ok());
-    }
-    glDisable(GL_CULL_FACE);
+    const DrawStyle style{.reversed_depth = gl_->limits().can_reverse_depth,
+                          .shows_backs = faces_away_too};
+    REQUIRE(blocks.draw(programs_, pass, style, shown).ok());
+    if (!shown_cuts.empty()) REQUIRE(cuts->draw(programs_, pass, style, shown_cuts).ok());
     std::vector<std::uint8_t> rgba(4 * kSide * kSide);
     target_->read(kSide, kSide, rgba);
     std::vector<int> covered(kSide * kSide);
