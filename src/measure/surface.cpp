@@ -86,15 +86,19 @@ Surface::Surface(const Mesh& mesh, const Frame& frame) : mesh_(mesh), normals_(*
   positions_.reserve(mesh.vertex_count());
   for (const Vec3d& p : mesh.positions) positions_.push_back(frame.to_frame(p));
 
+  pieces_ = pieces_of(mesh.triangle_count(), [this](std::size_t t) {
+    return TriangleCorners{corner(t, 0), corner(t, 1), corner(t, 2)};
+  });
+  const std::size_t count = pieces_.empty() ? mesh.triangle_count() : pieces_.size();
   device_.reset(rtcNewDevice(nullptr));
   CREASE_ASSERT(device_ != nullptr);
   scene_.reset(rtcNewScene(device_.get()));
   // A geometry of our own instead of Embree's triangles: their vertices would be floats, and each
   // would be stored once more.
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh.triangle_count()));
-  const auto write_bounds = [this](std::size_t triangle, RTCBounds* bounds) {
-    *bounds = bounds_of_triangle(triangle);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
+  const auto write_bounds = [this](std::size_t primitive, RTCBounds* bounds) {
+    *bounds = bounds_of(primitive);
   };
   const parallel::Fork bounds(write_bounds);  // Embree asks from tasks of its own, in commits only
   using Bounds = decltype(bounds);
@@ -113,9 +117,13 @@ Surface::Surface(const Mesh& mesh, const Frame& frame) : mesh_(mesh), normals_(*
   CREASE_ASSERT(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE);
 }
 
-RTCBounds Surface::bounds_of_triangle(std::size_t triangle) const {
+RTCBounds Surface::bounds_of(std::size_t primitive) const {
+  const TrianglePiece piece =
+      pieces_.empty() ? TrianglePiece{static_cast<std::uint32_t>(primitive)} : pieces_[primitive];
+  const PieceOutline outline = outline_of(
+      {corner(piece.triangle, 0), corner(piece.triangle, 1), corner(piece.triangle, 2)}, piece);
   Box box;
-  for (std::size_t c = 0; c < 3; ++c) box.include(corner(triangle, c));
+  for (std::size_t i = 0; i < outline.count; ++i) box.include(outline.points[i]);
   const auto below = [](double x) { return std::nextafter(float(x), -kInfinityf); };
   const auto above = [](double x) { return std::nextafter(float(x), kInfinityf); };
   RTCBounds bounds{};
@@ -149,14 +157,23 @@ void Surface::visit(Query& query, std::uint32_t triangle) const {
   query.scratch.candidates.push_back({distance, triangle, found.weights});
 }
 
-bool Surface::visit_triangle(RTCPointQueryFunctionArguments* arguments) {
+bool Surface::visit_primitive(RTCPointQueryFunctionArguments* arguments) {
   Query& query = *static_cast<Query*>(arguments->userPtr);
   const double before = query.best;
-  if (arguments->primID == query.scratch.last_triangle) return false;  // visited first of all
-  query.surface.visit(query, arguments->primID);
+  const std::vector<TrianglePiece>& pieces = query.surface.pieces_;
+  const std::uint32_t triangle =
+      pieces.empty() ? arguments->primID : pieces[arguments->primID].triangle;
+  if (triangle == query.scratch.last_triangle) return false;  // visited first of all
+  query.surface.visit(query, triangle);
   if (query.best == before) return false;
   arguments->query->radius = query.radius();
   return true;
+}
+
+void Surface::Scratch::keep_one_each() {
+  std::ranges::sort(candidates, {}, &Candidate::triangle);
+  const auto same = [](const Candidate& a, const Candidate& b) { return a.triangle == b.triangle; };
+  candidates.erase(std::unique(candidates.begin(), candidates.end(), same), candidates.end());
 }
 
 Nearest Surface::nearest(const Vec3d& p, const Vec3d* normal, double tie, Scratch& scratch) const {
@@ -168,12 +185,13 @@ Nearest Surface::nearest(const Vec3d& p, const Vec3d* normal, double tie, Scratc
   rtcInitPointQueryContext(&context);
   RTCPointQuery search{
       .x = float(p.x), .y = float(p.y), .z = float(p.z), .time = 0, .radius = query.radius()};
-  rtcPointQuery(scene_.get(), &search, &context, visit_triangle, &query);
+  rtcPointQuery(scene_.get(), &search, &context, visit_primitive, &query);
 
   Nearest nearest{.distance = query.best};
   std::erase_if(scratch.candidates, [&](const Scratch::Candidate& candidate) {
     return candidate.distance > query.best + tie;
   });
+  if (!pieces_.empty()) scratch.keep_one_each();
   double least = kInfinity;
   for (const Scratch::Candidate& candidate : scratch.candidates) {
     if (candidate.distance == query.best) {

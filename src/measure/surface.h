@@ -9,6 +9,7 @@
 #pragma once
 
 #include "crease/mesh.h"
+#include "measure/triangle_pieces.h"
 
 #include <embree3/rtcore.h>
 
@@ -60,6 +61,8 @@ class Surface {
     };
     std::vector<Candidate> candidates;    // after a query: all triangles within its tie
     std::uint32_t last_triangle = kNone;  // samples come in an order that stays near
+
+    void keep_one_each();  // of those that several pieces of a triangle gave
   };
   // Deviation is measured against `normal` where one is given.
   Nearest nearest(const Vec3d& p, const Vec3d* normal, double tie, Scratch& scratch) const;
@@ -67,8 +70,8 @@ class Surface {
  private:
   struct Query;
   void visit(Query& query, std::uint32_t triangle) const;
-  RTCBounds bounds_of_triangle(std::size_t triangle) const;
-  static bool visit_triangle(RTCPointQueryFunctionArguments* arguments);
+  RTCBounds bounds_of(std::size_t primitive) const;
+  static bool visit_primitive(RTCPointQueryFunctionArguments* arguments);
 
   struct Release {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -76,7 +79,8 @@ class Surface {
   };
   const Mesh& mesh_;
   const AttributeLayer& normals_;
-  std::vector<Vec3d> positions_;  // frame units
+  std::vector<Vec3d> positions_;       // frame units
+  std::vector<TrianglePiece> pieces_;  // what Embree has; empty: the triangles
   std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
   std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
 };

@@ -4,13 +4,16 @@
 #include "measure/mesh_pairs.h"
 #include "measure/sample.h"
 #include "measure/surface.h"
+#include "measure/triangle_pieces.h"
 #include "support/mesh_builder.h"
 #include "support/mesh_zoo.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 
 using namespace crease;
@@ -53,6 +56,28 @@ void check_against_brute_force(const Mesh& a, const Mesh& b, std::size_t samples
   }
 }
 
+// Cables across a cube: prisms of three long thin sides, none along an axis.
+Mesh cables(std::uint32_t count, double width, double shift) {
+  MeshBuilder b;
+  std::mt19937 random(3);
+  const auto any = [&random] { return double(random()) / double(std::mt19937::max()); };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3d from{any(), any(), 0.1 * any()}, to{any(), any(), 0.9 + 0.1 * any()};
+    VertexId ring[2][3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double angle = 2.1 * double(k) + shift;
+      const Vec3d out = Vec3d{std::cos(angle), std::sin(angle), 0} * width;
+      ring[0][k] = b.vertex(from + out);
+      ring[1][k] = b.vertex(to + out);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      b.flat_triangle({ring[0][k], ring[0][(k + 1) % 3], ring[1][k]});
+      b.flat_triangle({ring[1][k], ring[0][(k + 1) % 3], ring[1][(k + 1) % 3]});
+    }
+  }
+  return b.take();
+}
+
 Mesh square(double z, int cells) {
   MeshBuilder b;
   b.grid({0, 0, z}, {1, 0, 0}, {0, 1, 0}, cells, cells);
@@ -71,6 +96,42 @@ bool same(const Comparison& a, const Comparison& b) {
 }
 
 }  // namespace
+
+TEST_CASE("long thin triangles are looked for in pieces, which have all of them") {
+  for (const double width : {0.01, 1e-4, 0.0}) {
+    CAPTURE(width);
+    check_against_brute_force(cables(60, 0.01, 0.5), cables(60, width, 0), 2000);
+  }
+  std::mt19937 random(4);
+  const auto any = [&random] { return double(random()) / double(std::mt19937::max()); };
+  for (int i = 0; i < 300; ++i) {
+    const Vec3d a{any(), any(), any()}, b{any(), any(), any()};
+    const double thin = std::pow(10.0, -6 * any());
+    const TriangleCorners corners{a, b, a + (b - a) * any() + Vec3d{any(), any(), any()} * thin};
+    const auto pieces = pieces_of(1, [&](std::size_t) { return corners; });
+    for (int k = 0; k < 50; ++k) {
+      double u = any(), v = any();
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Vec3d p = corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
+      const bool is_in_one = std::ranges::any_of(pieces, [&](const TrianglePiece& piece) {
+        const PieceOutline outline = outline_of(corners, piece);
+        for (int axis = 0; axis < 3; ++axis) {
+          double low = 9, high = -9;
+          for (std::size_t j = 0; j < outline.count; ++j) {
+            low = std::min(low, outline.points[j][axis]);
+            high = std::max(high, outline.points[j][axis]);
+          }
+          if (p[axis] < low - 1e-12 || p[axis] > high + 1e-12) return false;
+        }
+        return true;
+      });
+      CHECK((pieces.empty() || is_in_one));
+    }
+  }
+  CHECK(pieces_of(2, [](std::size_t) {
+          return TriangleCorners{Vec3d{0, 0, 0}, Vec3d{1, 0.5, 0.2}, Vec3d{0.2, 1, 0.7}};
+        }).empty());
+}
 
 TEST_CASE("every mesh of the zoo is where it is") {
   for (const ZooMesh& z : mesh_zoo()) {
