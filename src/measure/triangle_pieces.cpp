@@ -9,9 +9,12 @@ namespace {
 
 // The box over the triangle's own area, each as its three shadows, from which on it is cut; the
 // pieces' boxes together are to be this many times its area.
-constexpr double kAskew = 16, kWanted = 4;
+constexpr double kAskew = 64, kWanted = 4;
 
 constexpr double kMostPieces = 256, kMeanPieces = 16;
+
+// Beyond as many pieces in all, which take 130 bytes each, no more than two a triangle.
+constexpr double kMany = 4e6;
 
 double sum_of_shadows(const Vec3d& v) {
   return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
@@ -43,7 +46,8 @@ std::vector<TrianglePiece> pieces_of(std::size_t triangle_count,
   for (std::size_t t = 0; t < triangle_count; ++t) sum += counts[t] = piece_count(corners(t));
   std::vector<TrianglePiece> pieces;
   if (sum == double(triangle_count)) return pieces;
-  const double share = std::min(1.0, kMeanPieces * double(triangle_count) / sum);
+  const double n = double(triangle_count);
+  const double share = std::min(1.0, std::max(2 * n, std::min(kMeanPieces * n, kMany)) / sum);
   for (std::size_t t = 0; t < triangle_count; ++t) {
     const auto count = static_cast<std::uint16_t>(std::max(1.0, std::floor(share * counts[t])));
     for (std::uint16_t part = 0; part < count; ++part) {

@@ -21,8 +21,8 @@ struct TrianglePiece {
   std::uint16_t part = 0, of = 1;
 };
 
-// At most 16 a triangle on average, and 256 of one. Empty: each is one piece, as of all meshes
-// whose triangles have some width.
+// At most 256 of one, 16 a triangle on average, and of many triangles fewer: four million in all,
+// or two each. Empty: each is one piece, as of all meshes whose triangles have some width.
 std::vector<TrianglePiece> pieces_of(std::size_t triangle_count,
                                      const std::function<TriangleCorners(std::size_t)>& corners);
 
