@@ -249,7 +249,9 @@ void main() {
   // as files have triangles that run against their own normals.
   vec3 plane = cross(dFdx(v_from_eye), dFdy(v_from_eye));
   float seen_side = -dot(plane, v_from_eye);
-  if (dot(n, plane) * seen_side < 0) n = -n;
+  // One across the plane, as where those of a thin wall's sides cancelled out, has no side, and
+  // rounding is not to choose one.
+  if (dot(n, plane) * sign(seen_side) < -0.01 * length(plane)) n = -n;
 
   vec4 base = surface_color();
 #if ONLY_OPAQUE
