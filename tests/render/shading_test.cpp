@@ -352,6 +352,22 @@ TEST_CASE("a wireframe darkens the edges in front and shows none behind") {
   CHECK(dark <= 3);  // where the diagonal is crossed
 }
 
+TEST_CASE("a normal across its triangle is not turned by rounding") {
+  const Vec3d right = normalized(Vec3d{1, 0.37, 0.2}), up = normalized(cross(right, {0.3, 1, 0.1}));
+  const Vec3d away = cross(right, up);
+  MeshBuilder b;
+  const AttributeId across = b.normal_at(up);
+  b.quad({b.vertex((right + up) * -1.0), b.vertex(right - up), b.vertex(right + up),
+          b.vertex(up - right)},
+         across);
+  const Mesh mesh = b.take();
+  const MeshDrawArrays arrays(mesh);
+  for (const double side : {-4.0, 4.0}) {
+    const RenderOptions options = look_at(away * side, {0, 0, 0});
+    CHECK(roughness(draw(arrays.draw_list(), options), 60) < 4);
+  }
+}
+
 // As large as 1e-30 or 1e27: squares of such lengths are no floats any more.
 TEST_CASE("a model has the same picture in whatever unit its lengths are") {
   const auto picture_of = [](double unit, bool has_frustum) {
