@@ -4,9 +4,9 @@
 #include "cli/fields.h"
 #include "cli/text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -62,9 +62,9 @@ std::string of_diagonal(double length, double diagonal) {
 // Rows of cells, the first column left-aligned.
 class Table {
  public:
-  explicit Table(std::initializer_list<const char*> heads) {
+  explicit Table(const std::vector<std::string>& heads) {
     html_ = "<div class=\"scroll\"><table><thead><tr>";
-    for (const char* head : heads) html_ += "<th>" + escaped(head) + "</th>";
+    for (const std::string& head : heads) html_ += "<th>" + escaped(head) + "</th>";
     html_ += "</tr></thead><tbody>\n";
   }
   void row(const std::vector<std::string>& cells) {
@@ -162,6 +162,45 @@ std::string levels_table(const ReportLevels& all) {
     }
     row.push_back(in_length(level.recorded.surface));
     row.push_back(name_of(level.stopped_by));
+    table.row(row);
+  }
+  return table.html();
+}
+
+std::string in_unit(double deviation, DeviationUnit unit) {
+  switch (unit) {
+    case DeviationUnit::Degrees:
+      return in_degrees(deviation);
+    case DeviationUnit::Share:
+      return printed("%.3g %%", 100 * deviation);
+    case DeviationUnit::Values:
+      break;
+  }
+  return printed("%.3g", deviation);
+}
+
+// How far what the levels carry besides normals has moved; empty where they carry nothing.
+std::string level_attributes_table(const std::vector<ReportLevel>& levels) {
+  const auto carries = [](const ReportLevel& level) {
+    return level.measured && !level.measured->attributes.empty();
+  };
+  const auto first = std::find_if(levels.begin(), levels.end(), carries);
+  if (first == levels.end()) return "";
+  std::vector<std::string> heads = {"level"};
+  for (const AttributeDeviation& attribute : first->measured->attributes) {
+    const bool differs = attribute.unit == DeviationUnit::Share;
+    heads.push_back(attribute.name + (differs ? " differs on" : ", mean"));
+    if (!differs) heads.push_back("95 % below");
+  }
+  Table table(heads);
+  for (const ReportLevel& level : levels) {
+    if (!carries(level)) continue;
+    std::vector<std::string> row = {level.name};
+    for (const AttributeDeviation& attribute : level.measured->attributes) {
+      row.push_back(in_unit(attribute.spread.mean, attribute.unit));
+      if (attribute.unit == DeviationUnit::Share) continue;
+      row.push_back(in_unit(attribute.spread.p95, attribute.unit));
+    }
     table.row(row);
   }
   return table.html();
@@ -342,6 +381,13 @@ std::string report_page(const PageContent& page) {
               "stores. Bytes are those from the start of the file to the last that a level needs.",
               plots_html(page));
   html += "<p></p>\n" + levels_table(page.levels);
+  if (const std::string drift = level_attributes_table(page.levels.levels); !drift.empty()) {
+    html += section("What is on the surface",
+                    "How far the levels' attributes are from the original's at the same place, in "
+                    "their own units (texture coordinates: 1 is the image's side; colours: 0 to "
+                    "1), and the share of the surface that is of another material or part.",
+                    drift);
+  }
   html += section("Where the bytes go", "",
                   "<div class=\"words\">" + streams_table(page.facts) + "</div>\n");
   html += section("Bands",

@@ -78,6 +78,32 @@ class Page(tool.Case):
             self.assertIn(text_of_model, words)
         self.assertNotIn("Import", words)
 
+    def test_what_levels_carry_besides_is_in_a_table(self):
+        hills = pathlib.Path(self.hills_mesh(24)).read_text()
+        bare = self.write("bare.obj", hills)
+        _, _, tree = self.page(bare, *FAST)
+        self.assertNotIn("What is on the surface", "".join(tree.itertext()))
+
+        lines = hills.splitlines()
+        places = [line.split()[1:3] for line in lines if line.startswith("v ")]
+        corners = ["f " + " ".join(f"{v}/{v}" for v in line.split()[1:])
+                   for line in lines if line.startswith("f ")]
+        half = len(corners) // 2
+        painted = self.write("painted.obj", "\n".join(
+            [line for line in lines if line.startswith("v ")] +
+            [f"vt {int(x) / 24} {(int(y) / 24) ** 2}" for x, y in places] +
+            ["usemtl grass"] + corners[:half] + ["usemtl rock"] + corners[half:]))
+        made, _, tree = self.page(painted, *FAST)
+        table = next(t for t in tree.iter("table")
+                     if [h.text for h in t.iter("th")][1:] == ["uv, mean", "95 % below", "material differs on"])
+        rows = [[cell.text for cell in row.iter("td")] for row in table.iter("tr")][1:]
+        self.assertEqual([row[0] for row in rows], ["50 %", "5 %"])
+        for row, level in zip(rows, made["levels"][1:]):
+            uv, material = level["error_measured"]["attributes"]
+            self.assertGreater(uv["mean"], 0)
+            self.assertEqual(row[1:], ["%.3g" % uv["mean"], "%.3g" % uv["p95"],
+                                       "%.3g %%" % (100 * material["mean"])])
+
     def test_a_page_asks_for_nothing_else(self):
         _, text, _ = self.page(self.built(), *FAST)
         self.assertNotRegex(text, r"<script|<link|<iframe|@import|url\(|https?://")
