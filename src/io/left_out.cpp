@@ -1,6 +1,7 @@
 #include "io/left_out.h"
 
 #include "io/formats.h"
+#include "io/glb_streams.h"
 #include "io/split_vertices.h"
 
 #include <algorithm>
@@ -87,6 +88,11 @@ std::vector<std::string> left_out_of_obj(const Mesh& mesh) {
 
 std::vector<std::string> left_out_of_glb(const Mesh& mesh) {
   std::vector<std::string> words;
+  for (const AttributeLayer& layer : mesh.layers) {
+    if (has_large_categories(layer)) {
+      words.push_back("that " + in_words(layer) + " are categories and no plain numbers");
+    }
+  }
   add_images(mesh, words);
   return words;
 }

@@ -1,10 +1,10 @@
 // GLB: one primitive for every part and material, split vertices, floats around one translation,
 // images behind them.
-#include "base/srgb.h"
 #include "crease/export.h"
 #include "io/float_positions.h"
 #include "io/formats.h"
 #include "io/glb_materials.h"
+#include "io/glb_streams.h"
 #include "io/split_vertices.h"
 
 #include <algorithm>
@@ -14,7 +14,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,81 +24,8 @@ namespace {
 using Json = nlohmann::ordered_json;  // members in the order they are written
 
 constexpr std::uint32_t kArrayBuffer = 34962, kElementArrayBuffer = 34963;
-constexpr std::uint32_t kFloats = 5126, kUnsignedShorts = 5123, kUnsignedInts = 5125;
+constexpr std::uint32_t kUnsignedInts = 5125;
 constexpr const char* kGenerator = "crease";
-
-// The attribute that a layer becomes.
-struct Semantic {
-  std::string name;  // "TEXCOORD_0"
-  std::uint32_t dimension = 1;
-  AttributeRole role = AttributeRole::Other;
-};
-
-// Values of one semantic, of all primitives one after the other: one bufferView.
-struct FloatStream {
-  Semantic semantic;
-  std::vector<float> values;
-};
-
-// A name of letters, digits and underscores after one underscore (3.7.2.1: application-specific).
-std::string custom_semantic(const std::string& name, const std::set<std::string>& taken) {
-  std::string result = "_";
-  for (const char c : name) {
-    const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    result += plain ? c : '_';
-  }
-  if (result == "_") result = "_LAYER";
-  const std::string base = result;
-  for (int i = 1; taken.contains(result); ++i) result = base + "_" + std::to_string(i);
-  return result;
-}
-
-std::vector<Semantic> semantics_of(std::span<const AttributeLayer* const> layers) {
-  std::vector<Semantic> semantics;
-  std::set<std::string> taken;
-  int uv_count = 0, color_count = 0;
-  for (const AttributeLayer* layer : layers) {
-    Semantic semantic{"", layer->dimension, layer->role};
-    if (layer->role == AttributeRole::Normal) {
-      semantic.name = "NORMAL";
-    } else if (layer->role == AttributeRole::TexCoord && layer->dimension == 2) {
-      semantic.name = "TEXCOORD_" + std::to_string(uv_count++);
-    } else if (layer->role == AttributeRole::Color && layer->dimension >= 3) {
-      semantic.name = "COLOR_" + std::to_string(color_count++);
-    } else {
-      semantic.name = custom_semantic(layer->name, taken);
-      semantic.role = AttributeRole::Other;
-    }
-    taken.insert(semantic.name);
-    semantics.push_back(std::move(semantic));
-  }
-  return semantics;
-}
-
-// A value as glTF wants it: unit normals, v down, linear colours within 0..1 (3.7.2.1).
-void append_value(const Semantic& semantic, std::span<const float> value, std::vector<float>& to) {
-  switch (semantic.role) {
-    case AttributeRole::Normal: {
-      Vec3d n = normalized(Vec3d{value[0], value[1], value[2]});
-      if (!(length(n) > 0.5)) n = {0, 0, 1};
-      for (int k = 0; k < 3; ++k) to.push_back(static_cast<float>(n[k]));
-      break;
-    }
-    case AttributeRole::TexCoord:
-      to.push_back(value[0]);
-      to.push_back(1.0f - value[1]);
-      break;
-    case AttributeRole::Color:
-      for (std::size_t k = 0; k < value.size(); ++k) {
-        const float within = std::clamp(value[k], 0.0f, 1.0f);
-        to.push_back(k < 3 ? linear_from_srgb(within) : within);
-      }
-      break;
-    case AttributeRole::Other:
-      to.insert(to.end(), value.begin(), value.end());
-      break;
-  }
-}
 
 // The faces' own normals: what a mesh without normals means in glTF, made explicit.
 AttributeLayer flat_normals(const Mesh& mesh) {
@@ -206,9 +132,9 @@ class GlbWriter {
       return views.size() - 1;
     };
     std::vector<std::size_t> view_of_stream;
-    for (const FloatStream& stream : streams_) {
-      view_of_stream.push_back(add_view(stream.values.size() * sizeof(float),
-                                        stream.semantic.dimension * sizeof(float), kArrayBuffer));
+    for (const GlbStream& stream : streams_) {
+      view_of_stream.push_back(
+          add_view(stream.bytes.size(), stream.semantic.stride(), kArrayBuffer));
     }
     std::size_t wide_view = 0, narrow_view = 0;
     if (!wide_.empty()) wide_view = add_view(wide_.size() * 4, 0, kElementArrayBuffer);
@@ -260,14 +186,11 @@ class GlbWriter {
 
   // Levels of one asset have the same layers, so they share streams.
   std::vector<std::size_t> streams_of(std::span<const AttributeLayer* const> layers) {
-    std::vector<Semantic> semantics = {{"POSITION", 3, AttributeRole::Other}};
-    for (Semantic& semantic : semantics_of(layers)) semantics.push_back(std::move(semantic));
+    std::vector<GlbSemantic> semantics = {{"POSITION", 3, AttributeRole::Other}};
+    for (GlbSemantic& semantic : semantics_of(layers)) semantics.push_back(std::move(semantic));
     std::vector<std::size_t> result;
-    for (Semantic& semantic : semantics) {
-      const auto found = std::ranges::find_if(streams_, [&](const FloatStream& stream) {
-        return stream.semantic.name == semantic.name &&
-               stream.semantic.dimension == semantic.dimension;
-      });
+    for (GlbSemantic& semantic : semantics) {
+      const auto found = std::ranges::find(streams_, semantic, &GlbStream::semantic);
       result.push_back(static_cast<std::size_t>(found - streams_.begin()));
       if (found == streams_.end()) streams_.push_back({std::move(semantic), {}});
     }
@@ -293,34 +216,37 @@ class GlbWriter {
     Json attributes = Json::object();
     attributes["POSITION"] = add_positions(job, vertices);
     for (std::size_t l = 0; l < job.layers.size(); ++l) {
-      FloatStream& stream = streams_[job.streams[l + 1]];
-      const std::size_t offset = stream.values.size() * sizeof(float);
+      GlbStream& stream = streams_[job.streams[l + 1]];
+      const std::size_t offset = stream.bytes.size();
       for (std::uint32_t s : vertices) {
-        append_value(stream.semantic, job.layers[l]->value(job.split.values[l][s]), stream.values);
+        stream.add(job.layers[l]->value(job.split.values[l][s]));
       }
-      attributes[stream.semantic.name] = add_accessor(job.streams[l + 1], offset, kFloats,
-                                                      vertices.size(), stream.semantic.dimension);
+      attributes[stream.semantic.name] =
+          add_accessor(job.streams[l + 1], offset, stream.semantic.component_type, vertices.size(),
+                       stream.semantic.dimension);
     }
     return {{"attributes", std::move(attributes)},
             {"indices", add_indices(indices, vertices.size())}};
   }
 
   std::size_t add_positions(const Job& job, const std::vector<std::uint32_t>& vertices) {
-    FloatStream& stream = streams_[job.streams[0]];
-    const std::size_t offset = stream.values.size() * sizeof(float);
+    GlbStream& stream = streams_[job.streams[0]];
+    const std::size_t offset = stream.bytes.size();
     std::array<float, 3> low, high;
     low.fill(std::numeric_limits<float>::max());
     high.fill(std::numeric_limits<float>::lowest());
     for (std::uint32_t s : vertices) {
       const Vec3d p = job.mesh.positions[job.split.position[s]] - job.origin;
+      std::array<float, 3> place;
       for (std::size_t k = 0; k < 3; ++k) {
-        const float x = static_cast<float>(p[static_cast<int>(k)]);
-        low[k] = std::min(low[k], x);
-        high[k] = std::max(high[k], x);
-        stream.values.push_back(x);
+        place[k] = static_cast<float>(p[static_cast<int>(k)]);
+        low[k] = std::min(low[k], place[k]);
+        high[k] = std::max(high[k], place[k]);
       }
+      stream.add_as_is(place);
     }
-    const std::size_t accessor = add_accessor(job.streams[0], offset, kFloats, vertices.size(), 3);
+    const std::size_t accessor =
+        add_accessor(job.streams[0], offset, kGlbFloats, vertices.size(), 3);
     accessors_[accessor]["min"] = low;
     accessors_[accessor]["max"] = high;
     return accessor;
@@ -335,7 +261,7 @@ class GlbWriter {
     }
     const std::size_t offset = narrow_.size() * 2;
     for (std::uint32_t i : indices) narrow_.push_back(static_cast<std::uint16_t>(i));
-    return add_accessor(kNarrow, offset, kUnsignedShorts, indices.size(), 1);
+    return add_accessor(kNarrow, offset, kGlbUnsignedShorts, indices.size(), 1);
   }
 
   // The bufferView is known at the end, when the streams have their sizes.
@@ -378,8 +304,8 @@ class GlbWriter {
     put(text.data(), text.size());
     put_u32(padded);
     put("BIN", 4);  // with its zero
-    for (const FloatStream& stream : streams_) {
-      put(stream.values.data(), stream.values.size() * sizeof(float));
+    for (const GlbStream& stream : streams_) {
+      put(stream.bytes.data(), stream.bytes.size());
     }
     put(wide_.data(), wide_.size() * 4);
     put(narrow_.data(), narrow_.size() * 2);
@@ -389,7 +315,7 @@ class GlbWriter {
     return bytes;
   }
 
-  std::vector<FloatStream> streams_;
+  std::vector<GlbStream> streams_;
   std::vector<std::uint32_t> wide_;
   std::vector<std::uint16_t> narrow_;
   GlbMaterials materials_;

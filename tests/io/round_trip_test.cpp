@@ -207,7 +207,8 @@ TEST_CASE("attribute bytes of an STL come back") {
   CHECK(back(mesh, ".stl").mesh.layers.size() == 1);
 }
 
-TEST_CASE("categories of faces and other layers go through PLY") {
+TEST_CASE(
+    "categories and other layers go through PLY, and through GLB if they are short integers") {
   Mesh mesh = coloured_square();
   AttributeLayer surface{"surface", AttributeRole::Other, Interpolation::Categorical, 1, {3, -4},
                          {}};
@@ -218,14 +219,33 @@ TEST_CASE("categories of faces and other layers go through PLY") {
   }
   mesh.layers.push_back(surface);
   mesh.layers.push_back(heat);
-  const Mesh got = back(mesh, ".ply").mesh;
-  for (const AttributeLayer& layer : {surface, heat}) {
-    const auto same = std::find_if(got.layers.begin(), got.layers.end(),
-                                   [&](const auto& other) { return other.name == layer.name; });
-    REQUIRE(same != got.layers.end());
-    CHECK(same->interpolation == layer.interpolation);
-    for (std::size_t corner = 0; corner < 6; ++corner) {
-      CHECK(same->value(same->of_corner[corner])[0] == layer.value(layer.of_corner[corner])[0]);
+  const auto check_both = [&](const std::string& ending) {
+    INFO(ending);
+    const Mesh got = back(mesh, ending).mesh;
+    for (const AttributeLayer& layer : {surface, heat}) {
+      const auto same = std::find_if(got.layers.begin(), got.layers.end(),
+                                     [&](const auto& other) { return other.name == layer.name; });
+      REQUIRE(same != got.layers.end());
+      CHECK(same->interpolation == layer.interpolation);
+      for (std::size_t corner = 0; corner < 6; ++corner) {
+        CHECK(same->value(same->of_corner[corner])[0] == layer.value(layer.of_corner[corner])[0]);
+      }
+    }
+  };
+  check_both(".ply");
+  check_both(".glb");
+  CHECK(export_report(mesh, ".glb").left_out.empty());
+  for (const float large : {65535.0f, 70000.0f}) {
+    mesh.layers[mesh.layers.size() - 2].values = surface.values = {3, large};
+    check_both(".ply");
+    if (large < 65536) {
+      check_both(".glb");
+      CHECK(export_report(mesh, ".glb").left_out.empty());
+    } else {
+      surface.interpolation = Interpolation::Linear;
+      check_both(".glb");
+      CHECK(export_report(mesh, ".glb").left_out ==
+            std::vector<std::string>{"that 'surface' are categories and no plain numbers"});
     }
   }
 }
