@@ -110,19 +110,13 @@ Material read_material(const Json& entry, std::size_t index, GltfImages& images)
 GltfMaterials read_gltf_materials(const Json& json, GltfImages& images) {
   GltfMaterials result;
   Losses losses;
-  std::size_t shown_count = 0;
   const Json& entries = at(json, "materials");
   for (std::size_t i = 0; i < size_of(entries); ++i) {
     result.materials.push_back(read_material(entries[i], i, images));
     count_losses(json, entries[i], losses);
-    shown_count += shows_emission(entries[i]) ? 1 : 0;
+    if (shows_emission(entries[i])) losses.add_shown_emission();
   }
   result.notes = losses.notes();
-  if (shown_count > 0) {
-    result.notes.push_back(
-        (shown_count == 1 ? "a material is" : std::to_string(shown_count) + " materials are") +
-        std::string(" black but for emission, which becomes the base colour"));
-  }
   return result;
 }
 

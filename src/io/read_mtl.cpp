@@ -138,7 +138,9 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
     // Black but for the light that it gives off, which is what one sees of it.
     const bool shows = is_black(material->base_color);
     losses.add("emission", !shows);
-    if (shows) std::copy_n(emission.begin(), 3, material->base_color.begin());
+    if (!shows) continue;
+    losses.add_shown_emission();
+    std::copy_n(emission.begin(), 3, material->base_color.begin());
   }
   if (tells_opacity) return;
   for (Material* m : of_tr) m->base_color[3] = 1;

@@ -146,7 +146,9 @@ TEST_CASE("what is black but for emission has that as its colour") {
            placements, is_known, losses);
   CHECK(materials[0].base_color == std::array<float, 4>{1, 0.5f, 0, 0.5f});
   CHECK(materials[1].base_color == std::array<float, 4>{0, 0, 0, 1});
-  CHECK(losses.notes().empty());
+  CHECK(losses.notes() ==
+        std::vector<std::string>{
+            "a material is black but for emission, which becomes the base colour"});
 }
 
 TEST_CASE("a library that is not there, or outside, is told once; so are materials without one") {
