@@ -190,6 +190,9 @@ PlyLayers plan_layers(const PlyElement& element, RawLayer::Per per,
                 {}});
     }
   }
+  for (std::size_t p = 0; p < plan.targets.size(); ++p) {
+    plan.targets[p].is_float = element.properties[p].type == PlyType::Float32;
+  }
   return plan;
 }
 

@@ -21,6 +21,7 @@ struct PlyTarget {
   Kind kind = Kind::Ignored;
   std::size_t layer = 0, component = 0;
   double scale = 1, zero = 0;
+  bool is_float = false;  // says the file: decimals beyond one are none that it means
 };
 
 // The layers of one element, vertex or face, and where each property goes.
@@ -40,8 +41,9 @@ struct PlyLayers {
     rounded.emplace_back();
   }
   void set(const PlyTarget& target, double x) {
+    const double value = (x - target.zero) * target.scale;
     row[begin[target.layer] + target.component] =
-        rounded[target.layer].to_float((x - target.zero) * target.scale);
+        target.is_float ? static_cast<float>(value) : rounded[target.layer].to_float(value);
   }
   void keep_row() {
     for (std::size_t l = 0; l < layers.size(); ++l) {

@@ -474,6 +474,13 @@ TEST_CASE("numbers that are no floats are rounded and told") {
   CHECK(told("1 values of 'time' rounded to floats, by 0.123 at most"));
   CHECK(told("'quality' has 1 value that is not finite: set to zero"));
   CHECK(in.report.notes.size() == 3);  // 0.5 is a float, and normals have their own precision
+
+  // What the file says are floats is none the less for being written in decimals.
+  const Imported decimals =
+      import_text(header("property float quality\n", "property float32 heat\n") +
+                      "0 0 0 0.1\n1 0 0 0.2\n0 1 0 0.3\n3 0 1 2 0.7\n",
+                  "a.ply");
+  CHECK(decimals.report.notes.empty());
   CHECK(in.report.bad_attribute_values == 1);
   CHECK(value_at(*layer_named(in.mesh, "id"), 0)[0] == 123456792.0f);
 }
