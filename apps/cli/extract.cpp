@@ -43,11 +43,6 @@ Json asked_json(const ExtractArguments& options) {
   return asked;
 }
 
-// Why the level is not what was asked for.
-std::string shortfall_of(std::size_t triangles) {
-  return "target not met: the coarsest level has " + grouped(triangles) + " triangles";
-}
-
 std::string in_words(const std::optional<Comparison>& measured) {
   if (!measured) return "";
   return "; measured: surface mean " +
@@ -143,11 +138,25 @@ Status add_images(const ExtractArguments& options, const ModelFile& file, Mesh& 
   return Done{};
 }
 
+// The model's own, and what it names.
+std::vector<std::filesystem::path> files_read(const std::filesystem::path& path,
+                                              const ModelFile& file,
+                                              std::span<const ImageFile> images) {
+  std::vector<std::filesystem::path> files = {path};
+  for (const ImageFile& image : images) files.push_back(path.parent_path() / image.name);
+  if (!file.imported()) return files;
+  const std::vector<std::filesystem::path>& libraries = file.imported()->libraries;
+  files.insert(files.end(), libraries.begin(), libraries.end());
+  return files;
+}
+
 Result<ExportReport> write_level(const ExtractArguments& options, const ModelFile& file,
                                  Mesh& level, const Common& common) {
   const Status painted = add_images(options, file, level);
   if (!painted.ok()) return painted.failure();
-  return write_mesh(level, options.output, common, lost_parts(file, level, options.output, common));
+  return write_mesh(level, options.output, common,
+                    {.inputs = files_read(options.file, file, level.images),
+                     .lost = lost_parts(file, level, options.output, common)});
 }
 
 // That the level is not what was asked for.

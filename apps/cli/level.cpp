@@ -130,7 +130,7 @@ class ErrorSearch {
 
     mesh_.set_applied(good);
     log(common_, "  of " + std::to_string(tries_) + (tries_ == 1 ? " level" : " levels") +
-                     " measured, " + std::to_string(mesh_.triangle_count()) +
+                     " measured, " + grouped(mesh_.triangle_count()) +
                      " triangles are the fewest within " + in_length(limit_));
     const Result<Comparison> measured = measure_level(full_, mesh_.extract(), samples_, common_);
     if (!measured.ok()) return measured.failure();
@@ -220,6 +220,10 @@ class ErrorSearch {
 };
 
 }  // namespace
+
+std::string shortfall_of(std::size_t triangles) {
+  return "target not met: the coarsest level has " + grouped(triangles) + " triangles";
+}
 
 Result<Chosen> choose_level(ProgressiveMesh& mesh, const Mesh& full, const LevelOptions& asked,
                             const Common& common) {

@@ -39,6 +39,9 @@ struct Chosen {
   std::optional<Comparison> measured;  // of the level in force, with --error
 };
 
+// Why the level is not what was asked for.
+std::string shortfall_of(std::size_t triangles);
+
 // Moves `mesh` to the level asked for. With --error that is the coarsest that is nowhere further
 // from `full`, both ways, than the length asked: quadrics only tell where to look.
 Result<Chosen> choose_level(ProgressiveMesh& mesh, const Mesh& full, const LevelOptions& asked,

@@ -4,6 +4,8 @@
 #include "cli/fields.h"
 #include "crease/write_file.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
 #include <algorithm>
 #include <system_error>
 
@@ -38,8 +40,10 @@ Status check_ending(const std::filesystem::path& output, std::span<const std::st
               output.string() + ": " + std::string(what) + " written as " + in_words(endings));
 }
 
-Status check_place(const std::filesystem::path& output,
-                   std::span<const std::filesystem::path> inputs) {
+namespace {
+
+Status check_is_no_input(const std::filesystem::path& output,
+                         std::span<const std::filesystem::path> inputs) {
   for (const std::filesystem::path& input : inputs) {
     std::error_code error;  // one of them is not there
     if (std::filesystem::equivalent(output, input, error)) {
@@ -47,7 +51,21 @@ Status check_place(const std::filesystem::path& output,
                   output.string() + ": is an input, which is never written over");
     }
   }
-  return check_writable(output);
+  return Done{};
+}
+
+}  // namespace
+
+Status check_place(const std::filesystem::path& output,
+                   std::span<const std::filesystem::path> inputs) {
+  const Status fine = check_is_no_input(output, inputs);
+  return fine.ok() ? check_writable(output) : fine;
+}
+
+bool is_standard_output(const std::filesystem::path& output) {
+  struct stat ours, other;  // std::filesystem::equivalent() knows no pipes
+  return ::fstat(STDOUT_FILENO, &ours) == 0 && ::stat(output.c_str(), &other) == 0 &&
+         ours.st_dev == other.st_dev && ours.st_ino == other.st_ino;
 }
 
 Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
@@ -57,9 +75,14 @@ Status check_output(const std::filesystem::path& output, std::span<const std::st
 }
 
 Result<ExportReport> write_mesh(const Mesh& mesh, const std::filesystem::path& output,
-                                const Common& common, std::span<const std::string> lost) {
+                                const Common& common, const WriteOptions& options) {
+  for (const std::filesystem::path& file : files_of_export(mesh, output)) {
+    const Status fine = check_is_no_input(file, options.inputs);
+    if (!fine.ok()) return fine.failure();
+  }
   Result<ExportReport> written = export_mesh(mesh, output);
   if (!written.ok()) return written;
+  const std::vector<std::string>& lost = options.lost;
   written->left_out.insert(written->left_out.end(), lost.begin(), lost.end());
   for (const std::string& line : lines_of(*written, output)) log(common, line);
   return written;

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace crease::cli {
 
@@ -35,9 +36,18 @@ Status check_place(const std::filesystem::path& output,
 Status check_output(const std::filesystem::path& output, std::span<const std::string_view> endings,
                     std::string_view what, std::span<const std::filesystem::path> inputs);
 
-// export_mesh(), and what the file does not say is logged, `lost` with it: what the mesh lacks
-// already, in the words of ExportReport::left_out.
+// Whether an output goes where answers are printed.
+bool is_standard_output(const std::filesystem::path& output);
+
+struct WriteOptions {
+  // Which none of the files that it writes may be, an OBJ's library and images among them.
+  std::vector<std::filesystem::path> inputs{};
+  // What the mesh lacks already, in the words of ExportReport::left_out.
+  std::vector<std::string> lost{};
+};
+
+// export_mesh(), and what the file does not say is logged.
 Result<ExportReport> write_mesh(const Mesh& mesh, const std::filesystem::path& output,
-                                const Common& common, std::span<const std::string> lost = {});
+                                const Common& common, const WriteOptions& options = {});
 
 }  // namespace crease::cli

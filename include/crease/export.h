@@ -35,6 +35,9 @@ struct ExportReport {
 
 // Fails with NotSupported for another ending and WriteFailed with the system's reason.
 Result<ExportReport> export_mesh(const Mesh& mesh, const std::filesystem::path& path);
+// The files that it writes: the images that lie beside, an OBJ's library, and `path`.
+std::vector<std::filesystem::path> files_of_export(const Mesh& mesh,
+                                                   const std::filesystem::path& path);
 // Of a file with that ending. Time O(vertices).
 ExportReport export_report(const Mesh& mesh, std::string_view extension);
 

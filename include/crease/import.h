@@ -69,6 +69,7 @@ struct ImportReport {
   std::size_t bad_attribute_values = 0;  // attribute values that were not finite: set to zero
   std::size_t joined_normals = 0;        // by same_normal_deg
   std::vector<std::string> notes;        // anything else worth a line: ignored elements, ...
+  std::vector<std::filesystem::path> libraries;  // of materials, of an OBJ: those that were read
 };
 
 struct Imported {

@@ -62,11 +62,25 @@ std::vector<std::string> image_files(const Mesh& mesh, const std::string& stem) 
   return files;
 }
 
-// An OBJ or a PLY, its images and an OBJ's library: itself last, so that whoever sees it finds the
-// others.
-Status export_with_images(const Mesh& mesh, const std::filesystem::path& path, bool is_obj) {
-  const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
-  const std::vector<std::string> names = image_files(mesh, path.stem().string());
+// What of the mesh lies beside its file.
+struct FilesBeside {
+  bool is_obj = false;
+  std::vector<std::string> images;  // their names
+  std::filesystem::path library;    // empty: none
+};
+
+FilesBeside files_beside(const Mesh& mesh, const std::filesystem::path& path) {
+  const std::string ending = lower_case(path.extension().string());
+  FilesBeside beside{ending == ".obj", {}, {}};
+  const bool names_materials = beside.is_obj && !mesh.materials.empty();
+  if (names_materials || ending == ".ply") beside.images = image_files(mesh, path.stem().string());
+  if (names_materials) beside.library = std::filesystem::path(path).replace_extension(".mtl");
+  return beside;
+}
+
+// The file itself last, so that whoever sees it finds the others.
+Status export_with(const FilesBeside& beside, const Mesh& mesh, const std::filesystem::path& path) {
+  const std::vector<std::string>& names = beside.images;
   std::vector<OutputFile> files;
   const auto write = [&](const std::filesystem::path& to,
                          std::span<const std::byte> bytes) -> Status {
@@ -81,11 +95,13 @@ Status export_with_images(const Mesh& mesh, const std::filesystem::path& path, b
     const Status done = write(path.parent_path() / names[i], *mesh.images[i].bytes);
     if (!done.ok()) return done;
   }
-  if (is_obj) {
-    if (const Status done = write(library, write_mtl(mesh, names)); !done.ok()) return done;
+  if (!beside.library.empty()) {
+    const Status done = write(beside.library, write_mtl(mesh, names));
+    if (!done.ok()) return done;
   }
   const Status done =
-      write(path, is_obj ? write_obj(mesh, library.filename().string()) : write_ply(mesh, names));
+      write(path, beside.is_obj ? write_obj(mesh, beside.library.filename().string())
+                                : write_ply(mesh, names));
   if (!done.ok()) return done;
   for (OutputFile& file : files) {
     if (const Status there = file.commit(); !there.ok()) return there;
@@ -107,11 +123,21 @@ ExportReport export_report(const Mesh& mesh, std::string_view extension) {
   return report;
 }
 
+std::vector<std::filesystem::path> files_of_export(const Mesh& mesh,
+                                                   const std::filesystem::path& path) {
+  const FilesBeside beside = files_beside(mesh, path);
+  std::vector<std::filesystem::path> files;
+  for (const std::string& image : beside.images) files.push_back(path.parent_path() / image);
+  if (!beside.library.empty()) files.push_back(beside.library);
+  files.push_back(path);
+  return files;
+}
+
 Result<ExportReport> export_mesh(const Mesh& mesh, const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
-  const bool is_obj = lower_case(extension) == ".obj" && !mesh.materials.empty();
-  if (is_obj || (lower_case(extension) == ".ply" && !mesh.images.empty())) {
-    const Status written = export_with_images(mesh, path, is_obj);
+  const FilesBeside beside = files_beside(mesh, path);
+  if (!beside.library.empty() || !beside.images.empty()) {
+    const Status written = export_with(beside, mesh, path);
     if (!written.ok()) return written.failure();
     return export_report(mesh, extension);
   }

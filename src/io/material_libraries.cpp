@@ -131,6 +131,7 @@ class LibraryReader {
                                 file.bytes.size());
     read_mtl(text, std::filesystem::path(file.path).parent_path().generic_string(), materials_,
              libraries_.placement_of_material, is_known_, losses_);
+    libraries_.files.push_back(folder_ / file.path);
     any_ = true;
   }
 

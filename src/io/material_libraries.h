@@ -16,6 +16,7 @@ namespace crease {
 struct MaterialLibraries {
   std::vector<TexturePlacement> placement_of_material;
   std::vector<std::string> notes;  // libraries that were not found, materials that none has
+  std::vector<std::filesystem::path> files;  // that were read
 };
 
 // Fills in `materials`. `named`: what follows each `mtllib`: one name, with blanks in it or not, or

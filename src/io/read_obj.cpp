@@ -396,6 +396,7 @@ class ObjReader {
     MaterialLibraries libraries =
         read_material_libraries(*source_.folder, libraries_, raw_.materials);
     for (std::string& note : libraries.notes) raw_.report.notes.push_back(std::move(note));
+    raw_.report.libraries = std::move(libraries.files);
     place_textures(libraries.placement_of_material);
   }
 
