@@ -1,7 +1,5 @@
 #include "cli/exit_code.h"
 
-#include "cli/command.h"
-
 namespace crease::cli {
 
 namespace {
@@ -53,11 +51,14 @@ std::string_view name_of(Error error) {
 }
 
 std::string failure_json(const Failure& failure) {
-  const Json json = {{"error",
-                      {{"code", static_cast<int>(failure.error)},
-                       {"name", name_of(failure.error)},
-                       {"message", failure.message}}},
-                     {"exit_status", static_cast<int>(exit_code_of(failure.error))}};
+  return printed({{"error",
+                   {{"code", static_cast<int>(failure.error)},
+                    {"name", name_of(failure.error)},
+                    {"message", failure.message}}},
+                  {"exit_status", static_cast<int>(exit_code_of(failure.error))}});
+}
+
+std::string printed(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

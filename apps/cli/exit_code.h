@@ -1,6 +1,7 @@
-// Exit statuses (DESIGN 9, docs/errors.md). Scripts rely on them.
+// Exit statuses (docs/errors.md). Scripts rely on them.
 #pragma once
 
+#include "cli/command.h"
 #include "crease/result.h"
 
 #include <string>
@@ -26,5 +27,7 @@ std::string_view name_of(Error error);
 
 // What --json prints of a failure: one object.
 std::string failure_json(const Failure& failure);
+
+std::string printed(const Json& json);
 
 }  // namespace crease::cli

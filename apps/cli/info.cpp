@@ -49,11 +49,11 @@ std::string images_text(const Json& images) {
   return text;
 }
 
-std::string bits_text(const BitsPerVertex& bits) {
+std::string bits_text(const BitsPerVertex& bits, const char* vertex) {
   char line[160];
   std::snprintf(line, sizeof line,
-                "%.2f bits a vertex: connectivity %.2f, positions %.2f, attributes %.2f",
-                bits.total, bits.connectivity, bits.positions, bits.attributes);
+                "%.2f bits %s: connectivity %.2f, positions %.2f, attributes %.2f", bits.total,
+                vertex, bits.connectivity, bits.positions, bits.attributes);
   return line;
 }
 
@@ -64,17 +64,18 @@ Report file_report(const ModelFile& file, const DecodedModel& model) {
   const Json& json = report.json = file_facts(file, model, *arrays);
   const Json& linear = json["linear_bytes"];
   const auto bytes = [](const Json& count) { return in_bytes(count.get<std::uint64_t>()); };
-  report.text =
-      mesh_text(json) + "\n" + bytes(json["bytes"]) + ", " +
-      bits_text(whole_file_per_vertex(file, model)) + "; " + bytes(json["container_bytes"]) +
-      " of it head and directory\nrun-time arrays: " + bytes(linear["crease"]) + "; with wedges " +
-      bytes(linear["wedge"]) + ", with replicated vertices " + bytes(linear["replicated"]) +
-      "\nlevel records: " + bytes(linear["records"]) + "\nbands:";
+  report.text = mesh_text(json) + "\n" + bytes(json["bytes"]) + ", " +
+                bits_text(whole_file_per_vertex(file, model), "a vertex") + "; " +
+                bytes(json["container_bytes"]) +
+                " of it head and directory\nrun-time arrays: " + bytes(linear["crease"]) +
+                "; with wedges " + bytes(linear["wedge"]) + ", with replicated vertices " +
+                bytes(linear["replicated"]) + "\nlevel records: " + bytes(linear["records"]) +
+                "\nbands:";
   for (std::size_t b = 0; b < facts.bands.size(); ++b) {
     const BandFacts& band = facts.bands[b];
     report.text += "\n  down to " + grouped(band.triangles_after) + " triangles: error " +
                    in_length(band.error.surface) + ", " + grouped(band.patches) + " blocks, " +
-                   bits_text(per_vertex(model.bits[b], band.contractions)) + " it adds";
+                   bits_text(per_vertex(model.bits[b], band.contractions), "a vertex that it adds");
   }
   return report;
 }

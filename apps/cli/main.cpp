@@ -4,6 +4,7 @@
 #include "cli/exit_code.h"
 #include "cli/memory_option.h"
 #include "cli/number_check.h"
+#include "cli/output.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -42,16 +43,26 @@ int print_failure(const Failure& failure, const Common& common) {
   return after_printing(exit_code_of(failure.error));
 }
 
-int print_report(const Report& report, const Common& common) {
+// What was written, which nothing may be mixed with.
+bool goes_to_standard_output(const Report& report) {
+  const auto output = report.json.find("output");
+  return output != report.json.end() && output->is_string() &&
+         is_standard_output(output->get<std::string>());
+}
+
+int print_report(Report report, const Common& common) {
   wipe_progress_bar();
+  const bool is_short = !report.shortfall.empty();
+  if (is_short) report.json["exit_status"] = static_cast<int>(exit_code_of(report.short_of));
   if (report.is_printed) {
     // nothing is left to say
   } else if (common.json) {
-    std::printf("%s\n", report.json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    std::printf("%s\n", printed(report.json).c_str());
   } else if (!report.text.empty() && (report.text_is_answer || !common.quiet)) {
-    std::printf("%s\n", report.text.c_str());
+    std::FILE* const to = goes_to_standard_output(report) ? stderr : stdout;
+    std::fprintf(to, "%s\n", report.text.c_str());
   }
-  if (report.shortfall.empty()) return after_printing(ExitCode::Done);
+  if (!is_short) return after_printing(ExitCode::Done);
   std::fprintf(stderr, "crease: %s\n", report.shortfall.c_str());
   return after_printing(exit_code_of(report.short_of));
 }
@@ -113,8 +124,9 @@ int run_main(int argc, char** argv) {
   watch_for_interrupts();
   for (const Command& command : commands) {
     if (!command.app->parsed()) continue;
-    const Result<Report> report = run_command(command);
-    return report.ok() ? print_report(*report, common) : print_failure(report.failure(), common);
+    Result<Report> report = run_command(command);
+    return report.ok() ? print_report(*std::move(report), common)
+                       : print_failure(report.failure(), common);
   }
   return static_cast<int>(ExitCode::CommandLine);
 }

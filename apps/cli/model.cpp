@@ -23,8 +23,8 @@ void add_import_options(CLI::App& command, ReadOptions& options) {
       ->capture_default_str();
   command
       .add_option("--same-normal", options.same_normal_deg,
-                  "normals at one vertex that differ by no more become one: exporter noise is no "
-                  "crease")
+                  "sides whose normals all lie within it get one normal, and so do normals that "
+                  "meet at a vertex: exporter noise is no crease")
       ->type_name("DEGREES")
       ->check(number_from(0.0, 180.0))
       ->capture_default_str();
@@ -274,6 +274,25 @@ Result<std::vector<ImageFile>> ModelFile::images(std::span<const Material> mater
 
 namespace {
 
+// Of a .crease: what was asked for as if it were a mesh, and has been decided by its build.
+void tell_void_options(const ReadOptions& options, const std::string& name, const Common& common) {
+  const ReadOptions none;
+  std::string given;
+  const auto note = [&](const char* option, bool is_given) {
+    if (is_given) given += (given.empty() ? "" : ", ") + std::string(option);
+  };
+  note("--normals", options.normals != none.normals);
+  note("--same-normal", options.same_normal_deg > 0);
+  note("--precision", !options.precision.empty());
+  note("--placement", options.placement != none.placement);
+  note("--normal-coding", options.normal_coding != none.normal_coding);
+  note("--normal-bits", !options.normal_bits.empty());
+  note("--texcoord-bits", !options.texcoord_bits.empty());
+  note("--color-bits", !options.color_bits.empty());
+  if (!given.empty())
+    log(common, name + ": " + given + " of no effect: its build has decided that");
+}
+
 Result<BlockFile> open_crease_or_url(const std::filesystem::path& path) {
   if (!is_url(path)) return open_crease(path);
   if (!is_http_url(path.string())) {
@@ -294,6 +313,7 @@ Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOption
   if (is_crease_file(path)) {
     Result<BlockFile> file = open_crease_or_url(path);
     if (!file.ok()) return file.failure();
+    tell_void_options(options, path.string(), common);
     ModelFile model(*std::move(file), {}, common);
     model.texture_folder_ = options.texture_folder;
     return model;

@@ -231,6 +231,7 @@ Status Panels::add_file(const std::filesystem::path& path, const PanelOptions& o
     const Result<Chosen> chosen = choose_level(mesh, full, level, common);
     if (!chosen.ok()) return chosen.failure();
     const std::string of_file = options.file_names ? file->name() + ", " : "";
+    if (!chosen->target_met) log(common, of_file + shortfall_of(mesh.triangle_count()));
     const std::string name = of_file + level_name(mesh, full_count);
     if (options.control) {
       controls.push_back({name, mesh.extract()});

@@ -1,4 +1,4 @@
-"""What every command does when all is well, and the fields that scripts rely on (DESIGN 9)."""
+"""What every command does when all is well, and the fields that scripts rely on (docs/cli.md)."""
 
 import json
 import math
@@ -429,6 +429,17 @@ class Commands(tool.Case):
                       "--wireframe", "--size", "160x120")
             self.assertEqual(tool.png_size(out), (160, 120))
         self.json("render", self.city(), "-o", out, "--size", "160x120")
+        tetrahedron = self.write("t.obj", tool.TETRAHEDRON)  # levels of 4 and 2 triangles
+        told = self.run_tool("render", tetrahedron, "-o", out, "--triangles", 1, "--size", "160x120")
+        self.assertIn("target not met: the coarsest level has 2 triangles", told.stderr)
+
+    def test_what_a_build_has_decided_is_not_asked_for_again_in_silence(self):
+        out = self.path("level.obj")
+        told = self.run_tool("extract", self.built(), "-o", out, "--ratio", 0.1, "--samples", 0,
+                             "--normals", "flat", "--precision", 0.01)
+        self.assertIn("--normals, --precision of no effect", told.stderr)
+        self.assertNotIn("of no effect", self.run_tool("extract", self.built(), "-o", out,
+                                                       "--ratio", 0.1, "--samples", 0).stderr)
 
     def test_validate(self):
         whole = self.json("validate", self.built())

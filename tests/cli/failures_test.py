@@ -174,6 +174,16 @@ class Failures(tool.Case):
             self.assertIn("is an input", self.fails(1, *arguments)["message"])
         self.assertEqual(pathlib.Path(model).read_bytes(), before)
 
+    def test_a_material_library_of_the_input_is_not_written_over(self):
+        self.write("shared.mtl", "newmtl red\nKd 1 0 0\nKs 1 1 1\n")
+        model = self.write("t.obj", "mtllib shared.mtl\nusemtl red\n" + tool.TETRAHEDRON)
+        failure = self.fails(1, "extract", model, "-o", self.path("shared.obj"))
+        self.assertIn("shared.mtl: is an input", failure["message"])
+        self.assertEqual(self.files(), ["shared.mtl", "t.obj"])
+        self.assertIn("Ks", pathlib.Path(self.path("shared.mtl")).read_text())
+        self.run_tool("extract", model, "-o", self.path("other.obj"))
+        self.assertEqual(self.files(), ["other.mtl", "other.obj", "shared.mtl", "t.obj"])
+
     def test_3_a_crease_in_a_pipe_is_told_from_no_format(self):
         crease = self.path("p.crease")
         self.run_tool("build", self.city(), "-o", crease)
@@ -244,10 +254,12 @@ class Failures(tool.Case):
     def test_5_target_not_met(self):
         model = self.write("t.obj", tool.TETRAHEDRON)  # levels of 4 and 2 triangles, then none
         out = self.path("x.ply")
-        self.run_tool("extract", model, "-o", out, "--triangles", 1, "--strict", exit_status=5)
+        short = self.json("extract", model, "-o", out, "--triangles", 1, "--strict", exit_status=5)
+        self.assertEqual((short["exit_status"], short["output"]), (5, None))
         self.assertFalse(os.path.exists(out))
         level = self.json("extract", model, "-o", out, "--triangles", 1)
         self.assertEqual((level["stopped_by"], level["target_met"]), ("topology", False))
+        self.assertNotIn("exit_status", level)
         self.assertTrue(os.path.exists(out))
 
     def test_5_a_chain_that_ends_early(self):
@@ -270,6 +282,7 @@ class Failures(tool.Case):
             result = self.json("validate", self.write("changed.crease", bytes(changed)),
                                exit_status=6)
             self.assertFalse(result["ok"])
+            self.assertEqual(result["exit_status"], 6)
             self.assertTrue(result["errors"][0])
         for part in (whole[:-9], whole[:100], whole + b"more"):
             file = self.write("cut.crease", bytes(part))
@@ -307,6 +320,19 @@ class Failures(tool.Case):
                 self.assertTrue(pathlib.Path(self.path(link)).read_bytes().startswith(begin))
             self.assertTrue(os.path.isfile(self.path("there/y" + ending)))
         self.assertEqual([f for f in self.files() if ".part" in f], [])
+
+    def test_what_goes_to_standard_output_is_not_mixed_with_what_is_said(self):
+        for command, ending, _ in self.outputs():
+            out = self.path("out" + ending)
+            self.run_tool(*command, "-o", out)
+            if command[0] in ("extract", "report"):
+                continue  # has several formats
+            piped = subprocess.run([tool.BINARY, *command, "-o", "/dev/stdout"],
+                                   capture_output=True, env=tool.leaks.without_check())
+            self.assertEqual(piped.returncode, 0, piped.stderr)
+            self.assertNotIn(b"/dev/stdout: ", piped.stdout)
+            self.assertIn(b"/dev/stdout: ", piped.stderr)
+            self.assertEqual(piped.stdout[:4], pathlib.Path(out).read_bytes()[:4])
 
     def test_a_pipe_is_written_to_and_stays(self):
         for command, ending, begin in self.outputs():
