@@ -1,4 +1,4 @@
-// What the library measured and counted, as --json fields (DESIGN 9) and as lines.
+// What the library measured and counted, as --json fields (docs/cli.md) and as lines.
 #pragma once
 
 #include "cli/command.h"

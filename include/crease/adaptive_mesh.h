@@ -1,5 +1,5 @@
 // A mesh that is fine where the camera looks and coarse elsewhere: a cut through a MeshHierarchy
-// that moves by splits and merges, vertex by vertex (G03; DESIGN 8).
+// that moves by splits and merges, vertex by vertex (G03).
 //
 //   AdaptiveMesh mesh(hierarchy);                  // starts at the coarsest cut
 //   mesh.update({.camera = camera});               // every frame; camera.pixels: error on screen
@@ -11,7 +11,7 @@
 // by more than `degrees`. Errors grow upwards, and those of surfaces are nearly bounds of levels
 // (crease/contraction.h), so what is left unsplit is about that wrong at most; where neighbours
 // stop at different levels it is up to three times as wrong, in few pixels. No split needs another
-// one: the mesh has no crack, whatever is split (DESIGN 6.1).
+// one: the mesh has no crack, whatever is split.
 //
 // Cost: that of the splits and merges done, of asking some 20 bytes per active vertex whether it is
 // seen to be wrong, four at a time, where the camera has moved far enough to change the answer, and

@@ -1,5 +1,5 @@
 // A mesh that is fine where the camera looks and coarse elsewhere, block by block, larger than
-// memory (DESIGN 8). The cut runs along the borders of blocks, which no block changes, so it has no
+// memory. The cut runs along the borders of blocks, which no block changes, so it has no
 // crack; a frame only chooses which groups of triangles are drawn.
 //
 //   Result<BlockMesh> mesh = BlockMesh::open(*file);

@@ -4,7 +4,7 @@
 // moves to a new position. Applied in order to the snapped mesh (apply_contractions() is the plain
 // definition, and the oracle in every test):
 //
-//   for each triangle with p: if it also has q it vanishes (F^c of DESIGN 1), else p becomes q;
+//   for each triangle with p: if it also has q it vanishes (F^c of G03), else p becomes q;
 //   q's position becomes `position`;
 //   every triangle in `derived` shows its geometric normal from now on, whatever its stored one,
 //   which changes no more (it comes back when the contraction is undone, and is shown while the
@@ -72,7 +72,7 @@ struct Contraction {
   std::uint32_t derived_count = 0;
 };
 
-// A band of the simplification (DESIGN 4): its contractions follow those of the band before. Each
+// A band of the simplification: its contractions follow those of the band before. Each
 // contraction touches triangles of one patch only, and only vertices that no other patch has.
 struct Band {
   std::uint32_t contraction_count = 0;

@@ -18,12 +18,12 @@
 // the path bit of G03 is one comparison: the corner goes to v_u iff wedge >= second_wedge[s].
 //
 // Triangles keep their three leaf wedges for good. Those that no contraction collapses come first,
-// then those introduced by split 0, by split 1, ... (DESIGN 6.2: the deepest of the three lowest
+// then those introduced by split 0, by split 1, ... (the deepest of the three lowest
 // common ancestors). A triangle is active iff its split is done; its corners stand at the active
 // ancestors of its wedges' leaves.
 //
 // Attributes. At a node, the attributes of a layer are numbered 0 .. n-1: the relative index, which
-// each active corner keeps. An attribute is at a node iff it is live there (DESIGN 6.4): some
+// each active corner keeps. An attribute is at a node iff it is live there: some
 // triangle has exactly one corner under the node and that corner has the attribute; this is exact,
 // so what a cut can show is there (G03 figure 8) and nothing else is. Relative indices ascend with
 // the smooth region (G03 3.5.1), so that few corner subgraphs cross. A layer tells how indices
@@ -35,7 +35,7 @@
 // does not join face normals, which never change (DB03 rule b). What it never saw, since only other
 // cuts show it, goes by G03's rules. pipeline/attribute_rules.h has both.
 //
-// A block (DESIGN 1) has these arrays too: roots are the vertices at its band's coarse end, leaves
+// A block has these arrays too: roots are the vertices at its band's coarse end, leaves
 // those at the fine end, the first triangles those that stand at the coarse end; all ids are local.
 // A decoder fills them front to back: it appends a flag per node, and per split two deltas, the
 // introduced triangles and the attributes, breadth first as it decodes. Only wedges wait for the
@@ -302,7 +302,7 @@ struct HardEdges {
 
 // No cut shades across an edge that is hard in the input and whose both triangles are there, but
 // from where its crease ended: normals from both sides become one only at a contraction whose
-// collapsed triangles link them, directly or by others (DESIGN 6.3). Else the first split where
+// collapsed triangles link them, directly or by others. Else the first split where
 // they do. Exact over all cuts. `hierarchy` must hold check_hierarchy(). Time O(edges * depth) at
 // worst.
 Result<HardEdges> check_hard_edges(const MeshHierarchy& hierarchy);

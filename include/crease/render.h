@@ -24,7 +24,7 @@
 
 namespace crease {
 
-// Reads the JSON of DESIGN 9. position and target are required, the rest has the defaults above.
+// Reads the JSON of camera.h. position and target are required, the rest has the defaults there.
 // A message names the field and what is wrong with it, or where the text stops being JSON.
 Result<Camera> parse_camera(std::string_view json);
 // What parse_camera reads back to the same camera.

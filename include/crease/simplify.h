@@ -1,4 +1,4 @@
-// Mesh -> contractions: quadric pair contraction in error bands and patches (DESIGN 4).
+// Mesh -> contractions: quadric pair contraction in error bands and patches.
 //
 //   ContractionSequence sequence = *simplify(snapped, grid, {});
 //

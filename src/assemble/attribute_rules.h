@@ -1,13 +1,13 @@
 // What becomes of the attributes at v_t and v_u: the rules of one contraction, for one layer.
 //
-// G03 3.4 by DESIGN 6.3: a collapsed triangle links the attributes it has at v_t and at v_u. Of
+// G03 3.4: a collapsed triangle links the attributes it has at v_t and at v_u. Of
 // what is linked, the attributes that are live at v_s become one; those that are not are removed.
 // This differs in three places, each with its reason:
 // (1) The contraction's record decides for all that a linear level shows at v_s: an attribute
 //     becomes what its AttributeChange says, or stays what it is. So the levels of this hierarchy
 //     are those of apply_contractions(). The simplifier follows G03, but does not join two face
 //     values, which never change (DB03 rule b), and knows no attribute that only other cuts show.
-// (2) Attributes with equal ids are one (DESIGN 1), linked by a triangle or not.
+// (2) Attributes with equal ids are one, linked by a triangle or not.
 // (3) An attribute that no level shows, blind or about to be, joins what it is linked with if that
 //     is one attribute; is joined with other such ones if there is nothing else; and stays apart
 //     where face values or categorical values would have to become one.

@@ -1,4 +1,4 @@
-// When triangles and their corners come to an end, in terms of contractions (DESIGN 6.2 and 6.4).
+// When triangles and their corners come to an end, in terms of contractions.
 #pragma once
 
 #include "assemble/leaf_wedges.h"
@@ -19,7 +19,7 @@ struct TriangleTimes {
   // Per triangle: from here on it shows its geometric normal.
   std::vector<std::uint32_t> derived;
   // Per wedge: until some ancestor has two corners of each of its triangles below. Until then a cut
-  // exists that shows the wedge at the ancestor (DESIGN 6.4: liveness).
+  // exists that shows the wedge at the ancestor (liveness).
   std::vector<std::uint32_t> wedge_live_until;
   // Per wedge: until the linear levels show it no more, as a normal or as another attribute.
   std::vector<std::uint32_t> normal_shown_until, wedge_shown_until;

@@ -1,4 +1,4 @@
-// Which attributes a contraction may make one (DESIGN 6.3): those that the triangles it collapses
+// Which attributes a contraction may make one: those that the triangles it collapses
 // link, each having one at v_t and one at v_u. Attributes of one value are one, linked or not.
 #pragma once
 

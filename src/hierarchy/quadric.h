@@ -85,7 +85,7 @@ struct Quadric {
   double trace() const { return row[0][0] + row[1][1] + row[2][2]; }
 
   // The minimum, pulled towards `near` where the quadric says little: on a plane it is singular,
-  // and an unbounded optimum flies away (DESIGN 10). `pull` is relative to the trace.
+  // and an unbounded optimum flies away. `pull` is relative to the trace.
   Vec3d minimum(const Vec3d& near, double pull) const {
     const double mu = pull * trace();
     if (!(mu > 0)) return near;

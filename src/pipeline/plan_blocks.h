@@ -1,4 +1,4 @@
-// Mesh + ContractionSequence -> the plans of blocks (DESIGN 7).
+// Mesh + ContractionSequence -> the plans of blocks.
 #pragma once
 
 #include "codec/encode_block.h"

@@ -1,4 +1,4 @@
-// How wrong a vertex is seen to be from a camera: the criteria of DESIGN 8 as one number, and as a
+// How wrong a vertex is seen to be from a camera: the criteria of a view as one number, and as a
 // question that takes a few instructions.
 //
 //   ViewError error(view, grid);

@@ -1,5 +1,5 @@
 // The shading of flat triangles: which input normals each stands for, what showing another costs,
-// and when it is better to show the geometric normal than the stored one (DESIGN 10).
+// and when it is better to show the geometric normal than the stored one.
 //
 // A flat triangle keeps its stored normal (DB03 rule b). When a triangle vanishes, the input that
 // it stood for is stood for by a neighbour: the heir, whose shown normal is nearest to it. So the

@@ -116,7 +116,7 @@ template <typename Unite>
 }
 
 // Which wedges at a and b become one: those that a vanishing triangle has at its two corners, and
-// those that are the same attribute (DESIGN 6.3; equal index, same attribute). Members are indices
+// those that are the same attribute (equal index, same attribute). Members are indices
 // into wedges_[layer].
 CREASE_WIDE void PatchSimplifier::join_wedges(std::size_t layer, Index a, Index b,
                                               Joins& joins) const {

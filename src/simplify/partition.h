@@ -1,5 +1,5 @@
 // Triangles into patches of bounded size that are near in space, so that parts that do not touch
-// can be joined by virtual pairs (DESIGN 4).
+// can be joined by virtual pairs.
 #pragma once
 
 #include "crease/ids.h"

@@ -1,4 +1,4 @@
-// Hierarchies of test meshes, and cuts through them by the plain definition (DESIGN 6.1).
+// Hierarchies of test meshes, and cuts through them by the plain definition.
 //
 //   HierarchyCase c = random_case(mesh, {.seed = 7});
 //   Cut cut = random_cut(c, random);

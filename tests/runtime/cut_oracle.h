@@ -1,4 +1,4 @@
-// What an adaptive mesh shows at a cut, by the plain definition of DESIGN 6.1: every input triangle
+// What an adaptive mesh shows at a cut, by the plain definition: every input triangle
 // with its leaf corners replaced by their active ancestors, kept iff the three differ.
 //
 //   CutOracle oracle(hierarchy_case);

@@ -1,4 +1,4 @@
-// What a camera asks for: each criterion of DESIGN 8 alone, as counts. A cut that obeys a view
+// What a camera asks for: each criterion alone, as counts. A cut that obeys a view
 // without hysteresis does not depend on the way there.
 #include "crease/adaptive_mesh.h"
 #include "pipeline/hierarchy_case.h"

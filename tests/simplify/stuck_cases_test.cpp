@@ -1,4 +1,4 @@
-// The cases in which simplifiers stop short or lose the shading (DESIGN 4), as tests of shape:
+// The cases in which simplifiers stop short or lose the shading, as tests of shape:
 // counts of triangles and degrees, never time.
 #include "crease/compare.h"
 #include "crease/simplify.h"
