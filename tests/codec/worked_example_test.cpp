@@ -1,14 +1,18 @@
-// The example of docs/format.md, byte by byte, and the golden files of versions 6 to 8.
+// The example of docs/format.md, byte by byte, and the golden files of the container.
 #include "codec/atomic_file.h"
 #include "codec/container_files.h"
+#include "codec/documented_file.h"
+#include "crease/file.h"
+#include "support/described_mesh.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
+#include <vector>
 
 namespace crease {
 namespace {
@@ -17,41 +21,24 @@ std::filesystem::path test_folder() {
   return std::filesystem::path(__FILE__).parent_path();
 }
 
-std::vector<std::byte> bytes_of_text(const char* text) {
-  std::vector<std::byte> bytes;
-  for (; *text != '\0'; ++text) bytes.push_back(std::byte(*text));
-  return bytes;
-}
-
-WrittenFile example() {
-  WrittenFile file;
-  ModelFacts& facts = file.content.facts;
-  facts.grid = {{0, 0, 0}, 0.5};
-  facts.grid_bits = 4;
-  facts.vertex_count = 5;
-  facts.triangle_count = 6;
-  facts.layers = {{"normal", AttributeRole::Normal, Interpolation::Direction, 3,
-                   AttributeCoding::Octahedral, 10}};
-  facts.bands = {{1, 1, 4, {0.75f, 0, 12.5f, 0}}};
-  file.content.materials = {{"red", {1, 0, 0, 1}, ""}};
-  file.content.tables = bytes_of_text("prim");
-  BlockFacts base;
-  base.band = 1;
-  base.center = {1, -1, 0};
-  base.radius = 9;
-  base.vertices = 4;
-  base.triangles_fine = 4;
-  base.coarse = base.fine = {0.75f, 0, 12.5f, 0};
-  base.decoded_bytes = 256;
-  BlockFacts finer = base;
-  finer.band = 0;
-  finer.splits = 1;
-  finer.vertices = 5;
-  finer.triangles_coarse = 4;
-  finer.triangles_fine = 6;
-  finer.fine = {};
-  file.blocks = {{base, {}, bytes_of_text("base")}, {finer, {BlockId{0}}, bytes_of_text("split")}};
-  return file;
+// As docs/format-block.md has it at its end.
+Mesh hip_roof() {
+  Mesh roof;
+  roof.positions = {{6, 4, 0}, {0, 4, 0}, {6, 0, 0}, {0, 0, 0}, {4, 2, 2}, {2, 2, 2}};
+  constexpr std::uint32_t kCorners[6][3] = {{0, 1, 5}, {1, 3, 5}, {2, 4, 3},
+                                            {4, 2, 0}, {4, 5, 3}, {5, 4, 0}};
+  constexpr std::uint32_t kNormals[6] = {0, 2, 3, 1, 3, 0};  // A to D
+  const float half_root = std::sqrt(0.5f);
+  AttributeLayer normals{"normal", AttributeRole::Normal, Interpolation::Direction, 3, {}, {}};
+  normals.values = {0,          half_root, half_root, half_root, 0,          half_root,
+                    -half_root, 0,         half_root, 0,         -half_root, half_root};
+  for (std::size_t t = 0; t < 6; ++t) {
+    const std::uint32_t* v = kCorners[t];
+    roof.triangles.push_back({VertexId{v[0]}, VertexId{v[1]}, VertexId{v[2]}});
+    for (int c = 0; c < 3; ++c) normals.of_corner.push_back(AttributeId{kNormals[t]});
+  }
+  roof.layers = {normals};
+  return roof;
 }
 
 // Sixteen bytes a line: offset, bytes, and what of them is a letter.
@@ -73,21 +60,18 @@ std::string hex_dump(const std::vector<std::byte>& bytes) {
   return dump;
 }
 
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-TEST_CASE("the example of docs/format.md is what is written") {
-  const std::string text = read_text(test_folder() / "../../docs/format.md");
-  const std::size_t heading = text.find("\n## Example\n");
-  REQUIRE(heading != std::string::npos);
-  const std::size_t begin = text.find("```\n", heading) + 4;
-  const std::string documented = text.substr(begin, text.find("```", begin) - begin);
-  const std::vector<std::byte> bytes = bytes_of(example());
+TEST_CASE("the example of docs/format.md is the roof that it says it is") {
+  const std::filesystem::path path = test_folder() / "../../docs/format.md";
+  const std::vector<std::byte> bytes = documented_file(path);
   REQUIRE(!bytes.empty());
-  CHECK(documented == hex_dump(bytes));
-  CHECK(BlockFile::open(memory_source(bytes))->validate().empty());
+  CHECK(documented_dump(path) == hex_dump(bytes));
+  const Result<BlockFile> file = BlockFile::open(memory_source(bytes));
+  REQUIRE_MESSAGE(file.ok(), (file.ok() ? "" : file.failure().message));
+  CHECK(validate_crease(*file).empty());
+  CHECK((bytes_of(read_whole(*file)) == bytes));
+  const Result<DecodedModel> model = decode_model(*file);
+  REQUIRE(model.ok());
+  CHECK((described(model->mesh) == described(hip_roof())));
 }
 
 // Opens the golden file, which `written` becomes where that is asked for, and writes it again.

@@ -180,7 +180,7 @@ Bytes read_part(const Bytes& file, std::uint64_t& offset, const Part& part) {
   return bytes;
 }
 
-// "Materials, part names, model tables".
+// "Materials, part names, lattices".
 std::vector<Material> read_materials(const Bytes& bytes, int layout) {
   std::vector<Material> materials;
   if (bytes.empty()) return materials;

@@ -97,7 +97,7 @@ struct Container {
 // All checksums but those of payloads are verified. Throws Refused.
 Container read_container(const Bytes& file);
 
-// "Materials, part names, model tables": of each layer one lattice a component; none where its
+// "Materials, part names, lattices": of each layer one lattice a component; none where its
 // coding is another.
 std::vector<std::vector<Lattice>> read_lattices(const std::vector<Layer>& layers,
                                                 const Bytes& tables);

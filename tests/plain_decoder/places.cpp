@@ -233,8 +233,8 @@ std::int32_t PlaceModel::read_count(RangeDecoder& in, Expected& expected, const 
   PerComponent scale;
   for (std::size_t k = 0; k < kComponents; ++k) {
     const float above = plane + expected.centre[2][k] * (D[2] / along);
-    now.centre[k] = steps.offset + steps.unit * above;
-    scale[k] = expected.N[k] * (std::abs(steps.unit) / std::abs(along)) + 0.2f;
+    now.centre[k] = steps.offset + steps.gain * above;
+    scale[k] = expected.N[k] * (std::abs(steps.gain) / std::abs(along)) + 0.2f;
     now.inverse_scale[k] = 1 / scale[k];
   }
   const std::int32_t count = read_axis(in, now, round_of(now.centre[0]), scale[0]);

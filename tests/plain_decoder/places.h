@@ -47,10 +47,10 @@ struct Child {
   float share = 0;  // of a second or first between
 };
 
-// The steps of a first between: which axis they go along, "unit" and "offset".
+// The steps of a first between: which axis they go along, "gain" and "offset".
 struct Steps {
   std::size_t axis = 2;
-  float unit = 0, offset = 0;
+  float gain = 0, offset = 0;
 };
 
 class PlaceModel {

@@ -2,6 +2,7 @@
 // block.
 #include "codec/checksum.h"
 #include "codec/decode_block.h"
+#include "codec/documented_file.h"
 #include "codec/encoded_model.h"
 #include "codec/lattices.h"
 #include "codec/layer_values.h"
@@ -321,10 +322,14 @@ TEST_CASE("the plain decoder finds what the codec does, at vertices of many tria
   }
 }
 
+TEST_CASE("the plain decoder reads the example of docs/format.md") {
+  CHECK(check_file(documented_file(golden("../../../docs/format.md"))) == 2);
+}
+
 TEST_CASE("the plain decoder reads the golden files") {
   CHECK(check_file(file_bytes(golden("model_6.crease"))) == 2);
   CHECK(check_file(file_bytes(golden("model_10.crease"))) == 2);
-  // Its payloads are the letters "base" and "split".
+  // The payloads of these are no blocks.
   for (const char* name :
        {"version_6.crease", "version_7.crease", "version_8.crease", "version_9.crease",
         "version_10.crease", "version_11.crease", "version_12.crease", "version_13.crease"}) {
