@@ -23,6 +23,10 @@ struct SeamShares {
 constexpr SeamShares kSeams{0.2, 0.35}, kTextureSeams{0.35, 0.6};
 constexpr double kLeastSeam = 0.01;
 
+// With so many values a corner each triangle has a chart of its own, and what one contraction
+// leaves of them fits no texture: nothing is there that a line could keep.
+constexpr double kOwnCharts = 0.93;
+
 double weight_of_seams(const Mesh& mesh, const AttributeLayer& layer) {
   std::vector<std::uint32_t> first(mesh.vertex_count(), kNone);
   std::size_t off = 0;
@@ -31,6 +35,10 @@ double weight_of_seams(const Mesh& mesh, const AttributeLayer& layer) {
     const auto id = static_cast<std::uint32_t>(layer.of_corner[corner]);
     if (at_vertex == kNone) at_vertex = id;
     off += at_vertex != id;
+  }
+  if (layer.role == AttributeRole::TexCoord && off > 0 &&
+      double(layer.value_count()) > kOwnCharts * double(layer.of_corner.size())) {
+    return 0;
   }
   const double share = double(off) / double(std::max<std::size_t>(1, layer.of_corner.size()));
   const SeamShares& seams = layer.role == AttributeRole::TexCoord ? kTextureSeams : kSeams;
