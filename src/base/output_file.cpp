@@ -59,12 +59,26 @@ Result<Place> place_of(const std::filesystem::path& path) {
   return place;
 }
 
+// A file of its own: another writer of the same path, a thread or a process of the same number
+// elsewhere, has one as well.
+std::FILE* open_new(std::filesystem::path& aside) {
+  constexpr int kMostTries = 100;
+  const std::filesystem::path first = aside;
+  for (int i = 2;; ++i) {
+    std::FILE* file = std::fopen(aside.c_str(), "wbx");
+    if (file != nullptr || errno != EEXIST || i > kMostTries) return file;
+    aside = first;
+    aside += "-" + std::to_string(i);
+  }
+}
+
 }  // namespace
 
 Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
   Result<Place> place = place_of(path);
   if (!place.ok()) return place.failure();
-  std::FILE* file = std::fopen(place->aside.empty() ? path.c_str() : place->aside.c_str(), "wb");
+  std::FILE* file =
+      place->aside.empty() ? std::fopen(path.c_str(), "wb") : open_new(place->aside);
   if (file == nullptr) return cannot_write(path, std::strerror(errno));
   return OutputFile(file, path, std::move(place->target), std::move(place->aside));
 }

@@ -273,6 +273,9 @@ class BlockCoder {
   bool is_one_of_fan_ = false, is_closed_fan_ = false;
   std::array<Spot, 2 * kLargestRing + 2> places_;  // of ring_.vertices, from the present vertex
   std::vector<std::uint32_t> ring_vertices_;       // scratch
+  // Per vertex: when it was last found in the ring, of code_general()'s rings, and where.
+  std::vector<std::uint32_t> ring_of_vertex_, rank_of_vertex_;
+  std::uint32_t ring_count_ = 0;
   std::vector<char> was_derived_;                  // per coarse triangle
   struct Area {
     // A triangle's normal, twice its area long; and one, with 1 as fourth, or all 0.

@@ -299,12 +299,14 @@ typename BlockCoder<Coder, Guide>::Fan BlockCoder<Coder, Guide>::code_likely_fan
 template <class Coder, class Guide>
 void BlockCoder<Coder, Guide>::code_general(std::uint32_t v) {
   ring_vertices_.clear();
+  ring_of_vertex_.resize(mesh_.positions.size(), 0);
+  rank_of_vertex_.resize(mesh_.positions.size(), 0);
+  ++ring_count_;
   for (std::uint32_t t : shape_.triangles) {
     for (std::uint32_t w : mesh_.triangles[t]) {
-      if (w == v ||
-          std::find(ring_vertices_.begin(), ring_vertices_.end(), w) != ring_vertices_.end()) {
-        continue;
-      }
+      if (w == v || ring_of_vertex_[w] == ring_count_) continue;
+      ring_of_vertex_[w] = ring_count_;
+      rank_of_vertex_[w] = static_cast<std::uint32_t>(ring_vertices_.size());
       ring_vertices_.push_back(w);
       if (ring_vertices_.size() > kLargestRing) break;
     }
@@ -321,9 +323,8 @@ void BlockCoder<Coder, Guide>::code_general(std::uint32_t v) {
   for (Introduced& introduced : shape_.introduced) {
     std::uint32_t rank = 0;
     if constexpr (Coder::kEncodes) {
-      rank = static_cast<std::uint32_t>(
-          std::find(ring_vertices_.begin(), ring_vertices_.end(), introduced.third) -
-          ring_vertices_.begin());
+      const std::uint32_t third = introduced.third;
+      rank = ring_of_vertex_[third] == ring_count_ ? rank_of_vertex_[third] : near;
     }
     if (near > 0 && coder_.bit(is_in_ring_, rank < near)) {
       introduced.third = ring_vertices_[code_below(near, rank)];

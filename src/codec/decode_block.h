@@ -25,7 +25,7 @@ constexpr std::uint64_t decoded_bytes(const BlockLimits& limits, std::size_t lay
 // And what the decoded block takes of that, in terms of the whole model (UnfoldedBlock).
 constexpr std::uint64_t kept_bytes(const BlockLimits& limits, std::size_t layer_count) {
   return 1024 + 64 * std::uint64_t(limits.vertices) + 32 * std::uint64_t(limits.triangles) +
-         96 * std::uint64_t(layer_count) * limits.triangles;
+         std::uint64_t(layer_count) * (128 + 96 * std::uint64_t(limits.triangles));
 }
 
 // `bits`, where not null, is added to: what each stream takes. That makes it slower.

@@ -1,5 +1,6 @@
 #include "codec/encode_lattices.h"
 
+#include "base/assert.h"
 #include "base/bytes.h"
 
 namespace crease {
@@ -8,6 +9,7 @@ std::vector<std::byte> encode_lattices(std::span<const LayerCoding> codings) {
   ByteWriter out;
   for (const LayerCoding& coding : codings) {
     for (const NumberLattice& lattice : coding.components) {
+      CREASE_ASSERT(lattice.grain >= 1 && lattice.grain <= kMostGrain);
       out.f32(lattice.divisor);
       out.u32(static_cast<std::uint32_t>(lattice.low));
       out.u32(static_cast<std::uint32_t>(lattice.high));

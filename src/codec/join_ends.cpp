@@ -42,6 +42,8 @@ class EndJoiner {
   }
 
  private:
+  static constexpr std::size_t kMany = 32;  // corners of a vertex, to be compared each with each
+
   void add_triangle(const PlacedTriangle& at, Mesh& mesh) const {
     const EndPiece& piece = pieces_[at.piece];
     const Corners& corners = piece.end->triangles[at.triangle];
@@ -89,8 +91,14 @@ class EndJoiner {
       }
       std::fill_n(is_flat.begin() + 3 * std::ptrdiff_t(t), 3, 1);
     }
+    std::vector<std::uint32_t> sorted;
     for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
       const std::span<const std::uint32_t> corners = around.of(v);
+      if (corners.size() > kMany) {
+        sorted.assign(corners.begin(), corners.end());
+        mark_like_flat(l, is_hidden, sorted, is_flat);
+        continue;
+      }
       for (const std::uint32_t corner : corners) {
         if (is_flat[corner] != 1) continue;
         for (const std::uint32_t other : corners) {
@@ -102,6 +110,24 @@ class EndJoiner {
       }
     }
     return is_flat;
+  }
+
+  // The same for a vertex of many corners.
+  template <typename IsHidden>
+  void mark_like_flat(std::size_t l, IsHidden is_hidden, std::vector<std::uint32_t>& corners,
+                      std::vector<char>& is_flat) const {
+    std::erase_if(corners, [&](std::uint32_t corner) { return is_hidden(corner / 3); });
+    std::sort(corners.begin(), corners.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return value_of(l, a) < value_of(l, b);
+    });
+    for (auto begin = corners.begin(); begin != corners.end();) {
+      const auto end = std::find_if(begin, corners.end(), [&](std::uint32_t corner) {
+        return value_of(l, corner) != value_of(l, *begin);
+      });
+      const bool any = std::any_of(begin, end, [&](std::uint32_t c) { return is_flat[c] != 0; });
+      if (any) std::for_each(begin, end, [&](std::uint32_t corner) { is_flat[corner] = 2; });
+      begin = end;
+    }
   }
 
   // Where an end is coarser than the model, a triangle may show its geometric normal already.

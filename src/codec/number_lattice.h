@@ -16,6 +16,9 @@
 
 namespace crease {
 
+// A file has no larger one.
+inline constexpr std::int32_t kMostGrain = 1 << 16;
+
 struct NumberLattice {
   float divisor = 1;               // value = float(code) / divisor; > 0
   std::int32_t low = 0, high = 0;  // codes, at most 2^24 from zero: exact as a float

@@ -34,6 +34,7 @@ class TextCoder {
       coded += code_byte(i < text.size() ? text[i] : '\0', coded, i == shared);
     }
     shared_before_ = shared;
+    coded.shrink_to_fit();  // it may be of any length
     before_ = coded;
     return coded;
   }

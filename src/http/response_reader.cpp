@@ -67,6 +67,10 @@ bool is_passing(int status) {
          status == 503 || status == 504;
 }
 
+bool is_redirect(int status) {
+  return status == 301 || status == 302 || status == 303 || status == 307 || status == 308;
+}
+
 std::string_view without_weakness(std::string_view etag) {
   return etag.substr(0, 2) == "W/" ? etag.substr(2) : etag;
 }
@@ -228,6 +232,9 @@ std::span<const std::byte> ResponseReader::on_body(std::span<const std::byte> ch
 }
 
 Verdict ResponseReader::finish(bool was_cut) const {
+  if (state_ == State::Over && was_cut && is_redirect(status_)) {
+    return {Verdict::Kind::Again, verdict_.failure, {}};  // of where it led to nothing came
+  }
   if (state_ == State::Over) return verdict_;
   if (state_ == State::Header) {
     return {Verdict::Kind::Again, fail(Error::ReadFailed, "the host gave no answer"), {}};

@@ -104,6 +104,7 @@ struct Transport::State {
     set(CURLOPT_LOW_SPEED_TIME, static_cast<long>(options.low_speed_seconds));
     if (!options.ca_file.empty()) set(CURLOPT_CAINFO, options.ca_file.c_str());
     set(CURLOPT_ERRORBUFFER, static_cast<char*>(request.problem));
+    set(CURLOPT_SUPPRESS_CONNECT_HEADERS, 1L);  // a proxy's are no answer of the host
     set(CURLOPT_HEADERFUNCTION, &on_header);
     set(CURLOPT_HEADERDATA, static_cast<void*>(&request));
     set(CURLOPT_WRITEFUNCTION, &on_body);

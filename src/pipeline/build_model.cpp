@@ -1,3 +1,4 @@
+#include "codec/model_schema.h"
 #include "crease/block_file.h"
 #include "crease/build.h"
 #include "crease/byte_source.h"
@@ -6,6 +7,8 @@
 #include "pipeline/join_equal_values.h"
 #include "pipeline/snap_attributes.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -22,6 +25,8 @@ Status check_readable(std::span<const std::byte> bytes) {
   if (!file.ok()) return file.failure();
   const std::vector<std::string> wrong = file->validate();
   if (!wrong.empty()) return fail(Error::Invalid, wrong.front());
+  const Result<codec::ModelSchema> schema = codec::read_schema(*file);
+  if (!schema.ok()) return fail(Error::Invalid, schema.failure().message);
   return Done{};
 }
 
@@ -37,6 +42,11 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
     return fail(Error::Invalid, "the mesh has no normal layer, which simplification needs");
   }
   if (const Status sound = check_mesh(mesh); !sound.ok()) return sound.failure();
+  if (std::uint64_t(mesh.parts.size()) * std::max<std::size_t>(1, mesh.materials.size()) >> 32 != 0) {
+    return fail(Error::NotSupported, std::to_string(mesh.parts.size()) + " parts of " +
+                                         std::to_string(mesh.materials.size()) +
+                                         " materials: more pairs than 32 bits can tell apart");
+  }
   const Status precise = check_precision(mesh, options.precision);
   if (!precise.ok()) return precise.failure();
   const Status in_range = check_attribute_precision(options.attributes);

@@ -93,7 +93,8 @@ NumberLattice fit_input(std::span<const float> values, int bits) {
 void add_grain(NumberLattice& lattice, int bits) {
   constexpr std::int32_t kMost = 1 << (kMaxCodeBits - 1);
   const float most_divisor = power_of_two(kMaxExponent);
-  while (lattice.low < lattice.high && lattice.high - lattice.low < (1 << bits) - 1) {
+  while (lattice.low < lattice.high && lattice.high - lattice.low < (1 << bits) - 1 &&
+         lattice.grain < kMostGrain) {
     if (lattice.low < -kMost || lattice.high > kMost || lattice.divisor >= most_divisor) break;
     lattice.low *= 2;
     lattice.high *= 2;
