@@ -65,7 +65,11 @@ Vec3d round_origin(const Mesh& mesh) {
   if (!(side > 0) || float_rounding(mesh, {}) <= kVisible * side) return {};
   const double step = power_of_ten_from(side);
   Vec3d origin;
-  for (int k = 0; k < 3; ++k) origin[k] = step * std::round(bounds.middle()[k] / step) + 0.0;
+  for (int k = 0; k < 3; ++k) {
+    // As short as it is round: 0.01 is no float, a hundred is one.
+    const double per_unit = std::round(1 / step), steps = std::round(bounds.middle()[k] / step);
+    origin[k] = (step < 1 ? steps / per_unit : step * steps) + 0.0;
+  }
   return origin;
 }
 

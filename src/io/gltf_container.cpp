@@ -96,6 +96,11 @@ Result<Vec3d> tile_center(const Source& source, const Json& stored, std::size_t 
   return center;
 }
 
+// Centres are z-up, as tiles and the globe are, the glTF is y-up, and positions stay so.
+Vec3d turned_to_y_up(const Vec3d& center) {
+  return {center.x, center.z, -center.y};
+}
+
 // What a batch table loses, whose JSON this is.
 void tell_batch_table(const Source& source, std::span<const std::byte> json,
                       std::vector<std::string>& notes) {
@@ -143,8 +148,7 @@ Result<GltfDocument> open_b3dm(const Source& source) {
     const Result<Vec3d> center =
         tile_center(source, at(*table, "RTC_CENTER"), begin, begin + binary_length);
     if (!center.ok()) return center.failure();
-    // Tiles are z-up, the glTF inside is y-up; positions stay y-up, so the centre is turned.
-    document->center = {center->x, center->z, -center->y};
+    document->center = turned_to_y_up(*center);
   }
   return document;
 }
@@ -226,7 +230,7 @@ Result<GltfDocument> open_gltf(const Source& source) {
                          "an object, as in glTF 1.0; only 2.0 is read");
   }
   if (const auto center = as_vector(at(at(at(json, "extensions"), "CESIUM_RTC"), "center"))) {
-    document->center += *center;
+    document->center += turned_to_y_up(*center);
   }
   return document;
 }

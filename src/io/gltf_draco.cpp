@@ -43,6 +43,8 @@ Result<DracoPrimitive> decode_draco(const Source& source, const std::string& pla
                                     std::span<const std::uint32_t> ids, std::size_t most) {
   const Result<std::unique_ptr<draco::Mesh>> mesh = decoded_mesh(source, place, encoded);
   if (!mesh.ok()) return mesh.failure();
+  // Whether integers are shares of one, the accessor says.
+  for (int i = 0; i < (*mesh)->num_attributes(); ++i) (*mesh)->attribute(i)->set_normalized(false);
   const draco::Mesh& m = **mesh;
   if (m.num_points() > most || m.num_faces() > most) {
     return fail_at_place(Error::OverLimit, source, place, "Draco: beyond reason for such a file");

@@ -78,6 +78,16 @@ std::string GltfImages::take(const Json& texture_info) {
   return known->second;
 }
 
+// Of the images that lie beside the glTF.
+bool GltfImages::is_file(const std::string& name) const {
+  const Json& entries = at(json_, "images");
+  for (std::size_t i = 0; i < size_of(entries); ++i) {
+    const std::string uri = as_text(at(entries[i], "uri"));
+    if (!uri.empty() && !uri.starts_with("data:") && percent_decoded(uri) == name) return true;
+  }
+  return false;
+}
+
 std::string GltfImages::take_image(std::size_t index) {
   const std::string place = place_of("images", index);
   const Json& image = at(at(json_, "images"), index);
@@ -85,6 +95,7 @@ std::string GltfImages::take_image(std::size_t index) {
   if (!uri.empty() && !uri.starts_with("data:")) return percent_decoded(uri);
   std::string name = as_text(at(image, "name"));
   name = unused_name(images, name.empty() ? place : name);
+  while (is_file(name)) name = unused_name(images, name + " inside");
   Result<std::vector<std::byte>> bytes = bytes_of(image, place);
   if (bytes.ok() && image_type(*bytes).empty()) {
     bytes = fail_at_place(Error::NotSupported, source_, place, "is neither a PNG nor a JPEG");

@@ -44,6 +44,7 @@ class GltfImages {
   std::vector<std::string> notes;
 
  private:
+  bool is_file(const std::string& name) const;
   std::string take_image(std::size_t index);
   Result<std::vector<std::byte>> bytes_of(const Json& image, const std::string& place);
 

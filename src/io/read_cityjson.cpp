@@ -11,7 +11,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
+#include <charconv>
 #include <map>
 #include <set>
 #include <span>
@@ -53,7 +53,10 @@ std::array<float, 4> color_of(const std::string& type) {
 double lod_of(const Json& geometry) {
   const Json& lod = at(geometry, "lod");
   const auto* text = lod.get_ptr<const std::string*>();
-  return text == nullptr ? as_number(lod, -1) : std::strtod(text->c_str(), nullptr);
+  if (text == nullptr) return as_number(lod, -1);
+  double level = 0;
+  std::from_chars(text->data(), text->data() + text->size(), level);
+  return level;
 }
 
 // 3.1: how deep the lists of surfaces lie in `boundaries`; -1 if the type has no surfaces.
@@ -158,6 +161,10 @@ class CityBuilder {
                    m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]} +
              reference;
     }
+    bool mirrors() const {
+      const Vec3d x{m[0], m[4], m[8]}, y{m[1], m[5], m[9]}, z{m[2], m[6], m[10]};
+      return dot(cross(x, y), z) < 0;
+    }
   };
 
   // What the surfaces of one geometry share.
@@ -244,7 +251,13 @@ class CityBuilder {
     placed.reserve(template_vertices_.size());
     for (const Vec3d& p : template_vertices_) placed.push_back(placement.point(p));
     std::vector<std::uint32_t> stored(placed.size(), kNone);
-    return add_geometry(geometry, object_type, part, place, placed, stored);
+    const std::size_t first = raw_.triangles.size();
+    const Status added = add_geometry(geometry, object_type, part, place, placed, stored);
+    if (!placement.mirrors()) return added;
+    for (std::size_t t = first; t < raw_.triangles.size(); ++t) {
+      std::swap(raw_.triangles[t][1], raw_.triangles[t][2]);
+    }
+    return added;
   }
 
   Status add_geometry(const Json& geometry, const std::string& object_type, PartId part,

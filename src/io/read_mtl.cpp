@@ -1,5 +1,6 @@
 #include "io/read_mtl.h"
 
+#include "io/read_beside.h"
 #include "io/text.h"
 
 #include <algorithm>
@@ -92,7 +93,8 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
   bool tells_opacity = false;  // by d, or by a Tr that is not 1
   std::vector<Material*> of_tr;
   std::map<Material*, std::array<float, 4>> emission_of;
-  std::set<std::string> lost;  // of the current one
+  std::set<std::string> lost;                                   // of the current one
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a mark of UTF-8
   LineReader lines(text, true);
   for (Line line; lines.next(line);) {
     const std::string_view word = line.word();
@@ -124,7 +126,7 @@ void read_mtl(std::string_view text, const std::string& folder, std::span<Materi
     } else if (current && word == "map_Kd") {
       TexturePlacement& placement =
           placement_of_material[static_cast<std::size_t>(current - materials.data())] = {};
-      const std::string name = texture_name(line, placement);
+      const std::string name = with_slashes(texture_name(line, placement));
       current->base_color_texture =
           folder.empty() || name.empty()
               ? name

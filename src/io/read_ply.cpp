@@ -428,15 +428,17 @@ class PlyReader {
     }
   }
 
-  // Of each triangle, by its face's value, if all are below `count`; else empty.
+  // Of each triangle, by its face's value; of those that are not below `count` `other`, or none
+  // has.
   template <typename Id>
-  std::vector<Id> ids_of_triangles(const RawLayer& layer, std::size_t count) const {
-    for (float x : layer.values) {
-      if (!(x >= 0) || x >= static_cast<float>(count)) return {};
-    }
+  std::vector<Id> ids_of_triangles(const RawLayer& layer, std::size_t count,
+                                   std::optional<Id> other = {}) const {
     std::vector<Id> ids;
     for (std::uint32_t f : raw_.face_of_triangle) {
-      ids.push_back(Id{static_cast<std::uint32_t>(layer.values[f])});
+      const float x = layer.values[f];
+      const bool fits = x >= 0 && x < static_cast<float>(count);
+      if (!fits && !other) return {};
+      ids.push_back(fits ? Id{static_cast<std::uint32_t>(x)} : *other);
     }
     return ids;
   }
@@ -456,7 +458,12 @@ class PlyReader {
     if (!is_index && !raw_.materials.empty()) return true;
     std::vector<Material> materials =
         is_index ? materials_in(header_.comments) : textures_in(header_.comments);
-    raw_.material_of_triangle = ids_of_triangles<MaterialId>(layer, materials.size());
+    // A face without a texture has MeshLab's -1.
+    const MaterialId bare{static_cast<std::uint32_t>(materials.size())};
+    raw_.material_of_triangle = ids_of_triangles<MaterialId>(
+        layer, materials.size(),
+        is_index || materials.empty() ? std::nullopt : std::optional(bare));
+    if (std::ranges::count(raw_.material_of_triangle, bare) > 0) materials.emplace_back();
     if (raw_.material_of_triangle.empty()) return false;
     raw_.materials = std::move(materials);
     return true;

@@ -81,7 +81,7 @@ Result<std::vector<std::byte>> unpack_zstd(std::span<const std::byte> bytes,
     if (ZSTD_isError(state)) return damaged(name, in.pos, ZSTD_getErrorName(state));
     if (out.size() > limit) return bomb(name);
     const bool output_full = chunk.pos == chunk.size;
-    if (in.pos == in.size && !output_full) break;
+    if (in.pos == in.size && (state == 0 || !output_full)) break;
   }
   if (state != 0) return cut_off(name, bytes.size());
   return out;
@@ -126,7 +126,13 @@ Packing packing_of(std::span<const std::byte> bytes) {
     return bytes.size() >= magic.size() &&
            std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
   };
-  return begins_with(kZstd) ? Packing::Zstd : begins_with(kXz) ? Packing::Xz : Packing::None;
+  // What a reader skips: sizes, as pzstd writes them before each frame.
+  const bool is_skipped = bytes.size() >= 4 && (bytes[0] & std::byte{0xf0}) == std::byte{0x50} &&
+                          bytes[1] == std::byte{0x2a} && bytes[2] == std::byte{0x4d} &&
+                          bytes[3] == std::byte{0x18};
+  return begins_with(kZstd) || is_skipped ? Packing::Zstd
+         : begins_with(kXz)               ? Packing::Xz
+                                          : Packing::None;
 }
 
 std::string_view without_packing(std::string_view name) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
@@ -123,6 +125,21 @@ TEST_CASE("CityJSON: templates stand where their instances say") {
   CHECK(top == 5);
   CHECK(right == 112);
   CHECK(mesh.parts == std::vector<std::string>{"tree-0", "tree-1"});
+}
+
+TEST_CASE("CityJSON: a template that is mirrored faces outwards still") {
+  const std::filesystem::path path =
+      std::filesystem::path(CREASE_TEST_DATA) / "templates.city.json";
+  std::ifstream file(path);
+  nlohmann::json city = nlohmann::json::parse(file);
+  for (auto& object : city["CityObjects"]) {
+    for (auto& geometry : object["geometry"]) {
+      if (geometry.contains("transformationMatrix")) geometry["transformationMatrix"][0] = -2;
+    }
+  }
+  const Mesh mesh = import_text(city.dump(), "a.city.json").mesh;
+  CHECK(mesh.triangle_count() == 8);
+  CHECK(volume(mesh) > 0);
 }
 
 TEST_CASE("CityJSONSeq: features have vertices of their own and share the transform") {

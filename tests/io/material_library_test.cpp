@@ -85,6 +85,20 @@ Colors colors_of(const Folder& folder, const std::string& named) {
   return colors;
 }
 
+TEST_CASE("a library may begin with a mark of UTF-8") {
+  const Folder folder;
+  folder.write("both.mtl", "\xEF\xBB\xBF" + kRed + kBlue);
+  CHECK(colors_of(folder, "mtllib both.mtl\n").arrived == "red blue");
+}
+
+TEST_CASE("a library in a folder names textures as Windows does") {
+  const Folder folder;
+  folder.write("mats/one.mtl", "newmtl red\nmap_Kd ..\\tex\\a.png\n");
+  const Imported in =
+      import_obj(folder, "mtllib mats/one.mtl\n" + kQuadCorners + "usemtl red\nf 1 2 3\n");
+  CHECK(in.mesh.materials[0].base_color_texture == "tex/a.png");
+}
+
 TEST_CASE("a library is found like an image: as written, in another case, by its last part") {
   const Folder folder;
   folder.write("both.mtl", kRed + kBlue);

@@ -43,5 +43,24 @@ TEST_CASE("texture coordinates as vertices of their own, and textures, for each 
   CHECK(beyond.report.notes == std::vector<std::string>{"4 corners without a value in 'uv': zero"});
 }
 
+TEST_CASE("a face without a texture has none, whichever others have") {
+  for (const bool is_one : {true, false}) {
+    const std::string text =
+        std::string("ply\nformat ascii 1.0\ncomment TextureFile a.png\n") +
+        (is_one ? "" : "comment TextureFile b.png\n") +
+        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float s\nproperty float t\nelement face 2\n"
+        "property list uchar int vertex_indices\nproperty int texnumber\nend_header\n"
+        "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n3 0 1 2 0\n3 0 2 3 -1\n";
+    const Mesh mesh = import_text(text, "a.ply").mesh;
+    REQUIRE(mesh.material_of_triangle.size() == 2);
+    const auto texture_of = [&](std::size_t triangle) {
+      return mesh.materials[index_of(mesh.material_of_triangle[triangle])].base_color_texture;
+    };
+    CHECK(texture_of(0) == "a.png");
+    CHECK(texture_of(1).empty());
+  }
+}
+
 }  // namespace
 }  // namespace crease

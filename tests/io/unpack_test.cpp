@@ -68,6 +68,22 @@ TEST_CASE("large content and several streams in a row come out whole") {
   }
 }
 
+TEST_CASE("content of a megabyte to the byte, and frames that are to be skipped") {
+  for (const std::size_t size : {(std::size_t(1) << 20) - 1, std::size_t(1) << 20,
+                                 (std::size_t(1) << 20) + 1, std::size_t(2) << 20}) {
+    const std::string text(size, 'x');
+    for (const std::string& packed : {zstd_of(text), xz_of(text)}) {
+      const auto out = unpacked(packed);
+      REQUIRE(out.ok());
+      CHECK(out->size() == size);
+    }
+  }
+  using namespace std::string_literals;
+  const auto out = unpacked("\x53\x2a\x4d\x18\x03\x00\x00\x00"s + "abc" + zstd_of(kObj));
+  REQUIRE(out.ok());
+  CHECK(out->size() == std::string(kObj).size());
+}
+
 TEST_CASE("a packed file cut anywhere is refused") {
   for (const std::string& packed : {zstd_of(kObj), xz_of(kObj)}) {
     for (std::size_t size = 6; size < packed.size(); ++size) {
