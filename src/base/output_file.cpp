@@ -77,8 +77,7 @@ std::FILE* open_new(std::filesystem::path& aside) {
 Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
   Result<Place> place = place_of(path);
   if (!place.ok()) return place.failure();
-  std::FILE* file =
-      place->aside.empty() ? std::fopen(path.c_str(), "wb") : open_new(place->aside);
+  std::FILE* file = place->aside.empty() ? std::fopen(path.c_str(), "wb") : open_new(place->aside);
   if (file == nullptr) return cannot_write(path, std::strerror(errno));
   return OutputFile(file, path, std::move(place->target), std::move(place->aside));
 }

@@ -276,7 +276,7 @@ class BlockCoder {
   // Per vertex: when it was last found in the ring, of code_general()'s rings, and where.
   std::vector<std::uint32_t> ring_of_vertex_, rank_of_vertex_;
   std::uint32_t ring_count_ = 0;
-  std::vector<char> was_derived_;                  // per coarse triangle
+  std::vector<char> was_derived_;  // per coarse triangle
   struct Area {
     // A triangle's normal, twice its area long; and one, with 1 as fourth, or all 0.
     Spot twice{}, unit{};

@@ -117,9 +117,8 @@ class EndJoiner {
   void mark_like_flat(std::size_t l, IsHidden is_hidden, std::vector<std::uint32_t>& corners,
                       std::vector<char>& is_flat) const {
     std::erase_if(corners, [&](std::uint32_t corner) { return is_hidden(corner / 3); });
-    std::sort(corners.begin(), corners.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return value_of(l, a) < value_of(l, b);
-    });
+    std::sort(corners.begin(), corners.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return value_of(l, a) < value_of(l, b); });
     for (auto begin = corners.begin(); begin != corners.end();) {
       const auto end = std::find_if(begin, corners.end(), [&](std::uint32_t corner) {
         return value_of(l, corner) != value_of(l, *begin);

@@ -42,7 +42,8 @@ Result<Built> build_model(Mesh mesh, const BuildOptions& options) {
     return fail(Error::Invalid, "the mesh has no normal layer, which simplification needs");
   }
   if (const Status sound = check_mesh(mesh); !sound.ok()) return sound.failure();
-  if (std::uint64_t(mesh.parts.size()) * std::max<std::size_t>(1, mesh.materials.size()) >> 32 != 0) {
+  if (std::uint64_t(mesh.parts.size()) * std::max<std::size_t>(1, mesh.materials.size()) >> 32 !=
+      0) {
     return fail(Error::NotSupported, std::to_string(mesh.parts.size()) + " parts of " +
                                          std::to_string(mesh.materials.size()) +
                                          " materials: more pairs than 32 bits can tell apart");

@@ -341,6 +341,16 @@ TEST_CASE("numbers on a coarse lattice are kept exactly") {
   CHECK(fit_lattice({}, 8).high == 0);
 }
 
+TEST_CASE("grains are no larger than files have them") {
+  for (const float end : {1.0f, 64.0f, 256.0f, 65536.0f}) {
+    const NumberLattice lattice =
+        fit_lattice(std::vector<float>{0, end}, kMaxLatticeBits, kMaxLatticeBits);
+    CHECK(lattice.grain > 1);
+    CHECK(lattice.grain <= kMostGrain);
+    CHECK(worst_distance(lattice, std::vector<float>{0, end}) == 0);
+  }
+}
+
 TEST_CASE("textures that repeat lie still") {
   std::mt19937 random(7);
   for (const double repeats : {0.5, 1.0, 3.0, 4.0, 80.0, 200.0}) {

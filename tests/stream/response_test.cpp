@@ -39,6 +39,15 @@ Outcome read(const FileRange& asked, const Identity* known, std::string_view hea
   return outcome;
 }
 
+TEST_CASE("where a redirect led to nothing came: ask again") {
+  for (const char* status : {"301", "302", "307", "308"}) {
+    const std::string head = std::string("HTTP/1.1 ") + status + " Moved\nLocation: /there\n";
+    CHECK(read({100, 5}, &kKnown, head, {}, true).verdict.kind == Kind::Again);
+    CHECK(read({100, 5}, &kKnown, head).verdict.kind == Kind::Refused);
+  }
+  CHECK(read({100, 5}, &kKnown, "HTTP/1.1 404 Gone\n", {}, true).verdict.kind == Kind::Refused);
+}
+
 TEST_CASE("a part is what it says it is") {
   const Outcome sound = read({100, 5}, &kKnown,
                              "HTTP/1.1 206 Partial Content\ncontent-RANGE: bytes 100-104/1000\n"
