@@ -82,10 +82,11 @@ Image resized(Image image, const PixelSize& size) {
   Image result;
   result.width = size.width;
   result.height = size.height;
+  constexpr int kAlpha = 3;  // is no light; and colours count whatever it is, as in mipmaps
   result.rgba.resize(4 * std::size_t(size.width) * std::size_t(size.height));
   stbir_resize_uint8_srgb_edgemode(image.rgba.data(), image.width, image.height, 0,
-                                   result.rgba.data(), size.width, size.height, 0, 4,
-                                   STBIR_ALPHA_CHANNEL_NONE, 0, STBIR_EDGE_WRAP);
+                                   result.rgba.data(), size.width, size.height, 0, 4, kAlpha,
+                                   STBIR_FLAG_ALPHA_PREMULTIPLIED, STBIR_EDGE_WRAP);
   return result;
 }
 

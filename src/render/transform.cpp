@@ -1,16 +1,13 @@
 #include "render/transform.h"
 
+#include "runtime/view_frame.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace crease {
 
 namespace {
-
-// An axis that is surely not along `direction`.
-Vec3d any_other_axis(const Vec3d& direction) {
-  return std::abs(direction.y) < 0.9 * length(direction) ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
-}
 
 Vec3d corner_of(const Vec3d& low, const Vec3d& high, int i) {
   return {(i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z};
@@ -21,12 +18,10 @@ Vec3d corner_of(const Vec3d& low, const Vec3d& high, int i) {
 View make_view(const Camera& camera, double aspect) {
   View view;
   view.eye = camera.position;
-  view.back = normalized(camera.position - camera.target);
-  if (view.back == Vec3d{}) view.back = {0, 0, 1};
-  view.right = cross(normalized(camera.up), view.back);
-  if (length(view.right) < 1e-6) view.right = cross(any_other_axis(view.back), view.back);
-  view.right = normalized(view.right);
-  view.above = cross(view.back, view.right);
+  const ViewFrame frame = view_frame(camera);
+  view.back = frame.forward * -1;
+  view.right = frame.right;
+  view.above = frame.up;
 
   const double camera_aspect = double(camera.width_px) / camera.height_px;
   const double tan_half = std::tan(radians(camera.vertical_fov_deg) / 2);

@@ -2,6 +2,7 @@
 
 #include "runtime/block_bounds.h"
 #include "runtime/view_error.h"
+#include "runtime/view_frame.h"
 
 #include <algorithm>
 #include <array>
@@ -33,8 +34,7 @@ class ViewPlanes {
   explicit ViewPlanes(const Camera& camera) : eye_(camera.position) {
     const double high = std::tan(radians(camera.vertical_fov_deg) / 2);
     const double wide = high * camera.width_px / camera.height_px;
-    const Vec3d forward = normalized(camera.target - camera.position);
-    const Vec3d right = normalized(cross(forward, camera.up)), up = cross(right, forward);
+    const auto [forward, right, up] = view_frame(camera);
     inward_ = {forward, forward * wide - right, forward * wide + right, forward * high - up,
                forward * high + up};
   }

@@ -91,7 +91,7 @@ void Geomorphs::drop(std::uint32_t slot) {
 }
 
 void Geomorphs::advance(double seconds) {
-  if (seconds > 0) now_ += seconds;  // what is no number is none
+  if (seconds > 0) now_ += std::min(seconds, kLongest);  // what is no number is none
   for (std::size_t i = moving_.size(); i-- > 0;) {
     if (moving_[i].leaving == kNoSplit && share(moving_[i]) >= 1) drop(moving_[i].slot);
   }

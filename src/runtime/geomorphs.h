@@ -36,6 +36,9 @@ namespace crease {
 
 class Geomorphs {
  public:
+  // Of one advance; time that has no end would be no number any more.
+  static constexpr double kLongest = 1e6;
+
   explicit Geomorphs(const MeshHierarchy& hierarchy);
 
   void set_seconds(double seconds) { seconds_ = seconds; }

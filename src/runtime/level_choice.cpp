@@ -59,6 +59,14 @@ void LevelChoice::grow(std::size_t blocks) {
   looked_.resize(blocks);
 }
 
+void LevelChoice::insert(BlockLevelsPtr levels) {
+  const auto same = std::find_if(waiting_.begin(), waiting_.end(),
+                                 [&](const auto& other) { return other->id() == levels->id(); });
+  if (same == waiting_.end()) return waiting_.push_back(std::move(levels));
+  std::swap(*same, levels);
+  discard(levels);
+}
+
 void LevelChoice::take_waiting() {
   for (BlockLevelsPtr& levels : waiting_) {
     take(*levels);

@@ -37,7 +37,7 @@ class LevelChoice {
       : graph_(graph), unused_(unused) {}
 
   // Of a block that is resident. What is shown does not change until the next choice.
-  void insert(BlockLevelsPtr levels) { waiting_.push_back(std::move(levels)); }
+  void insert(BlockLevelsPtr levels);
   // What was inserted counts from here on; else from the next choice.
   void take_waiting();
   void drop(std::uint32_t block);  // it is not resident any more
@@ -169,7 +169,7 @@ class LevelChoice {
   std::vector<std::uint8_t> planned_;  // per block of the cut, while levels are given
   std::vector<char> is_needed_;        // per block, likewise
   std::vector<std::uint32_t> resized_;
-  std::vector<BlockLevelsPtr> waiting_;
+  std::vector<BlockLevelsPtr> waiting_;  // one of a block: choices may be long in coming
   bool lists_have_changed_ = false;
   std::uint32_t choices_ = 0;
 };

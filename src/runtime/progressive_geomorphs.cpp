@@ -63,8 +63,11 @@ void ProgressiveMesh::Impl::want(std::size_t count) {
   arrive();
 }
 
+// Time that has no end would be no number any more.
+static constexpr double kLongestStep = 1e6;
+
 void ProgressiveMesh::Impl::advance(double passed) {
-  if (passed > 0) now += passed;  // what is no number is none
+  if (passed > 0) now += std::min(passed, kLongestStep);  // what is no number is none
   mark_moving();
   if (is_coarsening() && now - began_leaving >= seconds) {
     take_coarser();

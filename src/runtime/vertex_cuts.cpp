@@ -14,6 +14,7 @@ namespace {
 constexpr int kNewErrors = 16;
 // So many updates after it has last moved a block goes to rest.
 constexpr std::uint64_t kUpdatesUntilRest = 30;
+constexpr double kFar = 1e15;  // beside which no step counts
 
 // The view of one block among many: budgets are the mesh's.
 ViewParameters without_budgets(ViewParameters view) {
@@ -176,6 +177,9 @@ void VertexCuts::look(const ViewParameters& view) {
   const ViewError::Motion motion = now_.error.motion_from(before);
   now_.travel += motion.travel;
   now_.turn += motion.turn;
+  if (now_.travel < kFar) return;
+  ++now_.kind;  // what is travelled from here on would be lost in it
+  now_.travel = now_.turn = 0;
 }
 
 // Blocks that have not seen a view in this round come first: if time is over, the others stay as

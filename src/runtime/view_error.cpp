@@ -1,5 +1,7 @@
 #include "runtime/view_error.h"
 
+#include "runtime/view_frame.h"
+
 #include <algorithm>
 
 namespace crease {
@@ -16,9 +18,7 @@ ViewError::ViewError(const ViewParameters& view, const Grid& grid)
   const auto pixels_per_radian = static_cast<float>(camera.height_px / (2 * half));
   pixels_at_one_ = pixels_per_radian / static_cast<float>(std::max(view.camera.pixels, 1e-12));
   full_size_at_one_ = 2 * pixels_per_radian / kFullSizePixels;
-  const Vec3d forward = normalized(camera.target - camera.position);
-  const Vec3d right = normalized(cross(forward, camera.up));
-  const Vec3d up = cross(right, forward);
+  const auto [forward, right, up] = view_frame(camera);
   const auto set = [](std::array<float, 3>& to, const Vec3d& from) {
     to = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
   };

@@ -10,6 +10,7 @@ namespace crease {
 namespace {
 
 constexpr double kDegreesPerPixel = 0.35;
+constexpr double kLeastDistance = 1e-9;  // of the target, beside how far both are from the origin
 constexpr double kNearestPoleDeg = 0.5;
 
 View view_of(const Camera& camera) {
@@ -65,6 +66,9 @@ Camera panned(const Camera& camera, double right_px, double down_px) {
 }
 
 Camera zoomed(const Camera& camera, double factor, const Vec3d& focus) {
+  // Nearer, no step could be told from none any more.
+  const double least = kLeastDistance * std::max(length(camera.position), length(camera.target));
+  if (factor < 1 && factor * length(camera.target - camera.position) < least) return camera;
   Camera moved = camera;
   moved.position = focus + (camera.position - focus) * factor;
   moved.target = focus + (camera.target - focus) * factor;

@@ -34,6 +34,16 @@ double off_ray(const Camera& camera, double x, double y, const Vec3d& p) {
 
 }  // namespace
 
+TEST_CASE("whoever has zoomed in as far as it goes can zoom out again") {
+  Camera camera = some_camera();
+  for (int i = 0; i < 2000; ++i) camera = zoomed(camera, 0.9, camera.target);
+  const double nearest = length(camera.position - camera.target);
+  CHECK(nearest > 0);
+  CHECK(nearest < 1e-6);
+  for (int i = 0; i < 300; ++i) camera = zoomed(camera, 1 / 0.9, camera.target);
+  CHECK(length(camera.position - camera.target) > 1);
+}
+
 TEST_CASE("an orbit keeps the target and the distance, and stops short of the poles") {
   Camera camera = some_camera();
   const double distance = length(camera.position - camera.target);
