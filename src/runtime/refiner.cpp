@@ -191,20 +191,27 @@ void Refiner::do_merges(ActiveCut& cut) {
 void Refiner::do_splits(ActiveCut& cut) {
   const VertexHierarchy& h = cut.hierarchy().vertices;
   const auto less_visible = [](const Wish& a, const Wish& b) { return a.excess < b.excess; };
+  // Wishes for which others are leaving, and the triangles that these will have. More leave for the
+  // next ones meanwhile.
+  waiting_.clear();
+  std::size_t reserved = 0;
   while (!splits_.empty() && !out_of_time()) {
     if (is_ordered_) {
       const Wish wish = splits_.wishes.front();
       if (cut.vertices()[wish.slot].split == wish.split) {
-        const std::size_t gain = h.triangles_of(wish.split).size();
-        if (cut.triangle_count() + gain > view_.max_triangles) {
-          keep_to_budget(cut, wish, gain);
-          if (cut.triangle_count() + gain > view_.max_triangles) {
+        const std::size_t room = reserved + h.triangles_of(wish.split).size();
+        if (cut.triangle_count() + room > view_.max_triangles) {
+          keep_to_budget(cut, wish, room);
+          if (cut.triangle_count() + room > view_.max_triangles) {
             if (leaving_triangles() > 0) {
               report_.complete = false;  // there will be room
             } else if (report_.complete) {
               splits_.clear();  // nothing is less visible: this is it
             }
-            return;
+            if (cut.triangle_count() + room > view_.max_triangles + leaving_triangles()) break;
+            waiting_.push_back(take(splits_, less_visible));
+            reserved = room;
+            continue;
           }
         }
       }
@@ -219,6 +226,10 @@ void Refiner::do_splits(ActiveCut& cut) {
       splits_.clear();
       return;
     }
+  }
+  for (const Wish& wish : waiting_) {
+    splits_.wishes.push_back(wish);
+    std::push_heap(splits_.wishes.begin(), splits_.wishes.end(), less_visible);
   }
   if (splits_.empty()) splits_.clear();
   if (at_once_) cut.bring_corners_down();

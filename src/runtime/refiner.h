@@ -160,7 +160,7 @@ class Refiner {
   std::vector<Pair> pairs_;                  // in no order
   std::vector<std::uint32_t> pair_of_slot_;  // or kNone
   Queue splits_, merges_;
-  std::vector<Wish> sorted_;                   // scratch
+  std::vector<Wish> sorted_, waiting_;         // scratch
   std::vector<std::uint32_t> first_in_range_;  // scratch
   bool finds_splits_ = false;                  // still to be done for this view
   std::span<const std::uint8_t> required_;     // per split; or empty: none is
