@@ -74,6 +74,8 @@ class App {
     int left = 0, width = 1;
   };
   std::size_t side_count() const { return split_.kind == ViewSplit::Off ? 1 : 2; }
+  // Of the window's picture; while it is minimised, of what it was.
+  std::pair<int, int> size_px() const;
   Columns columns_of(std::size_t side) const;
   Camera sized(Camera camera, std::size_t side = 0) const;  // to a side
   ViewSettings settings_of(std::size_t side) const;
@@ -96,6 +98,7 @@ class App {
 
   const ViewerOptions options_;
   ViewerWindow& window_;
+  mutable std::pair<int, int> last_size_px_{1, 1};
   GlCanvas canvas_;
   Gui gui_;
   Session session_;

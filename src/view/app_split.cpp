@@ -37,8 +37,14 @@ SplitSettings split_of(const ViewerOptions& options) {
   return split;
 }
 
+std::pair<int, int> App::size_px() const {
+  const std::pair<int, int> now = window_.size_px();
+  if (now.first > 0 && now.second > 0) last_size_px_ = now;
+  return last_size_px_;
+}
+
 App::Columns App::columns_of(std::size_t side) const {
-  const int width = std::max(1, window_.size_px().first);
+  const int width = std::max(1, size_px().first);
   if (side_count() == 1) return {0, width};
   const int left = std::clamp(int(std::lround(split_.divider * width)), 1, std::max(1, width - 1));
   return side == 0 ? Columns{0, left} : Columns{left, std::max(1, width - left)};
@@ -46,7 +52,7 @@ App::Columns App::columns_of(std::size_t side) const {
 
 Camera App::sized(Camera camera, std::size_t side) const {
   camera.width_px = columns_of(side).width;
-  camera.height_px = std::max(1, window_.size_px().second);
+  camera.height_px = std::max(1, size_px().second);
   return camera;
 }
 
@@ -137,8 +143,8 @@ std::vector<HalfLabel> App::half_labels() const {
             : kCutNames[settings.cut()] + (", " + in_digits(settings.pixels)) + " pixels";
     const bool is_edited = split_.kind != ViewSplit::Settings || split_.edits_right == (side == 1);
     labels.push_back({what + ", " + grouped(triangles) + " triangles",
-                      float(columns_of(1).left) / float(std::max(1, window_.size_px().first)),
-                      side == 1, is_edited});
+                      float(columns_of(1).left) / float(std::max(1, size_px().first)), side == 1,
+                      is_edited});
   }
   return labels;
 }
@@ -152,7 +158,7 @@ bool App::take_divider(const WindowEvent& event) {
     return was_dragging || drags_divider_;
   }
   if (event.kind != WindowEvent::Kind::Move || !drags_divider_) return false;
-  const double share = event.x / std::max(1, window_.size_px().first);
+  const double share = event.x / std::max(1, size_px().first);
   split_.divider = std::clamp(share, kLeastShare, 1 - kLeastShare);
   return true;
 }

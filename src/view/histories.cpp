@@ -13,7 +13,12 @@ void Histories::add(double frame_ms, const FrameFacts& facts) {
                                                 facts.error_pixels};
   for (std::size_t i = 0; i < kSeriesCount; ++i) rings_[i][next_] = float(values[i]);
   next_ = (next_ + 1) % kHistoryLength;
-  frame_ms_.push_back(float(frame_ms));
+  if (frame_ms_.size() < kMostFrames) {
+    frame_ms_.push_back(float(frame_ms));
+  } else {
+    frame_ms_[frame_count_ % kMostFrames] = float(frame_ms);
+  }
+  ++frame_count_;
 }
 
 Histories::View Histories::of(Series series) const {

@@ -28,13 +28,15 @@ class Histories {
   };
   View of(Series series) const;
 
-  std::size_t frame_count() const { return frame_ms_.size(); }
-  double median_frame_ms() const;  // of all frames; 0 without any
+  std::size_t frame_count() const { return frame_count_; }
+  double median_frame_ms() const;  // of all frames, or the last so many; 0 without any
+  static constexpr std::size_t kMostFrames = std::size_t(1) << 20;
 
  private:
   std::array<std::array<float, kHistoryLength>, kSeriesCount> rings_{};
   std::size_t next_ = 0;
-  std::vector<float> frame_ms_;  // of all frames
+  std::vector<float> frame_ms_;  // a ring, once it is full
+  std::size_t frame_count_ = 0;
 };
 
 // How fast a count grows, over the last second.
