@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cstdio>
 
@@ -31,8 +32,11 @@ struct Part {
 // Of "bytes=0-499", "bytes=500-", "bytes=-500". Nothing where the field is to be ignored: another
 // unit, several ranges, no range at all.
 std::optional<Part> parse_range(std::string_view text, std::uint64_t file_bytes) {
-  constexpr std::string_view kUnit = "bytes=";
-  if (!text.starts_with(kUnit)) return {};
+  constexpr std::string_view kUnit = "bytes=";  // in any case (RFC 9110 14.1)
+  const auto is_same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == b;
+  };
+  if (!std::ranges::equal(text.substr(0, kUnit.size()), kUnit, is_same)) return {};
   text = trimmed(text.substr(kUnit.size()));
   const std::size_t dash = text.find('-');
   if (dash == std::string_view::npos) return {};

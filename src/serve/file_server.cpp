@@ -174,7 +174,8 @@ struct FileServer::State {
   MHD_Result answer_folder(const Asked& asked, const UrlPath& path, const Opened& opened) {
     if (!path.ends_with_slash) {
       Response response = serve::text_response({});
-      serve::add(response, "Location", std::string(asked.path) + "/");
+      const bool wants_json = serve::has_argument(asked.connection, "json");
+      serve::add(response, "Location", std::string(asked.path) + (wants_json ? "/?json" : "/"));
       return queue(asked, MHD_HTTP_MOVED_PERMANENTLY, response, 0);
     }
     const bool wants_json = serve::has_argument(asked.connection, "json");
