@@ -15,9 +15,12 @@ std::vector<std::size_t> GlbMaterials::add(const Mesh& mesh) {
   });
   std::vector<std::size_t> result;
   for (const Material& material : mesh.materials) {
-    const auto found = std::ranges::find(materials_, material);
-    result.push_back(static_cast<std::size_t>(found - materials_.begin()));
-    if (found != materials_.end()) continue;
+    const auto [begin, end] = by_name_.equal_range(material.name);
+    const auto same = std::find_if(
+        begin, end, [&](const auto& entry) { return materials_[entry.second] == material; });
+    result.push_back(same == end ? materials_.size() : same->second);
+    if (same != end) continue;
+    by_name_.emplace(material.name, materials_.size());
     materials_.push_back(material);
     const ImageFile* image = find_image(mesh.images, material.base_color_texture);
     const bool can_be_inside = image != nullptr && !image_type(*image->bytes).empty();

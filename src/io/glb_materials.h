@@ -10,6 +10,8 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace crease {
@@ -29,6 +31,7 @@ class GlbMaterials {
   nlohmann::ordered_json material_json(const Material& material) const;
 
   std::vector<Material> materials_;
+  std::unordered_multimap<std::string, std::size_t> by_name_;  // of those
   std::vector<ImageFile> images_;
 };
 
