@@ -314,6 +314,10 @@ Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOption
     Result<BlockFile> file = open_crease_or_url(path);
     if (!file.ok()) return file.failure();
     tell_void_options(options, path.string(), common);
+    const std::vector<LayerSchema>& layers = file->facts().layers;
+    if (std::ranges::find(layers, AttributeRole::Normal, &LayerSchema::role) == layers.end()) {
+      return fail(Error::NotSupported, path.string() + ": has no normals, which all here is about");
+    }
     ModelFile model(*std::move(file), {}, common);
     model.texture_folder_ = options.texture_folder;
     return model;
