@@ -107,6 +107,7 @@ Result<Report> run_info(const InfoArguments& options, const Common& common) {
     }
     DecodeOptions decode = decode_options(common);
     decode.count_bits = true;
+    if (const Status shaded = file->check_normals(); !shaded.ok()) return shaded.failure();
     const Result<DecodedModel> model = decode_model(file->blocks(), decode);
     if (!model.ok()) return model.failure();
     if (!file->blocks().has_parts()) return file->blocks().read_parts().failure();

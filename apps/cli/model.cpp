@@ -237,7 +237,15 @@ std::string ModelFile::name() const {
   return std::filesystem::path(blocks_.source().name()).filename().string();
 }
 
+Status ModelFile::check_normals() const {
+  const std::vector<LayerSchema>& layers = blocks_.facts().layers;
+  const auto normals = std::ranges::find(layers, AttributeRole::Normal, &LayerSchema::role);
+  if (normals != layers.end()) return Done{};
+  return fail(Error::NotSupported, name() + ": has no normals, which all here is about");
+}
+
 Result<Model> ModelFile::load(const Detail& detail) const {
+  if (const Status shaded = check_normals(); !shaded.ok()) return shaded.failure();
   DecodeOptions options = decode_options(*common_);
   const ModelFacts& facts = blocks_.facts();
   if (detail.triangles) {
@@ -314,10 +322,6 @@ Result<ModelFile> open_model(const std::filesystem::path& path, const ReadOption
     Result<BlockFile> file = open_crease_or_url(path);
     if (!file.ok()) return file.failure();
     tell_void_options(options, path.string(), common);
-    const std::vector<LayerSchema>& layers = file->facts().layers;
-    if (std::ranges::find(layers, AttributeRole::Normal, &LayerSchema::role) == layers.end()) {
-      return fail(Error::NotSupported, path.string() + ": has no normals, which all here is about");
-    }
     ModelFile model(*std::move(file), {}, common);
     model.texture_folder_ = options.texture_folder;
     return model;

@@ -73,6 +73,8 @@ class ModelFile {
   // Of `materials`, read now: those in the file, and for others files beside it. What is missing is
   // logged. For meshes that load() gave and for draw lists.
   Result<std::vector<ImageFile>> images(std::span<const Material> materials) const;
+  // The format allows files without; nothing can be done with them here.
+  Status check_normals() const;
   const BlockFile& blocks() const { return blocks_; }
   std::size_t triangle_count() const {
     return static_cast<std::size_t>(blocks_.facts().triangle_count);

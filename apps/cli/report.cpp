@@ -78,6 +78,7 @@ Result<Report> run_report(const ReportArguments& options, const Common& common) 
   asked->up = up_direction(options.up, file->blocks().facts().up);
   DecodeOptions decode = decode_options(common);
   decode.count_bits = true;
+  if (const Status shaded = file->check_normals(); !shaded.ok()) return shaded.failure();
   const Result<DecodedModel> model = decode_model(file->blocks(), decode);
   if (!model.ok()) return model.failure();
   if (interrupted()) return interrupted_failure();
