@@ -5,6 +5,7 @@
 #include "io/formats.h"
 #include "io/ply_body.h"
 #include "io/ply_header.h"
+#include "io/ply_indices.h"
 #include "io/ply_layers.h"
 #include "io/ply_names.h"
 
@@ -394,7 +395,7 @@ class PlyReader {
         layer.name = "face_" + layer.name;
         layer.role = AttributeRole::Other;
       }
-      if (take_index(layer)) continue;
+      if (take_index(layer, header_.comments, raw_)) continue;
       raw_.layers.push_back(std::move(layer));
     }
     if (!texture_of_face_.empty()) {
@@ -408,7 +409,8 @@ class PlyReader {
                        {}};
       const bool is_one = std::ranges::count(texture.values, texture.values[0]) ==
                           static_cast<std::ptrdiff_t>(texture.values.size());
-      if (!take_index(texture) && !is_one) raw_.layers.push_back(std::move(texture));
+      const bool is_taken = take_index(texture, header_.comments, raw_);
+      if (!is_taken && !is_one) raw_.layers.push_back(std::move(texture));
     }
     if (!uv_.empty() && uv_of_corner_.empty()) {
       raw_.report.notes.push_back("element 'multi_texture_vertex' ignored");
@@ -420,61 +422,12 @@ class PlyReader {
       uv.of_corner = std::move(uv_of_corner_);
       raw_.layers.push_back(std::move(uv));
     }
-    use_only_texture();
+    take_only_texture(header_.comments, raw_);
     sink_.report();
     if (short_faces_ > 0) {
       raw_.report.notes.push_back(std::to_string(short_faces_) +
                                   " faces with fewer than three corners ignored");
     }
-  }
-
-  // Of each triangle, by its face's value; of those that are not below `count` `other`, or none
-  // has.
-  template <typename Id>
-  std::vector<Id> ids_of_triangles(const RawLayer& layer, std::size_t count,
-                                   std::optional<Id> other = {}) const {
-    std::vector<Id> ids;
-    for (std::uint32_t f : raw_.face_of_triangle) {
-      const float x = layer.values[f];
-      const bool fits = x >= 0 && x < static_cast<float>(count);
-      if (!fits && !other) return {};
-      ids.push_back(fits ? Id{static_cast<std::uint32_t>(x)} : *other);
-    }
-    return ids;
-  }
-
-  // An integer per face that the comments give names for. Where materials are told, the numbers of
-  // their textures say nothing new.
-  bool take_index(const RawLayer& layer) {
-    if (layer.name == kPartIndex) {
-      std::vector<std::string> parts = parts_in(header_.comments);
-      raw_.part_of_triangle = ids_of_triangles<PartId>(layer, parts.size());
-      if (raw_.part_of_triangle.empty()) return false;
-      raw_.parts = std::move(parts);
-      return true;
-    }
-    const bool is_index = layer.name == kMaterialIndex;
-    if (!is_index && layer.name != kTextureIndex) return false;
-    if (!is_index && !raw_.materials.empty()) return true;
-    std::vector<Material> materials =
-        is_index ? materials_in(header_.comments) : textures_in(header_.comments);
-    // A face without a texture has MeshLab's -1.
-    const MaterialId bare{static_cast<std::uint32_t>(materials.size())};
-    raw_.material_of_triangle = ids_of_triangles<MaterialId>(
-        layer, materials.size(),
-        is_index || materials.empty() ? std::nullopt : std::optional(bare));
-    if (std::ranges::count(raw_.material_of_triangle, bare) > 0) materials.emplace_back();
-    if (raw_.material_of_triangle.empty()) return false;
-    raw_.materials = std::move(materials);
-    return true;
-  }
-
-  void use_only_texture() {
-    if (!raw_.materials.empty()) return;
-    std::vector<Material> textures = textures_in(header_.comments);
-    if (textures.size() != 1) return;
-    raw_.materials = std::move(textures);
-    raw_.material_of_triangle.assign(raw_.triangles.size(), MaterialId{0});
   }
 
   const Source& source_;
