@@ -65,9 +65,16 @@ CREASE_WIDE void PatchSimplifier::contract(Index a, Index b, const Vec3d& target
     corners[ring_[i].corner % 4] = kept;
     corners[3] = corners[0];
   }
-  const Index first = static_cast<Index>(corner_pool_.size());
-  for (const RingTriangle& ring : ring_) corner_pool_.push_back(ring.corner);
-  q.corners = {first, static_cast<Index>(corner_pool_.size()) - first};
+  // In the place of either end's, where that is large enough: else fans take the square of memory.
+  const Index count = static_cast<Index>(ring_.size());
+  Index first = q.corners.first;
+  if (count > q.corners.count) first = p.corners.first;
+  if (count > q.corners.count && count > p.corners.count) {
+    first = static_cast<Index>(corner_pool_.size());
+    corner_pool_.resize(corner_pool_.size() + count);
+  }
+  for (Index i = 0; i < count; ++i) corner_pool_[first + i] = ring_[i].corner;
+  q.corners = {first, count};
   positions_[kept] = target;
   for (const RingTriangle& ring : ring_) facing_[ring.triangle] = facing_of(ring.triangle);
   if (!work_->category_of_triangle.empty() && category_around_[kept] != category_around_[removed]) {

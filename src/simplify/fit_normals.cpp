@@ -26,6 +26,8 @@ constexpr int kSweeps = 4;
 constexpr double kDamping = 0.8;  // the eigenvalues of such equations lie between 1/2 and 2
 constexpr std::size_t kTogether = 1 << 15;  // samples
 constexpr std::size_t kChunk = 1024;
+// At eight triangles each, around one vertex and of one batch: else fans take the square of time.
+constexpr std::size_t kMostLooks = 1 << 17;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 template <typename Body>
@@ -291,8 +293,13 @@ void NormalFit::find_triangles() {
       for (std::size_t place = begin; place < end; ++place) {
         if (first_sample_[place] == first_sample_[place + 1]) continue;
         load_fan(vertices_[place], fan);
-        for (std::size_t i = first_sample_[place]; i < first_sample_[place + 1]; ++i) {
-          look_around(fan, samples_[left[i]]);
+        const std::size_t own = first_sample_[place + 1] - first_sample_[place];
+        const std::size_t most = std::max<std::size_t>(1, kMostLooks / fan.triangles.size());
+        const std::size_t stride = (own + most - 1) / most;
+        for (std::size_t i = 0; i < own; ++i) {
+          Sample& sample = samples_[left[first_sample_[place] + i]];
+          sample.goes_on = false;
+          if (i % stride == 0) look_around(fan, sample);
         }
       }
     });

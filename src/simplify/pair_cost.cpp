@@ -92,11 +92,12 @@ template <typename Unite>
                                                                 Slice wb, Joins& joins,
                                                                 Unite unite) const {
   constexpr std::size_t kFew = 400;  // comparisons
+  constexpr Index kFewOfOne = 8;     // to sort the other's takes longer
   const Wedge* wedges = wedges_[layer].data();
   const auto id_of = [&](Index i) {
     return wedges[i < wa.count ? wa.first + i : wb.first + (i - wa.count)].id;
   };
-  if (std::size_t(wa.count) * wb.count <= kFew) {
+  if (std::size_t(wa.count) * wb.count <= kFew || std::min(wa.count, wb.count) <= kFewOfOne) {
     for (Index i = 0; i < wa.count; ++i) {
       const Index id = id_of(i);
       for (Index j = wa.count; j < wa.count + wb.count; ++j) {

@@ -85,6 +85,8 @@ void find_parts(WorkMesh& work) {
     join_parts(work, work.vertex_of_corner[corner], work.vertex_of_corner[corner + 1]);
     join_parts(work, work.vertex_of_corner[corner], work.vertex_of_corner[corner + 2]);
   }
+  // Parents are smaller: each vertex leads to its part at once. Chains can be as long as the mesh.
+  for (std::uint32_t& part : work.part_of_vertex) part = work.part_of_vertex[part];
 }
 
 // The live triangles of each part and their area, and how many parts have any. From then on

@@ -213,9 +213,7 @@ void find_inside_out(WorkMesh& work) {
     return size > 0 ? dot(twice * (1 / size), to_double(work.represented[t].sum)) : 0;
   };
   const auto part_of = [&](std::size_t t) {
-    std::uint32_t v = work.vertex_of_corner[3 * t];
-    while (work.part_of_vertex[v] != v) v = work.part_of_vertex[v];
-    return v;
+    return work.part_of_vertex[work.vertex_of_corner[3 * t]];
   };
   struct Part {
     double agreement = 0, area = 0;
