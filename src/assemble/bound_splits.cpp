@@ -4,24 +4,30 @@
 #include "hierarchy/normal_cone.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace crease {
 
 namespace {
 
-// Sums of doubles that are rounded to floats: this much keeps them on the safe side.
-constexpr double kSlack = 1 + 1e-6;
-
 struct Extent {
-  double radius = 0;  // grid units
+  double radius = 0;  // model units
   GrowingCone cone;
 };
+
+// A float is rounded to the nearest by itself.
+RoundedUp rounded_up(double value) {
+  float rounded = static_cast<float>(value);
+  if (double(rounded) < value) rounded = std::nextafter(rounded, HUGE_VALF);
+  return RoundedUp::from(rounded);
+}
 
 Vec3d as_double(const Vec3i& p) {
   return {double(p.x), double(p.y), double(p.z)};
 }
 
-std::vector<Extent> extents_of_leaves(const Mesh& snapped, const std::vector<Vec3i>& positions) {
+std::vector<Extent> extents_of_leaves(const Mesh& snapped, const std::vector<Vec3i>& positions,
+                                      double step) {
   std::vector<Extent> extents(snapped.vertex_count());
   for (const Triangle& t : snapped.triangles) {
     const Vec3i p[3] = {positions[index_of(t[0])], positions[index_of(t[1])],
@@ -29,7 +35,7 @@ std::vector<Extent> extents_of_leaves(const Mesh& snapped, const std::vector<Vec
     const Vec3f n = geometric_normal(p[0], p[1], p[2]);
     const GrowingCone cone = GrowingCone::of({double(n.x), double(n.y), double(n.z)});
     for (int c = 0; c < 3; ++c) {
-      const double side = length(as_double(p[(c + 1) % 3]) - as_double(p[c]));
+      const double side = length(as_double(p[(c + 1) % 3]) - as_double(p[c])) * step;
       Extent &here = extents[index_of(t[c])], &next = extents[index_of(t[(c + 1) % 3])];
       here.radius = std::max(here.radius, side);
       next.radius = std::max(next.radius, side);
@@ -57,7 +63,7 @@ void bound_splits(const Mesh& snapped, const std::vector<Vec3i>& leaf_positions,
     if (hierarchy.layers[l].role == AttributeRole::Normal) normals = l;
   }
   const bool has_normals = normals < hierarchy.layers.size();
-  std::vector<Extent> extents = extents_of_leaves(snapped, leaf_positions);
+  std::vector<Extent> extents = extents_of_leaves(snapped, leaf_positions, h.grid.step);
   if (has_normals) {
     for (std::uint32_t v = 0; v < forest.leaf_count; ++v) {
       add_normals(hierarchy, normals, forest.node_of_birth[v], extents[v].cone);
@@ -69,17 +75,17 @@ void bound_splits(const Mesh& snapped, const std::vector<Vec3i>& leaf_positions,
     Extent all;
     for (bool second : {false, true}) {
       const Extent& child = extents[forest.children[i][second ? 1 : 0]];
-      const double away = length(as_double(h.delta_of(h.child(s, second))));
+      const double away = length(as_double(h.delta_of(h.child(s, second)))) * h.grid.step;
       all.radius = std::max(all.radius, away + child.radius);
       all.cone.add(child.cone);
     }
     if (has_normals) add_normals(hierarchy, normals, h.node_of_split[index_of(s)], all.cone);
     SplitBounds& bounds = h.bounds[index_of(s)];
-    bounds.radius = RoundedUp::from(static_cast<float>(all.radius * h.grid.step * kSlack));
+    bounds.radius = rounded_up(all.radius);
     bounds.set_cone({{float(all.cone.axis.x), float(all.cone.axis.y), float(all.cone.axis.z)},
                      static_cast<float>(all.cone.half_angle)});
     // Upwards goes what was stored, so that spheres hold spheres.
-    all.radius = double(bounds.radius.value()) / h.grid.step * kSlack;
+    all.radius = double(bounds.radius.value());
     extents[forest.leaf_count + i] = all;
   }
 }

@@ -4,7 +4,9 @@
 #include "mesh/smooth_regions.h"
 
 #include <algorithm>
+#include <span>
 #include <tuple>
+#include <utility>
 
 namespace crease {
 
@@ -63,12 +65,33 @@ void add_attributes(const AttributeLayer& layer, const std::vector<std::uint32_t
   leaves.first_of_vertex.push_back(static_cast<std::uint32_t>(all.size()));
 }
 
-// At vertex v, of the last ones added.
-std::uint32_t attribute_of(const LeafAttributes& leaves, std::size_t v, AttributeId id) {
-  std::uint32_t i = leaves.first_of_vertex[v];
-  while (leaves.attributes[i].id != id) ++i;
-  return i;
-}
+// Where the attributes of one vertex are, by their ids.
+class PlaceOfId {
+ public:
+  // Of the last vertex added.
+  void look_at(const LeafAttributes& leaves, std::size_t v) {
+    first_ = leaves.first_of_vertex[v];
+    attributes_ = std::span(leaves.attributes).subspan(first_);
+    by_id_.clear();
+    if (attributes_.size() <= kFew) return;
+    for (std::uint32_t i = 0; i < attributes_.size(); ++i) by_id_.emplace_back(attributes_[i].id, i);
+    std::sort(by_id_.begin(), by_id_.end());
+  }
+  std::uint32_t operator[](AttributeId id) const {
+    if (!by_id_.empty()) {
+      return first_ + std::lower_bound(by_id_.begin(), by_id_.end(), std::pair(id, 0u))->second;
+    }
+    std::uint32_t i = 0;
+    while (attributes_[i].id != id) ++i;
+    return first_ + i;
+  }
+
+ private:
+  static constexpr std::size_t kFew = 16;  // else a pole of many takes the square of time
+  std::uint32_t first_ = 0;
+  std::span<const LeafAttributes::Attribute> attributes_;
+  std::vector<std::pair<AttributeId, std::uint32_t>> by_id_;
+};
 
 class WedgeFinder {
  public:
@@ -105,9 +128,8 @@ class WedgeFinder {
     for (std::size_t l = 0; l < mesh_.layers.size(); ++l) {
       LeafAttributes& leaves = found_.layers[l];
       add_attributes(mesh_.layers[l], regions_[l], corners, leaves);
-      for (std::uint32_t c : corners) {
-        at_corner_[l][c] = attribute_of(leaves, v, mesh_.layers[l].of_corner[c]);
-      }
+      place_of_id_.look_at(leaves, v);
+      for (std::uint32_t c : corners) at_corner_[l][c] = place_of_id_[mesh_.layers[l].of_corner[c]];
     }
     sorted_.assign(corners.begin(), corners.end());
     const auto less = [this](std::uint32_t a, std::uint32_t b) {
@@ -138,6 +160,7 @@ class WedgeFinder {
   LeafWedges found_;
   std::vector<std::vector<std::uint32_t>> regions_;    // per layer and triangle
   std::vector<std::vector<std::uint32_t>> at_corner_;  // per layer and corner: its leaf attribute
+  PlaceOfId place_of_id_;
   std::vector<std::uint32_t> sorted_;
 };
 

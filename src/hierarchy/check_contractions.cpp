@@ -145,6 +145,9 @@ class Checker {
   std::optional<Failure> check_changes(std::size_t i) {
     const Contraction& c = sequence_.contractions[i];
     const std::span<const AttributeChange> changes = sequence_.changes_of(c);
+    from_.clear();
+    for (const AttributeChange& change : changes) from_.emplace_back(change.layer, change.from);
+    std::sort(from_.begin(), from_.end());
     for (const AttributeChange& change : changes) {
       if (change.layer >= mesh_.layers.size()) return broken(i, "attribute layer out of range");
       const AttributeLayer& layer = mesh_.layers[change.layer];
@@ -154,16 +157,10 @@ class Checker {
         return broken(i, "attribute out of range in layer '" + layer.name + "'");
       }
       if (change.from == change.to) return broken(i, "attribute becomes itself");
-      const auto same_from = [&](const AttributeChange& o) {
-        return o.layer == change.layer && o.from == change.from;
-      };
-      if (std::count_if(changes.begin(), changes.end(), same_from) != 1) {
-        return broken(i, "attribute changes twice");
-      }
-      const auto chained = [&](const AttributeChange& o) {
-        return o.layer == change.layer && o.from == change.to;
-      };
-      if (std::any_of(changes.begin(), changes.end(), chained)) {
+      const auto [first, last] =
+          std::equal_range(from_.begin(), from_.end(), std::pair(change.layer, change.from));
+      if (last - first != 1) return broken(i, "attribute changes twice");
+      if (std::binary_search(from_.begin(), from_.end(), std::pair(change.layer, change.to))) {
         return broken(i, "attribute changes depend on their order");
       }
       if (!change_attribute(c.kept, change, layer.role == AttributeRole::Normal)) {
@@ -199,6 +196,7 @@ class Checker {
   std::vector<std::vector<std::uint32_t>> around_;
   std::vector<Vec3i> positions_;
   std::vector<LevelError> errors_;
+  std::vector<std::pair<std::uint32_t, AttributeId>> from_;  // of one contraction's changes, sorted
 };
 
 }  // namespace

@@ -146,7 +146,7 @@ HierarchyBytes hierarchy_bytes(const MeshHierarchy& hierarchy) {
   bytes.positions = stored_bytes(v.root_positions) + stored_bytes(v.deltas) + v.is_wide.bytes() +
                     stored_bytes(v.wide_deltas);
   bytes.splits = v.is_split.bytes() + stored_bytes(v.node_of_split) + stored_bytes(v.second_wedge) +
-                 stored_bytes(v.bounds);
+                 stored_bytes(v.bounds) + stored_bytes(v.root_wedges);
   for (const AttributeHierarchy& layer : hierarchy.layers) {
     bytes.values +=
         layer.values.bytes() + stored_bytes(layer.value_of_attribute) + layer.has_value.bytes();
