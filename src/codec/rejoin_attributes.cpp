@@ -142,10 +142,15 @@ void AttributeRejoiner::derive(const UnfoldedBlock& block, const ContractingPatc
 }
 
 AttributeRejoiner::AtVertex* AttributeRejoiner::find(std::uint32_t id) {
-  for (AtVertex& value : at_vertex_) {
-    if (value.id == id) return &value;
-  }
-  return nullptr;
+  if (id >= place_of_id_.size()) return nullptr;
+  const std::uint32_t place = place_of_id_[id];
+  return place < at_vertex_.size() && at_vertex_[place].id == id ? &at_vertex_[place] : nullptr;
+}
+
+AttributeRejoiner::AtVertex& AttributeRejoiner::add(std::uint32_t id, std::uint32_t wedge) {
+  if (id >= place_of_id_.size()) place_of_id_.resize(std::max<std::size_t>(2 * id, 1024), 0);
+  const std::uint32_t place = place_of_id_[id] = static_cast<std::uint32_t>(at_vertex_.size());
+  return at_vertex_.emplace_back(AtVertex{.id = id, .to = id, .wedge = wedge, .joined = place});
 }
 
 // Which values stand at v, and where each is to be looked up at the coarse end.
@@ -169,11 +174,7 @@ void AttributeRejoiner::find_values(const UnfoldedBlock& block, const Contractin
     if (id != last) {  // mostly the next one has it too
       last = id;
       value = find(id);
-      if (value == nullptr) {
-        const auto place = static_cast<std::uint32_t>(at_vertex_.size());
-        at_vertex_.push_back({.id = id, .to = id, .wedge = wedge, .joined = place});
-        value = &at_vertex_.back();
-      }
+      if (value == nullptr) value = &add(id, wedge);
     }
     shown_.push_back({&at.ids[c], static_cast<std::size_t>(value - at_vertex_.data())});
     ++value->corners[i >= from_first];
@@ -215,11 +216,13 @@ void AttributeRejoiner::go_to_coarse(const UnfoldedBlock& block, std::size_t lay
   ValuePool& pool = pools_[layer];
   const std::vector<CodedValue>& coarse = block.coarse_values[layer];
   // Those that vanish in this block have no value at its coarse end; they go with their neighbours.
+  std::vector<std::uint32_t>& wanted_of = scratch_;  // per joined
+  wanted_of.assign(at_vertex_.size(), kNone);
+  for (const AtVertex& value : at_vertex_) {
+    if (value.wanted != kNone) wanted_of[value.joined] = value.wanted;
+  }
   for (AtVertex& value : at_vertex_) {
-    if (value.wanted != kNone) continue;
-    for (const AtVertex& other : at_vertex_) {
-      if (other.joined == value.joined && other.wanted != kNone) value.wanted = other.wanted;
-    }
+    if (value.wanted == kNone) value.wanted = wanted_of[value.joined];
   }
   const auto stays = [&](const AtVertex& value) {
     return value.wanted == kNone || pool.code(value.id) == coarse[value.wanted];
@@ -255,17 +258,18 @@ void AttributeRejoiner::go_to_coarse(const UnfoldedBlock& block, std::size_t lay
 
 void AttributeRejoiner::blend(std::size_t layer, double second_share) {
   ValuePool& pool = pools_[layer];
+  std::vector<std::uint32_t>& members_of = scratch_;  // per joined
+  members_of.assign(at_vertex_.size(), 0);
+  for (const AtVertex& value : at_vertex_) ++members_of[value.joined];
   for (std::uint32_t i = 0; i < at_vertex_.size(); ++i) {
-    if (at_vertex_[i].joined != i) continue;
+    if (members_of[i] < 2) continue;
     // The mean of each child's own, by corners.
     std::array<std::array<double, 4>, 2> sums{};
     std::array<double, 2> corners{};
-    std::size_t members = 0;
     const std::size_t nearer = second_share > 0.5;
     const AtVertex* most = &at_vertex_[i];
     for (const AtVertex& value : at_vertex_) {
       if (value.joined != i) continue;
-      ++members;
       if (value.corners[nearer] > most->corners[nearer]) most = &value;
       const std::span<const float> numbers = pool.value(value.id);
       for (std::size_t side = 0; side < 2; ++side) {
@@ -275,7 +279,6 @@ void AttributeRejoiner::blend(std::size_t layer, double second_share) {
         }
       }
     }
-    if (members < 2) continue;
     std::uint32_t to = most->id;
     if (layers_[layer].interpolation != Interpolation::Categorical) {
       const std::array<double, 2> weights{
@@ -305,6 +308,7 @@ void AttributeRejoiner::blend(std::size_t layer, double second_share) {
 }
 
 bool AttributeRejoiner::are_known(const WedgeValues& wedges) const {
+  if (at_vertex_.size() > kMostKnown) return false;
   return std::all_of(at_vertex_.begin(), at_vertex_.end(), [&](const AtVertex& value) {
     return value.wedge != kNone && wedges.is_known[value.wedge];
   });

@@ -97,6 +97,7 @@ class AttributeRejoiner {
     return layers_[layer].role == AttributeRole::Normal && normals_[triangle] == Normals::Derived;
   }
   AtVertex* find(std::uint32_t id);
+  AtVertex& add(std::uint32_t id, std::uint32_t wedge);
 
   struct Shown {  // by a corner at the present vertex
     std::uint32_t* id = nullptr;
@@ -113,7 +114,9 @@ class AttributeRejoiner {
   std::vector<std::vector<char>> coarse_is_flat_;   // per layer and triangle of the coarse end
   std::vector<Normals> normals_;                    // per triangle
   bool any_next_derived_ = false;
-  std::vector<AtVertex> at_vertex_;  // scratch
+  static constexpr std::size_t kMostKnown = 1024;  // values at a vertex
+  std::vector<AtVertex> at_vertex_;                // scratch
+  std::vector<std::uint32_t> place_of_id_;         // in it, of those that are there
   std::vector<Shown> shown_;
   std::vector<std::uint32_t> scratch_;
 };

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -28,8 +29,17 @@ class ValuePool {
     if (vertex == kFlat) return intern_flat(code, [&] { add(code); });
     if (vertex >= newest_of_vertex_.size()) newest_of_vertex_.resize(vertex + 1, kNone);
     std::uint32_t& newest = newest_of_vertex_[vertex];
-    for (std::uint32_t id = newest; id != kNone; id = entries_[id].before) {
+    std::uint32_t last = kNone;
+    std::size_t tried = 0;
+    for (std::uint32_t id = newest; id != kNone && tried < kMostTried; id = entries_[id].before) {
       if (entries_[id].code == code) return id;
+      last = id;
+      ++tried;
+    }
+    if (tried == kMostTried) {
+      const auto older = older_.find({vertex, code});
+      if (older != older_.end()) return older->second;
+      older_.emplace(AtVertex{vertex, entries_[last].code}, last);
     }
     const std::uint32_t before = std::exchange(newest, size());
     add(code);
@@ -67,9 +77,22 @@ class ValuePool {
  private:
   static constexpr std::int32_t kIsDirection = 1;  // in a component that directions leave 0
   static constexpr std::uint32_t kIsFlat = kNone - 1;
+  // Of a vertex's values, the newest ones; a pole may have thousands.
+  static constexpr std::size_t kMostTried = 64;
   struct Entry {
     CodedValue code;
     std::uint32_t before = kNone;  // interned at the same vertex; or kIsFlat
+  };
+
+  struct AtVertex {
+    std::uint32_t vertex = 0;
+    CodedValue code;
+    bool operator==(const AtVertex&) const = default;
+  };
+  struct HashOfAtVertex {
+    std::size_t operator()(const AtVertex& at) const {
+      return hash_of(at.code) ^ at.vertex * std::size_t(0x9e3779b97f4a7c15u);
+    }
   };
 
   static std::size_t hash_of(const CodedValue& code) {
@@ -107,8 +130,9 @@ class ValuePool {
   std::uint32_t dimension_;
   std::vector<Entry> entries_;  // per id
   std::vector<float> numbers_;
-  std::vector<std::uint32_t> newest_of_vertex_;  // interned at it, or kNone
-  std::vector<std::uint32_t> flat_;              // ids by hash, at most half of them taken
+  std::vector<std::uint32_t> newest_of_vertex_;                        // interned at it, or kNone
+  std::unordered_map<AtVertex, std::uint32_t, HashOfAtVertex> older_;  // than the newest ones
+  std::vector<std::uint32_t> flat_;  // ids by hash, at most half of them taken
   std::size_t flat_count_ = 0;
 };
 

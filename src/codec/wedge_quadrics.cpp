@@ -18,6 +18,11 @@ using simplification::Row;
 // As the simplifier has them.
 constexpr double kNormalWeight = 0.9;
 constexpr double kThin = 1e-4;
+constexpr std::size_t kMostACorner = 4;
+
+bool have_all(const std::uint32_t* wedges) {
+  return wedges[0] != kNone && wedges[1] != kNone && wedges[2] != kNone;
+}
 
 bool is_float(double x) {
   return std::abs(x) <= double(std::numeric_limits<float>::max());
@@ -42,7 +47,7 @@ WedgeQuadrics::WedgeQuadrics(const UnfoldedBlock& block, std::span<const LayerSc
     layer.role = schema.role;
     layer.is_direction = schema.interpolation == Interpolation::Direction;
     load_wedges(block, values[l], l, is_contracted, layer);
-    load_quadrics(block.end, geometry, layer);
+    load_quadrics(block.end, values[l], l, geometry, layer);
     set_scale(block, schema, geometry, layer);
   }
 }
@@ -55,6 +60,7 @@ void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& v
   std::vector<std::uint32_t> first_of_vertex(block.end.positions.size(), kNone);
   std::vector<std::uint32_t> next;          // per wedge: another one at the vertex
   std::vector<std::uint32_t> first_corner;  // per wedge
+  std::vector<char> has_too_many;           // per vertex; empty: none
   WedgeValues& all = layer.values;
   all.of_corner.assign(codes.size(), kNone);
   layer.coarse = block.coarse_values[l];
@@ -65,8 +71,18 @@ void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& v
     for (std::uint32_t c = 0; c < 3; ++c) {
       const std::uint32_t v = block.end.triangles[t][c];
       std::uint32_t& first = first_of_vertex[v];
+      if (!has_too_many.empty() && has_too_many[v]) continue;
       std::uint32_t w = first;
-      while (w != kNone && codes[first_corner[w]] != code[c]) w = next[w];
+      std::size_t tried = 0;
+      while (w != kNone && codes[first_corner[w]] != code[c]) {
+        w = next[w];
+        ++tried;
+      }
+      if (w == kNone && tried == kMostWedges) {
+        has_too_many.resize(first_of_vertex.size());
+        has_too_many[v] = 1;
+        continue;
+      }
       if (w == kNone) {
         if (first != kNone) has_several_[v] = 1;
         w = static_cast<std::uint32_t>(next.size());
@@ -83,21 +99,38 @@ void WedgeQuadrics::load_wedges(const UnfoldedBlock& block, const LayerValues& v
       if (is_wanted && layer.wedges[w].wanted == kNone) layer.wedges[w].wanted = 3 * t + c;
     }
   }
+  for (std::size_t t = 0; t < block.end.triangles.size() && !has_too_many.empty(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (has_too_many[block.end.triangles[t][c]]) all.of_corner[3 * t + c] = kNone;
+    }
+  }
   layer.wedge_of_corner = all.of_corner;
   layer.quadrics.resize(quadric_count);
   all.into.assign(layer.wedges.size(), kNone);
   all.is_known.assign(layer.wedges.size(), 1);
 }
 
-CREASE_WIDE void WedgeQuadrics::load_quadrics(const PatchMesh& mesh, const PatchGeometry& geometry,
+CREASE_WIDE void WedgeQuadrics::load_quadrics(const PatchMesh& mesh, const LayerValues& values,
+                                              std::size_t l, const PatchGeometry& geometry,
                                               Layer& layer) {
+  const auto quadric_of = [&](std::uint32_t wedge) {
+    return wedge == kNone ? kNone : layer.wedges[wedge].quadric;
+  };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint32_t* w = &layer.values.of_corner[3 * std::size_t(t)];
     const ScaledNormal& n = geometry.normal(t);
-    if (w[0] == kNone || !(n.size > 0)) continue;
-    const std::array<std::uint32_t, 3> quadrics{
-        layer.wedges[w[0]].quadric, layer.wedges[w[1]].quadric, layer.wedges[w[2]].quadric};
+    if (!(n.size > 0)) continue;
+    const std::array quadrics{quadric_of(w[0]), quadric_of(w[1]), quadric_of(w[2])};
     if (quadrics == std::array{kNone, kNone, kNone}) continue;
+    std::array<std::array<float, 4>, 3> value{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (w[c] != kNone) {
+        value[c] = layer.values.value[w[c]];
+      } else {
+        values.read(mesh.values[l][3 * std::size_t(t) + c],
+                    std::span(value[c]).first(std::size_t(layer.dimension)));
+      }
+    }
     const Vec3d& p = geometry.place(mesh.triangles[t][0]);
     const Vec3d e1 = geometry.place(mesh.triangles[t][1]) - p;
     const Vec3d e2 = geometry.place(mesh.triangles[t][2]) - p;
@@ -114,9 +147,9 @@ CREASE_WIDE void WedgeQuadrics::load_quadrics(const PatchMesh& mesh, const Patch
     AttributeQuadric of_triangle;
     of_triangle.own.weight = area;
     for (std::size_t j = 0; j < std::size_t(layer.dimension); ++j) {
-      const double value = double(layer.values.value[w[0]][j]);
-      const Row f = second * (double(layer.values.value[w[1]][j]) - value) +
-                    third * (double(layer.values.value[w[2]][j]) - value) + Row{0, 0, 0, value};
+      const double from = double(value[0][j]);
+      const Row f = second * (double(value[1][j]) - from) + third * (double(value[2][j]) - from) +
+                    Row{0, 0, 0, from};
       of_triangle.own.add_square(f, area);
       of_triangle.linear[j] = f * area;
     }
@@ -133,6 +166,7 @@ void WedgeQuadrics::set_scale(const UnfoldedBlock& block, const LayerSchema& sch
   if (schema.role == AttributeRole::TexCoord && layer.dimension >= 2) {
     for (std::uint32_t t = 0; t < block.end.triangles.size(); ++t) {
       const std::uint32_t* w = &layer.values.of_corner[3 * std::size_t(t)];
+      if (!have_all(w)) continue;
       const std::vector<std::array<float, 4>>& values = layer.values.value;
       texture.add(0.5 * geometry.normal(t).size, values[w[0]].data(), values[w[1]].data(),
                   values[w[2]].data());
@@ -187,13 +221,13 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
   members_.clear();
   root_.clear();
   const auto place_of = [&](std::uint32_t wedge) {
-    const auto found = std::find(members_.begin(), members_.end(), wedge);
-    if (found == members_.end()) {
+    std::uint32_t& place = layer.wedges[wedge].place;
+    if (place >= members_.size() || members_[place] != wedge) {
+      place = static_cast<std::uint32_t>(members_.size());
       members_.push_back(wedge);
-      root_.push_back(static_cast<std::uint32_t>(root_.size()));
-      return members_.size() - 1;
+      root_.push_back(place);
     }
-    return static_cast<std::size_t>(found - members_.begin());
+    return place;
   };
   const auto corner_at = [&](std::uint32_t t, std::uint32_t v) {
     return 3 * std::size_t(t) + corner_of(patch.corners(t), v);
@@ -203,6 +237,11 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
     const std::uint32_t wedge = layer.wedge_of_corner[corner_at(t, first)];
     if (wedge != last && wedge != kNone) place_of(wedge);
     last = wedge;
+  }
+  if (members_.size() > kMostWedges ||
+      layer.wedges.size() + members_.size() > kMostACorner * layer.wedge_of_corner.size()) {
+    forget(patch, first, layer);
+    return 0;
   }
   for (const std::uint32_t t : vanished) {
     const std::uint32_t wa = layer.wedge_of_corner[corner_at(t, first)];
@@ -236,6 +275,13 @@ double WedgeQuadrics::contract(const ContractingPatch& patch,
     if (wedge != kNone) wedge = layer.values.into[wedge];
   }
   return cost;
+}
+
+void WedgeQuadrics::forget(const ContractingPatch& patch, std::uint32_t first, Layer& layer) const {
+  for (const std::uint32_t member : members_) layer.values.into[member] = kNone;
+  for (const std::uint32_t t : patch.around(first)) {
+    layer.wedge_of_corner[3 * std::size_t(t) + corner_of(patch.corners(t), first)] = kNone;
+  }
 }
 
 CREASE_WIDE double WedgeQuadrics::join(std::span<const std::uint32_t> members, const Vec3d& at,

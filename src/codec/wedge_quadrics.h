@@ -26,11 +26,14 @@
 namespace crease::codec {
 
 // Of one layer. A wedge is a value at a vertex: each contraction makes new ones out of all that
-// stand at its two vertices.
+// stand at its two vertices. So at most kMostWedges at a vertex are kept, and four a corner of the
+// block in all: a hub of thousands would take the cube of time and the square of memory.
 struct WedgeValues {
-  std::vector<std::uint32_t> of_corner;     // 3 a triangle, at the fine end; kNone: shows none.
-                                            // Empty: nothing of this layer is known here
-  std::vector<std::uint32_t> into;          // per wedge; kNone: no contraction touches its vertex
+  std::vector<std::uint32_t> of_corner;     // 3 a triangle, at the fine end; kNone: shows none, or
+                                            // its vertex has too many. Empty: nothing of this layer
+                                            // is known here
+  std::vector<std::uint32_t> into;          // per wedge; kNone: no contraction touches its vertex,
+                                            // or what it made has too many
   std::vector<std::array<float, 4>> value;  // per wedge
   std::vector<char> is_known;               // per wedge: whether it has a value
   SameValue same;
@@ -71,7 +74,10 @@ class WedgeQuadrics {
     std::uint32_t quadric = 0;     // in Layer::quadrics; kNone: of no vertex that is contracted
     bool is_pinned = false;        // a triangle has it at all three corners: it does not change
     std::uint32_t wanted = kNone;  // corner whose value at the coarse end it gets
+    std::uint32_t place = 0;       // in members_, if it is there
   };
+  static constexpr std::size_t kMostWedges = 256;
+
   struct Layer {
     int dimension = 1;
     bool is_direction = false;
@@ -86,12 +92,15 @@ class WedgeQuadrics {
 
   void load_wedges(const UnfoldedBlock& block, const LayerValues& values, std::size_t l,
                    std::span<const char> is_contracted, Layer& layer);
-  static void load_quadrics(const PatchMesh& mesh, const PatchGeometry& geometry, Layer& layer);
+  static void load_quadrics(const PatchMesh& mesh, const LayerValues& values, std::size_t l,
+                            const PatchGeometry& geometry, Layer& layer);
   void set_scale(const UnfoldedBlock& block, const LayerSchema& schema,
                  const PatchGeometry& geometry, Layer& layer) const;
   double contract(const ContractingPatch& patch, std::span<const std::uint32_t> vanished,
                   std::uint32_t first, std::uint32_t second, const Vec3d& at, Layer& layer);
   double join(std::span<const std::uint32_t> members, const Vec3d& at, Layer& layer);
+  // Those of members_ are no more, nor is anything known at `first`.
+  void forget(const ContractingPatch& patch, std::uint32_t first, Layer& layer) const;
   bool keep_apart(const Layer& layer, std::uint32_t a, std::uint32_t b) const;
 
   std::vector<Layer> layers_;

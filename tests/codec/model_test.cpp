@@ -147,6 +147,19 @@ TEST_CASE("a file has every band's mesh, corner for corner") {
   }
 }
 
+// More normals at the tip, or at the two ends of an edge, than a decoder keeps apart between bands.
+TEST_CASE("files of hubs with hundreds of values") {
+  check_bands(simplified_case(cone(300, 2), 8000, 14, kCoarsePrecision));
+  MeshBuilder book;
+  const VertexId low = book.vertex({0, 0, 0}), high = book.vertex({0, 0, 1});
+  for (int page = 0; page < 300; ++page) {
+    const double angle = 0.01 * page;
+    const VertexId out = book.vertex({std::cos(angle), std::sin(angle), 0.4 + 0.0003 * page});
+    book.flat_triangle({low, high, out});
+  }
+  check_bands(simplified_case(book.take(), 8000, 16, kExactPrecision));
+}
+
 std::size_t normals_at(const Mesh& mesh, const Vec3d& position) {
   std::set<std::vector<float>> normals;
   for (std::size_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
