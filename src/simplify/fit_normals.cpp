@@ -294,7 +294,8 @@ void NormalFit::find_triangles() {
         if (first_sample_[place] == first_sample_[place + 1]) continue;
         load_fan(vertices_[place], fan);
         const std::size_t own = first_sample_[place + 1] - first_sample_[place];
-        const std::size_t most = std::max<std::size_t>(1, kMostLooks / fan.triangles.size());
+        const std::size_t most =
+            std::max<std::size_t>(1, kMostLooks / std::max<std::size_t>(1, fan.triangles.size()));
         const std::size_t stride = (own + most - 1) / most;
         for (std::size_t i = 0; i < own; ++i) {
           Sample& sample = samples_[left[first_sample_[place] + i]];

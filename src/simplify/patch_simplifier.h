@@ -3,7 +3,7 @@
 //
 //   PatchSimplifier patch;  // one a thread: it keeps its memory from patch to patch
 //   patch.start(work, triangles, patch_id, steering);
-//   PatchResult result = patch.run();
+//   PatchResult result = patch.run(progress);
 //
 // Inside, everything is local: 10,000 triangles take about 6 MB. Vertices that other patches share
 // are locked: they neither move nor vanish.
@@ -11,6 +11,7 @@
 
 #include "hierarchy/quadric.h"
 #include "hierarchy/witnesses.h"
+#include "parallel/shared_progress.h"
 #include "simplify/area_changes.h"
 #include "simplify/cost_heap.h"
 #include "simplify/flat_shading.h"
@@ -61,8 +62,8 @@ class PatchSimplifier {
   // patch can be started at once again, as long as the mesh and the owners stay as they are.
   std::vector<double> initial_costs();
 
-  // Once after each start().
-  PatchResult run();
+  // Once after each start(). Where `progress` is stopped under way there is no result.
+  PatchResult run(SharedProgress& progress);
 
   // Writes triangles, positions and errors back. New attribute values keep their local numbers (at
   // or above kLocalValue) until the band's patches are put in order.

@@ -19,6 +19,9 @@ constexpr std::uint32_t kTries = 2;
 // need not be known.
 constexpr double kDear = 8;
 
+// Pairs between two looks whether to stop: around hubs one takes milliseconds.
+constexpr std::size_t kBetweenLooks = 256;
+
 // From this share of the limit on a contraction is near it.
 constexpr double kNearLimit = 0.25;
 
@@ -217,7 +220,7 @@ bool PatchSimplifier::claim(Index pair, Index a, Index b) {
   return true;
 }
 
-PatchResult PatchSimplifier::run() {
+PatchResult PatchSimplifier::run(SharedProgress& progress) {
   loaded_ = kNone;
   result_.new_values.resize(layer_count());
   held_of_triangle_.assign(global_triangle_.size(), kNone);
@@ -225,7 +228,10 @@ PatchResult PatchSimplifier::run() {
   order_pairs();
   owners_.assign(std::bit_ceil(2 * candidates_.size() + 64), kNone);
   owner_count_ = 0;
+  std::size_t taken = 0;
   for (Entry entry; pop(entry);) {
+    if (++taken % kBetweenLooks == 0) progress.advance(0);
+    if (progress.stopped()) break;
     fetch_ahead();
     const Held* waited = nullptr;
     if (entry.held != kNone) {

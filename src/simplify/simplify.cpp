@@ -291,7 +291,7 @@ class Simplifier {
       const std::span<const std::uint32_t> triangles = patches_.of(p);
       PatchSimplifier& patch = patch_simplifiers_->local();
       patch.start(work_, triangles, static_cast<std::uint32_t>(p), steering);
-      results_[p] = patch.run();
+      results_[p] = patch.run(progress);
       progress.advance(triangles.size() - results_[p].triangles_left);
     });
     patch_simplifiers_.emplace();  // their memory is for what follows
