@@ -146,12 +146,11 @@ void tell_strays(Imported& imported, const Precision& precision) {
   const std::optional<Strays> strays = find_strays(imported.mesh);
   if (!strays) return;
   const double step = make_grid(imported.mesh, precision).step;
-  // No grid costs anything that has the model's own numbers.
-  const double by_bits = std::ldexp(strays->longest, -precision.bits_or_default());
-  const bool is_own = precision.bits == 0 && std::abs(step - by_bits) > 0.001 * by_bits;
-  if (is_own) return;
   const double finest = 1.001 * finest_step(imported.mesh);  // as it is written, in four digits
   const double wanted = std::ldexp(strays->longest_without, -precision.bits_or_default());
+  // By default the others have their steps, or the model's own, unless no grid reaches so far.
+  const bool is_fine = step <= 1.001 * wanted || (precision.bits == 0 && step > finest);
+  if (is_fine) return;
   const bool can_be_had = wanted > finest;
   std::string note =
       grouped(strays->count) + " of " + grouped(imported.mesh.vertex_count()) +

@@ -127,7 +127,8 @@ struct Grid {
 
 // What --precision asks for: a length, or bits over the longest side of the bounding box (1 to 30).
 // Neither: the grid that the model's numbers are on already, whole millimetres or six decimals, if
-// its step is longer than kDefaultBits give; so nothing is rounded, and files are smaller.
+// its step is longer than kDefaultBits give over the longest side without strays; so nothing is
+// rounded, and files are smaller.
 struct Precision {
   // Walls stay planes for the simplifier. A grid as fine as a 256th of the short edges, 14 to 18
   // bits mostly, saves a third of the file and bends them: a gear at 10 % is off by nine times as
@@ -149,8 +150,8 @@ double finest_step(const Mesh& mesh);
 // are not 0 to 30.
 Status check_precision(const Mesh& mesh, const Precision& precision);
 
-// Few vertices far from all others, as a stray triangle has them. A grid's steps are a share of the
-// longest side, so they make it coarse for all.
+// Few vertices far from all others, as a stray triangle has them. Steps that are a share of the
+// longest side are coarse for all others then.
 struct Strays {
   std::size_t count = 0;
   double longest = 0, longest_without = 0;  // side of the bounding box

@@ -2,6 +2,7 @@
 #include "mesh/clean.h"
 #include "mesh/guess_up.h"
 #include "mesh/normals.h"
+#include "mesh/strays.h"
 #include "mesh/weld.h"
 #include "mesh/weld_borders.h"
 
@@ -263,7 +264,7 @@ void weld_rounded(Mesh& mesh, const std::optional<Precision>& precision, ImportR
   report.welded_vertices += weld_borders(mesh, near);
   if (4 * (near.border_count - near.count) < mesh.vertex_count()) return;
   const auto joined_by = [&](double step) { return find_near_borders(mesh, step).count; };
-  const double longest = longest_side(mesh.positions);
+  const double longest = longest_without_strays(mesh);
   double step = std::ldexp(longest, -16);
   const std::size_t count = joined_by(step);
   if (count == 0 || 8 * count < mesh.vertex_count()) return;

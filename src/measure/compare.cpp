@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kMostSamples = 1'000'000'000;
 
 // Two triangles count as equally near when their distances differ by less than this share of the
-// diagonal: a sample on a hard edge sees both sides of it.
+// diagonal without strays: a sample on a hard edge sees both sides of it.
 constexpr double kTie = 1e-5;
 // Frame units: nothing that is less wrong than this is found out.
 constexpr double kRounding = 1e-9;
@@ -131,7 +131,7 @@ Result<Comparison> compare(const Mesh& a, const Mesh& b, const CompareOptions& o
         frame.gap, frame.gap / frame.larger);
     return fail(Error::BadValue, line);
   }
-  const double tie = kTie * frame.diagonal * frame.scale;
+  const double tie = kTie * frame.size * frame.scale;
   const Surface surface_a(a, frame), surface_b(b, frame);
 
   SharedProgress progress(options.progress, "compare", 2 * options.samples + size_of(a, b));

@@ -2,11 +2,13 @@
 
 #include "base/assert.h"
 #include "measure/closest_point.h"
+#include "mesh/strays.h"
 #include "parallel/parallel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace crease {
 
@@ -15,10 +17,14 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kInfinityf = std::numeric_limits<float>::infinity();
 
-// Embree works in floats. Boxes are rounded outwards; a query point in -1..1 moves by less than
-// 2^-24 an axis, and the squared distance to a box is right to a few units in the last place. A
-// search that reaches this much further misses no triangle.
+// Embree works in floats. Boxes are rounded outwards; a query point moves by less than 2^-24 of its
+// coordinates, or of 1, an axis, and the squared distance to a box is right to a few units in the
+// last place. A search that reaches this much further misses no triangle.
 constexpr double kReach = 1e-6;
+
+double reach_at(const Vec3d& p) {
+  return kReach * std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+}
 
 struct Box {
   Vec3d low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
@@ -40,13 +46,29 @@ Box bounding_box(const Mesh& mesh) {
   return box;
 }
 
+// A city with a triangle at the origin of its coordinates, 10,000 times its size away, is measured
+// as without it.
+Box box_of_most(const Mesh& mesh, const Box& whole) {
+  const std::optional<PointBox> most = box_without_strays(mesh);
+  if (!most) return whole;
+  Box box;
+  for (int i = 0; i < 3; ++i) {
+    box.low[i] = std::max(whole.low[i], most->low[i]);
+    box.high[i] = std::min(whole.high[i], most->low[i] + most->size[i]);
+    if (!(box.low[i] <= box.high[i])) return whole;  // all but strays are in no triangle
+  }
+  return box;
+}
+
 }  // namespace
 
 Frame common_frame(const Mesh& a, const Mesh& b) {
   const Box box_a = bounding_box(a), box_b = bounding_box(b);
+  const Box most_a = box_of_most(a, box_a), most_b = box_of_most(b, box_b);
   Frame frame;
-  frame.origin = box_a.low + (box_a.high - box_a.low) * 0.5;
+  frame.origin = most_a.low + (most_a.high - most_a.low) * 0.5;
   frame.diagonal = length(box_a.high - box_a.low);
+  frame.size = length(most_a.high - most_a.low);
   frame.larger = std::max(frame.diagonal, length(box_b.high - box_b.low));
   Vec3d gap;
   for (int i = 0; i < 3; ++i) {
@@ -54,7 +76,7 @@ Frame common_frame(const Mesh& a, const Mesh& b) {
   }
   frame.gap = length(gap);
   double reach = 0;
-  for (const Vec3d& corner : {box_a.low, box_a.high, box_b.low, box_b.high}) {
+  for (const Vec3d& corner : {most_a.low, most_a.high, most_b.low, most_b.high}) {
     const Vec3d d = corner - frame.origin;
     reach = std::max({reach, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
   }
@@ -78,7 +100,7 @@ struct Surface::Query {
   double best = kInfinity;
 
   float radius() const {
-    return best < kInfinity ? float((best + tie) * (1 + kReach) + kReach) : kInfinityf;
+    return best < kInfinity ? float((best + tie) * (1 + kReach) + reach_at(p)) : kInfinityf;
   }
 };
 

@@ -4,8 +4,8 @@
 //   const Surface surface(b, frame);
 //   Nearest nearest = surface.nearest(p, n, 1e-5, scratch);
 //
-// Everything here is in frame units: both meshes lie within -1..1, and no digit of a city's 10^6 m
-// coordinates goes into an offset.
+// Everything here is in frame units: both meshes but for their strays lie within -1..1, and no
+// digit of a city's 10^6 m coordinates goes into an offset.
 #pragma once
 
 #include "crease/mesh.h"
@@ -24,6 +24,7 @@ struct Frame {
   Vec3d origin;
   double scale = 1;
   double diagonal = 0;  // of a's bounding box, model units
+  double size = 0;      // the same without strays
   double larger = 0;    // the larger diagonal of the two, model units
   double gap = 0;       // between the two boxes, model units; 0 where they meet
 

@@ -1,6 +1,7 @@
 #include "crease/mesh.h"
 #include "mesh/box_of.h"
 #include "mesh/own_grid.h"
+#include "mesh/strays.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,11 +67,11 @@ namespace {
 // it is fine enough for where contracted vertices stand.
 Grid grid_by_default(const Mesh& mesh, double longest) {
   constexpr int kLeastBits = 16;
-  const double fine = std::ldexp(longest, -Precision::kDefaultBits);
+  const double without = longest_without_strays(mesh);
+  const double fine = std::ldexp(without, -Precision::kDefaultBits);
   std::optional<Grid> own = own_grid(mesh.positions, longest, fine);
   if (!own) return {{}, fine};
-  const std::optional<Strays> strays = find_strays(mesh);
-  const double enough = std::ldexp(strays ? strays->longest_without : longest, -kLeastBits);
+  const double enough = std::ldexp(without, -kLeastBits);
   while (own->step > enough && own->step / 2 >= finest_step(mesh)) own->step /= 2;
   return *own;
 }

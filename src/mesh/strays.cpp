@@ -1,5 +1,4 @@
-#include "crease/mesh.h"
-#include "mesh/box_of.h"
+#include "mesh/strays.h"
 
 #include <algorithm>
 #include <array>
@@ -33,9 +32,12 @@ std::size_t fullest_window(const Bins& bins) {
   return best;
 }
 
-}  // namespace
+struct Found {
+  Strays strays;
+  PointBox others;
+};
 
-std::optional<Strays> find_strays(const Mesh& mesh) {
+std::optional<Found> find(const Mesh& mesh) {
   const std::size_t count = mesh.vertex_count();
   if (count < kFewestVertices) return std::nullopt;
   const PointBox box = box_of(mesh.positions);
@@ -50,8 +52,7 @@ std::optional<Strays> find_strays(const Mesh& mesh) {
   }
   std::array<std::size_t, 3> first{};
   for (std::size_t axis = 0; axis < 3; ++axis) first[axis] = fullest_window(bins[axis]);
-  Strays strays;
-  strays.longest = box.longest;
+  Strays strays{.longest = box.longest};
   std::vector<Vec3d> others;  // the corners of the box around them
   for (const Vec3d& p : mesh.positions) {
     bool is_inside = true;
@@ -71,9 +72,27 @@ std::optional<Strays> find_strays(const Mesh& mesh) {
   if (strays.count == 0 || strays.count > std::max(kFewest, count / kFewShare)) {
     return std::nullopt;
   }
-  strays.longest_without = box_of(others).longest;
+  const PointBox without = box_of(others);
+  strays.longest_without = without.longest;
   if (!(strays.longest_without * kTimesSmaller < strays.longest)) return std::nullopt;
-  return strays;
+  return Found{strays, without};
+}
+
+}  // namespace
+
+std::optional<Strays> find_strays(const Mesh& mesh) {
+  const std::optional<Found> found = find(mesh);
+  return found ? std::optional(found->strays) : std::nullopt;
+}
+
+std::optional<PointBox> box_without_strays(const Mesh& mesh) {
+  const std::optional<Found> found = find(mesh);
+  return found ? std::optional(found->others) : std::nullopt;
+}
+
+double longest_without_strays(const Mesh& mesh) {
+  const std::optional<PointBox> others = box_without_strays(mesh);
+  return (others ? *others : box_of(mesh.positions)).longest;
 }
 
 }  // namespace crease

@@ -2,6 +2,7 @@
 
 #include "mesh/clean.h"
 #include "mesh/mix.h"
+#include "mesh/strays.h"
 
 #include <algorithm>
 #include <array>
@@ -91,7 +92,7 @@ class NearPoints {
 }  // namespace
 
 double rounding_of(const Mesh& mesh) {
-  return make_grid(mesh, {.length = 0, .bits = 22}).step;
+  return std::max(std::ldexp(longest_without_strays(mesh), -22), finest_step(mesh));
 }
 
 NearBorders find_near_borders(const Mesh& mesh, double distance) {

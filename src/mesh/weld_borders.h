@@ -20,8 +20,8 @@ struct NearBorders {
   std::size_t border_count = 0;  // vertices at open borders, or where orientation changes
 };
 
-// 2^-22 of the longest side: what floats hardly tell apart, as a sine of 2 pi leaves 1.7e-7 of
-// them.
+// 2^-22 of the longest side without strays: what floats hardly tell apart, as a sine of 2 pi leaves
+// 1.7e-7 of them.
 double rounding_of(const Mesh& mesh);
 
 // Vertices at open borders within `distance` of each other, model units; 0: none. Those nearer than

@@ -56,16 +56,21 @@ class Nasty(tool.Case):
         grid = "".join(f"v {i % 12} {i // 12} {(i % 7) / 3e4}\n" for i in range(144))
         faces = "".join(f"f {i + 4} {i + 5} {i + 16}\n" for i in range(132) if i % 12 < 11)
         stray, out = self.write("stray.obj", far + grid + "f 1 2 3\n" + faces), self.path("a.crease")
-        notes = self.json("build", stray, "-o", out)["import"]["notes"]
-        self.assertEqual(len(notes), 1, notes)
-        step = self.json("info", out)["precision"]
-        for words in ("3 of 146 vertices", "9e+05", "11 without", f"steps of {step:.4g}"):
-            self.assertIn(words, notes[0])
+        # By default the others get the finest steps that there are with it; bits make them coarse.
+        for by_bits in ((), ("--precision", "24bits")):
+            notes = self.json("build", stray, "-o", out, *by_bits)["import"]["notes"]
+            self.assertEqual(len(notes), 1, notes)
+            step = self.json("info", out)["precision"]
+            for words in ("3 of 146 vertices", "9e+05", "11 without", f"steps of {step:.4g}"):
+                self.assertIn(words, notes[0])
+            self.assertEqual("--precision" in notes[0], by_bits != ())
+            self.assertEqual(step > 0.01, by_bits != ())
         finest = notes[0].split("--precision ")[1].split(",")[0]
         self.assertLess(float(finest), step / 60)
         self.assertEqual(self.json("build", stray, "-o", out, "--precision", finest)["import"]["notes"],
                          [])
-        extracted = self.run_tool("extract", stray, "-o", self.path("a.ply"), "--ratio", "0.5")
+        extracted = self.run_tool("extract", stray, "-o", self.path("a.ply"), "--ratio", "0.5",
+                                  "--precision", "24bits")
         self.assertIn(notes[0], extracted.stderr)
         # It costs nothing where all of them are on a grid, of which there are enough steps.
         stray = self.write("whole.obj", far + whole + "f 1 2 3\n" + faces)

@@ -42,7 +42,7 @@ void check_against_brute_force(const Mesh& a, const Mesh& b, std::size_t samples
   const Frame frame = common_frame(a, b);
   const Surface surface_a(a, frame), surface_b(b, frame);
   const Sampler sampler(surface_a, samples, 7);
-  const double tie = 1e-5 * frame.diagonal * frame.scale;
+  const double tie = 1e-5 * frame.size * frame.scale;
   Surface::Scratch scratch;
   for (std::size_t i = 0; i < samples; ++i) {
     const SurfacePoint s = sampler(i);
@@ -233,6 +233,39 @@ TEST_CASE("an offset of a thousand kilometres loses nothing") {
       *compare_meshes(moved(mesh, offset), moved(other, offset), {.samples = 5000});
   CHECK(same(near, far));
   CHECK(near.distance.a_to_b.mean > 0);
+}
+
+Mesh with_stray(Mesh mesh, const Vec3d& at) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertex_count());
+  AttributeLayer& normals = mesh.layers[0];
+  const AttributeId id = normals.of_corner[0];
+  for (const Vec3d& p : {Vec3d{0, 0, 0}, Vec3d{0.1, 0, 0}, Vec3d{0, 0.1, 0}}) {
+    mesh.positions.push_back(at + p);
+    normals.of_corner.push_back(id);
+  }
+  mesh.triangles.push_back({VertexId{first}, VertexId{first + 1}, VertexId{first + 2}});
+  return mesh;
+}
+
+TEST_CASE("a stray triangle, however far away, changes little of what is said of the others") {
+  const Mesh a = faceted_sphere(16, 32), b = faceted_sphere(20, 40);
+  const Comparison alone = *compare_meshes(a, b, {.samples = 20'000});
+  for (const double away : {1e3, 1e7}) {
+    CAPTURE(away);
+    const Vec3d at{away, -0.3 * away, 0};
+    const Mesh far_a = with_stray(a, at), far_b = with_stray(b, at);
+    const Comparison c = *compare_meshes(far_a, far_b, {.samples = 20'000});
+    CHECK(c.distance.a_to_b.mean == doctest::Approx(alone.distance.a_to_b.mean).epsilon(0.02));
+    CHECK(c.normal_deviation.mean == doctest::Approx(alone.normal_deviation.mean).epsilon(0.02));
+    CHECK(c.distance.a_to_b.max < 0.1);
+    check_against_brute_force(far_a, far_b, 200);
+    check_against_brute_force(with_stray(a, at * 0.999), far_b, 200);
+    check_against_brute_force(far_a, b, 200);
+    // Nobody else's distance is measured where only one has it.
+    const Comparison one = *compare_meshes(b, far_a, {.samples = 20'000});
+    CHECK(one.distance.b_to_a.max == doctest::Approx(length(at)).epsilon(0.01));
+    CHECK(one.distance.a_to_b.max < 0.1);
+  }
 }
 
 TEST_CASE("size does not matter") {

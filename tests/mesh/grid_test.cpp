@@ -66,6 +66,8 @@ TEST_CASE("a triangle far away from all others is found, one that is near or of 
     CHECK(strays->count == 3);
     CHECK(strays->longest == doctest::Approx(1001).epsilon(0.001));
     CHECK(strays->longest_without == doctest::Approx(2).epsilon(0.01));
+    // By default the others have the steps that they would have without.
+    CHECK(make_grid(far, {}).step <= 1.01 * std::max(make_grid(sphere, {}).step, finest_step(far)));
 
     Mesh near = sphere;
     add_triangle(near, direction * 28);

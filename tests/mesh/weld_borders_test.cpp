@@ -109,6 +109,19 @@ TEST_CASE("the seam and the poles of a sphere close where sines have not") {
   }
 }
 
+TEST_CASE("no border closes because of a triangle that is far away") {
+  Mesh mesh = height_field(16);
+  const std::size_t count = mesh.vertex_count(), border = find_near_borders(mesh, 0).border_count;
+  REQUIRE(border == 64);
+  for (const Vec3d& p : {Vec3d{1e6, 0, 0}, Vec3d{1e6, 1, 0}, Vec3d{1e6, 0, 1}}) {
+    mesh.positions.push_back(p);
+  }
+  const auto far = static_cast<std::uint32_t>(count);
+  mesh.triangles.push_back({VertexId{far}, VertexId{far + 1}, VertexId{far + 2}});
+  CHECK(rounding_of(mesh) < 0.001);
+  CHECK(find_near_borders(mesh, rounding_of(mesh)).count == 0);
+}
+
 TEST_CASE("what is all rounding stays as it is") {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1e-12, 0, 0}, {1, 0, 0}};
