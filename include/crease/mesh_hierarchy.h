@@ -33,7 +33,7 @@
 // The level that has the contractions 0 .. n-1 merged shows on every corner the value that
 // apply_contractions() shows. Where the simplifier does otherwise than G03, its record decides: it
 // does not join face normals, which never change (DB03 rule b). What it never saw, since only other
-// cuts show it, goes by G03's rules. pipeline/attribute_rules.h has both.
+// cuts show it, goes by G03's rules. assemble/attribute_rules.h has both.
 //
 // A block has these arrays too: roots are the vertices at its band's coarse end, leaves
 // those at the fine end, the first triangles those that stand at the coarse end; all ids are local.

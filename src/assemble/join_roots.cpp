@@ -29,6 +29,7 @@ std::uint64_t place_of(const Vec3i& p) {
   return place;
 }
 
+// Of `a`, where b goes to: all that b stands for goes that way as well.
 LevelError joined_error(const Root& a, const Root& b, double step) {
   double square = 0;
   for (int i = 0; i < 3; ++i) {
@@ -36,7 +37,7 @@ LevelError joined_error(const Root& a, const Root& b, double step) {
     square += d * d;
   }
   const auto away = static_cast<float>(std::sqrt(square));
-  return {std::max({a.error.surface, b.error.surface, away}), std::max(a.error.line, b.error.line),
+  return {std::max(a.error.surface, away + b.error.surface), std::max(a.error.line, b.error.line),
           std::max(a.error.degrees, b.error.degrees), std::max(a.error.texture, b.error.texture)};
 }
 

@@ -74,7 +74,8 @@ class PlaceOfId {
     attributes_ = std::span(leaves.attributes).subspan(first_);
     by_id_.clear();
     if (attributes_.size() <= kFew) return;
-    for (std::uint32_t i = 0; i < attributes_.size(); ++i) by_id_.emplace_back(attributes_[i].id, i);
+    for (std::uint32_t i = 0; i < attributes_.size(); ++i)
+      by_id_.emplace_back(attributes_[i].id, i);
     std::sort(by_id_.begin(), by_id_.end());
   }
   std::uint32_t operator[](AttributeId id) const {

@@ -10,7 +10,7 @@
 // in a slot, at first that with its own number; contraction (p, q) may keep p's slot instead of
 // q's, and q lives there afterwards (DB03 8.2, where q is replaced by p).
 //
-// Memory: 25 bytes a triangle, 12 a triangle and layer, 36 a vertex. Time of a step: O(triangles
+// Memory: 25 bytes a triangle, 12 a triangle and layer, 32 a vertex. Time of a step: O(triangles
 // around the pair).
 #pragma once
 

@@ -133,6 +133,7 @@ Mesh mesh_of_level(const Mesh& snapped, const ContractionSequence& sequence, con
   Mesh mesh;
   mesh.materials = snapped.materials;
   mesh.parts = snapped.parts;
+  mesh.up = snapped.up;
   std::vector<std::uint32_t> new_of_old(snapped.vertex_count(), kNone);
   for (std::size_t t = 0; t < level.triangles.size(); ++t) {
     if (!level.alive[t]) continue;
