@@ -101,7 +101,7 @@ Spread spread_of(const OneWay& way, double scale) {
   return spread;
 }
 
-// Adds the others, and sorts.
+// Adds the others, and reorders.
 DeviationSpread spread_of_both(std::vector<double>& deviations, const std::vector<double>& others) {
   DeviationSpread spread;
   deviations.insert(deviations.end(), others.begin(), others.end());
@@ -109,9 +109,10 @@ DeviationSpread spread_of_both(std::vector<double>& deviations, const std::vecto
   double sum = 0;
   for (const double d : deviations) sum += d;
   spread.mean = sum / double(deviations.size());
-  std::sort(deviations.begin(), deviations.end());
-  spread.p95 = deviations[(deviations.size() - 1) * 95 / 100];
-  spread.max = deviations.back();
+  const auto p95 = deviations.begin() + std::ptrdiff_t((deviations.size() - 1) * 95 / 100);
+  std::nth_element(deviations.begin(), p95, deviations.end());
+  spread.p95 = *p95;
+  spread.max = *std::max_element(p95, deviations.end());
   return spread;
 }
 
