@@ -1,5 +1,5 @@
 #!/bin/sh
-# Runs every fuzzer of a build for some seconds each, twice as many at a time as there are
+# Runs every fuzzer of a build for some seconds each, six times as many at a time as there are
 # processors, starting from its seeds in fuzz/seeds/NAME and, where ../shared/data is there, nothing
 # else: seeds are small. A crash leaves its input in build/asan/crashes and fails.
 #
@@ -31,4 +31,4 @@ if [ $# -gt 2 ]; then  # one fuzzer, called by xargs below
 fi
 names=$(cd "$build/bin" && ls fuzz_*)
 [ -n "$names" ] || exit 1
-echo "$names" | xargs -n 1 -P "$((2 * $(nproc)))" "$0" "$build" "$seconds"
+echo "$names" | xargs -n 1 -P "$((6 * $(nproc)))" "$0" "$build" "$seconds"
