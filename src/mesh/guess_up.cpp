@@ -1,6 +1,7 @@
 #include "mesh/guess_up.h"
 
 #include "mesh/box_of.h"
+#include "mesh/strays.h"
 
 #include <algorithm>
 #include <array>
@@ -50,14 +51,22 @@ double hull_area(std::vector<Point> points) {
   return twice / 2;
 }
 
-// Which cells of a grid the surface goes through.
+bool is_in(const PointBox& box, const Vec3d& p) {
+  for (int i = 0; i < 3; ++i) {
+    if (p[i] < box.low[i] || p[i] - box.low[i] > box.size[i]) return false;
+  }
+  return true;
+}
+
+// Which cells of a grid the surface goes through, but for triangles of strays.
 class Cells {
  public:
-  Cells(const Mesh& mesh, const Vec3d& middle, double side) : middle_(middle), side_(side) {
+  Cells(const Mesh& mesh, const PointBox& box)
+      : middle_(box.low + box.size * 0.5), side_(box.longest) {
     for (const Triangle& t : mesh.triangles) {
       std::array<Vec3d, 3> p;
       for (std::size_t c = 0; c < 3; ++c) p[c] = mesh.positions[index_of(t[c])];
-      fill(p);
+      if (is_in(box, p[0]) && is_in(box, p[1]) && is_in(box, p[2])) fill(p);
     }
   }
 
@@ -126,6 +135,7 @@ double stands_on(const Mesh& mesh, const PointBox& box, int axis) {
   const double band = std::max(kLowest * height, kLowestAtLeast * box.longest);
   std::vector<Point> all, lowest, highest;
   for (const Vec3d& p : mesh.positions) {
+    if (!is_in(box, p)) continue;
     const Point q{p[0] - box.low[0], p[3 - axis] - box.low[3 - axis]};
     all.push_back(q);
     if (p[axis] < box.low[axis] + band) lowest.push_back(q);
@@ -137,12 +147,14 @@ double stands_on(const Mesh& mesh, const PointBox& box, int axis) {
 }
 
 // 1: every triangle faces up, or every one down.
-double one_way(const Mesh& mesh, int axis) {
+double one_way(const Mesh& mesh, const PointBox& box, int axis) {
   double sum = 0, all = 0;
   for (const Triangle& t : mesh.triangles) {
     const Vec3d& a = mesh.positions[index_of(t[0])];
-    const double area =
-        cross(mesh.positions[index_of(t[1])] - a, mesh.positions[index_of(t[2])] - a)[axis];
+    const Vec3d& b = mesh.positions[index_of(t[1])];
+    const Vec3d& c = mesh.positions[index_of(t[2])];
+    if (!is_in(box, a) || !is_in(box, b) || !is_in(box, c)) continue;
+    const double area = cross(b - a, c - a)[axis];
     sum += area;
     all += std::abs(area);
   }
@@ -154,14 +166,16 @@ double one_way(const Mesh& mesh, int axis) {
 UpAxis guess_up(const Mesh& mesh, UpAxis usual) {
   constexpr int y = 1, z = 2;
   if (mesh.positions.empty()) return usual;
-  const PointBox box = box_of(mesh.positions);
+  // A stray is no part of how the others stand.
+  const PointBox box = box_without_strays(mesh).value_or(box_of(mesh.positions));
   for (const auto& [axis, other] : {std::pair(y, UpAxis::Z), std::pair(z, UpAxis::Y)}) {
     if (box.size[axis] <= kFlat * box.longest) return other;
   }
-  const bool field_of_y = one_way(mesh, y) > kAllOneWay, field_of_z = one_way(mesh, z) > kAllOneWay;
+  const bool field_of_y = one_way(mesh, box, y) > kAllOneWay,
+             field_of_z = one_way(mesh, box, z) > kAllOneWay;
   if (field_of_y != field_of_z) return field_of_y ? UpAxis::Y : UpAxis::Z;
 
-  const Cells cells(mesh, box.low + box.size * 0.5, box.longest);
+  const Cells cells(mesh, box);
   const auto speaks_for = [&](int axis) {
     return stands_on(mesh, box, axis) + cells.unlike_its_mirror(std::size_t(axis)) / 2;
   };

@@ -21,7 +21,8 @@ namespace crease {
 // many triangles has one normal.
 inline constexpr double kCoplanarDeg = 0.01;
 
-// Which edges are soft. Edges inside a face of the source always are.
+// Which edges are soft. Edges inside a face of the source always are. Those of more than 16
+// triangles, copies counted once, never are.
 struct SoftEdges {
   double max_angle_deg = 30;  // between the triangles' normals; 180: all edges
   std::span<const std::uint32_t> smoothing_group{};   // per triangle. If given, soft iff both sides

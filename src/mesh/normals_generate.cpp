@@ -6,13 +6,15 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace crease {
 
 namespace {
 
-// Edges of more triangles than this are hard where pairing them up would take quadratic time.
+// Edges of more triangles than this, copies counted once, are hard: pairing them up would take
+// quadratic time.
 constexpr std::size_t kMaxPairedTriangles = 16;
 // Sheets that meet in an edge are soft across it only within this, whatever the policy says:
 // the mean over crossing walls would be nonsense.
@@ -148,6 +150,32 @@ struct Sectors {
   std::vector<Vec3f> normals;
 };
 
+// Of sides of triangles that run the same way between the same three vertices, in one face and
+// smoothing group, one each. What is soft to one is soft to all: their corners are united.
+std::span<const std::uint32_t> unite_copies(const Mesh& mesh, const SoftEdges& soft,
+                                            std::vector<std::uint32_t>& edge,
+                                            DisjointSets& connected) {
+  const auto kind = [&](std::uint32_t h) {
+    const std::size_t t = h / 3;
+    return std::tuple(vertex_at(mesh, h), vertex_at(mesh, next_corner(next_corner(h))),
+                      soft.face_of_triangle.empty() ? 0 : soft.face_of_triangle[t],
+                      soft.smoothing_group.empty() ? 0 : soft.smoothing_group[t]);
+  };
+  std::sort(edge.begin(), edge.end(), [&](std::uint32_t g, std::uint32_t h) {
+    return std::pair(kind(g), g) < std::pair(kind(h), h);
+  });
+  std::size_t count = 0;
+  for (const std::uint32_t h : edge) {
+    if (count == 0 || kind(edge[count - 1]) != kind(h)) {
+      edge[count++] = h;
+    } else {
+      connected.unite(edge[count - 1], h);
+      connected.unite(next_corner(edge[count - 1]), next_corner(h));
+    }
+  }
+  return std::span(edge).first(count);
+}
+
 // Corners of one vertex that soft edges connect.
 DisjointSets connect_corners(const Mesh& mesh, const SoftEdges& soft,
                              const std::vector<Vec3d>& normals) {
@@ -170,7 +198,13 @@ DisjointSets connect_corners(const Mesh& mesh, const SoftEdges& soft,
   };
 
   DisjointSets connected(3 * mesh.triangle_count());
-  for_each_edge(mesh, [&](std::span<const std::uint32_t> edge) {
+  std::vector<std::uint32_t> copies;
+  for_each_edge(mesh, [&](std::span<const std::uint32_t> whole_edge) {
+    std::span<const std::uint32_t> edge = whole_edge;
+    if (edge.size() > kMaxPairedTriangles) {  // a model may be there ten times
+      copies.assign(edge.begin(), edge.end());
+      edge = unite_copies(mesh, soft, copies, connected);
+    }
     if (edge.size() > kMaxPairedTriangles) return;
     const double limit = edge.size() == 2 ? least_cosine_of_two : least_cosine_of_sheets;
     for (std::size_t i = 0; i < edge.size(); ++i) {

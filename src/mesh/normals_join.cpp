@@ -69,8 +69,12 @@ class Spread {
     return more.angle();
   }
   void add(const Vec3d& n) {
-    is_beyond_ = is_beyond_ || dot(n, axis_) < 0.5;
-    const double x = dot(n, u_), y = dot(n, v_);
+    // As on a map around the axis whose distances from it are angles. No two normals are nearer on
+    // it than they are; plain shadows would be shorter the further from the axis they lie.
+    const double along_axis = dot(n, axis_), across = length(cross(axis_, n));
+    is_beyond_ = is_beyond_ || along_axis < 0.5;
+    const double stretch = across > 0 ? std::atan2(across, along_axis) / across : 1;
+    const double x = dot(n, u_) * stretch, y = dot(n, v_) * stretch;
     for (int d = 0; d < kDirections; ++d) {
       const double along = x * kCosines[d] + y * kSines[d];
       low_[d] = std::min(low_[d], along);
@@ -81,7 +85,7 @@ class Spread {
     if (is_beyond_) return INFINITY;
     double widest = 0;
     for (int d = 0; d < kDirections; ++d) widest = std::max(widest, high_[d] - low_[d]);
-    return 2 * std::asin(std::min(1.0, widest / 2));
+    return widest;
   }
 
  private:

@@ -4,6 +4,7 @@
 #include "mesh/mix.h"
 
 #include <bit>
+#include <random>
 
 namespace crease {
 
@@ -17,14 +18,25 @@ std::uint64_t bits_of(float x) {
   return std::bit_cast<std::uint32_t>(x + 0.0f);
 }
 
+// Another one in every process: who writes a file cannot know which values share a slot. Which
+// values are equal, and their order, does not depend on it.
+std::uint64_t seed() {
+  static const std::uint64_t kSeed = [] {
+    std::random_device device;
+    return (std::uint64_t(device()) << 32) ^ device();
+  }();
+  return kSeed;
+}
+
 template <typename Row>  // Row: row(i, k) gives component k of value i
 Weld weld_rows(std::size_t count, std::size_t width, Row row) {
   Weld weld;
   weld.new_of_old.reserve(count);
   std::vector<std::uint32_t> slots(std::bit_ceil(2 * count + 1), kNone);  // indices into first_old
   const std::size_t mask = slots.size() - 1;
+  const std::uint64_t start = seed();
   for (std::size_t i = 0; i < count; ++i) {
-    std::uint64_t hash = 0x9e3779b97f4a7c15u;
+    std::uint64_t hash = start;
     for (std::size_t k = 0; k < width; ++k) hash = mix(hash ^ bits_of(row(i, k)));
     std::size_t slot = hash & mask;
     while (true) {

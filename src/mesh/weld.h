@@ -6,7 +6,7 @@
 //
 // Two values are equal iff all components have equal bits, after -0 became +0. New indices follow
 // the order of first appearance, so the result depends on the input alone. A flat hash table: time
-// O(n), memory 12 bytes a value.
+// O(n), memory 16 to 24 bytes a value.
 #pragma once
 
 #include "crease/vec.h"

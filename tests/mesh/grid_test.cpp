@@ -88,6 +88,17 @@ TEST_CASE("strays on several sides are found, and those of a large mesh may be m
   CHECK(strays->longest_without == doctest::Approx(2).epsilon(0.01));
 }
 
+TEST_CASE("strays that are far and strays that are a thousand times as far are found") {
+  Mesh mesh = smooth_sphere(60, 120);
+  add_triangle(mesh, {1e3, 0, 0});
+  add_triangle(mesh, {0, -1e6, 0});
+  const std::optional<Strays> strays = find_strays(mesh);
+  REQUIRE(strays.has_value());
+  CHECK(strays->count == 6);
+  CHECK(strays->longest == doctest::Approx(1e6).epsilon(0.01));
+  CHECK(strays->longest_without == doctest::Approx(2).epsilon(0.01));
+}
+
 std::vector<Vec3d> random_points(std::size_t count, double size, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> along(0, size);

@@ -50,6 +50,23 @@ TEST_CASE("what stands on one side has the other up") {
   }
 }
 
+TEST_CASE("a stray triangle says nothing of what is up") {
+  for (const Vec3d& at : {Vec3d{1e5, 0, 0}, Vec3d{0, 1e5, 0}, Vec3d{0, 0, -1e5}}) {
+    Mesh mesh;
+    mesh.positions = cone(24, 6).positions;
+    mesh.triangles = cone(24, 6).triangles;
+    const auto first = static_cast<std::uint32_t>(mesh.vertex_count());
+    for (const Vec3d& p : {Vec3d{0, 0, 0}, Vec3d{0.1, 0, 0}, Vec3d{0, 0.1, 0}}) {
+      mesh.positions.push_back(at + p);
+    }
+    mesh.triangles.push_back({VertexId{first}, VertexId{first + 1}, VertexId{first + 2}});
+    for (const UpAxis usual : {UpAxis::Y, UpAxis::Z}) {
+      CHECK(guess_up(mesh, usual) == UpAxis::Z);
+      CHECK(guess_up(with_y_and_z_swapped(mesh), usual) == UpAxis::Y);
+    }
+  }
+}
+
 TEST_CASE("a field of heights has them up, and a drawing is seen from the front") {
   for (const UpAxis usual : {UpAxis::Y, UpAxis::Z}) {
     CHECK(guess_up(hill(12), usual) == UpAxis::Z);

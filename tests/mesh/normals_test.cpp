@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 namespace crease {
@@ -131,6 +132,27 @@ TEST_CASE("an edge that two triangles run through the same way is hard") {
   CHECK(normal_of(normals, 0) == -normal_of(normals, 3));
 }
 
+TEST_CASE("a smooth surface that is there many times is smooth, many pages of a book are not") {
+  const Mesh sphere = smooth_sphere(6, 8);
+  for (const int copies : {8, 9, 30}) {  // 16 triangles an edge, and more
+    CAPTURE(copies);
+    Mesh mesh;
+    mesh.positions = sphere.positions;
+    for (int i = 0; i < copies; ++i) {
+      mesh.triangles.insert(mesh.triangles.end(), sphere.triangles.begin(), sphere.triangles.end());
+    }
+    const AttributeLayer normals = generate_normals(mesh, {.max_angle_deg = 180});
+    CHECK(normals.value_count() == sphere.vertex_count());
+  }
+  Mesh book;
+  book.positions = {{0, 0, 0}, {0, 0, 1}};
+  for (std::uint32_t page = 0; page < 17; ++page) {
+    book.positions.push_back({std::cos(0.01 * page), std::sin(0.01 * page), 0.5});
+    book.triangles.push_back({VertexId{page % 2}, VertexId{1 - page % 2}, VertexId{page + 2}});
+  }
+  CHECK(generate_normals(book, {.max_angle_deg = 180}).value_count() == 17);
+}
+
 TEST_CASE("generated normals are unit and finite on the whole zoo, whatever the rule") {
   for (const ZooMesh& z : mesh_zoo()) {
     CAPTURE(z.name);
@@ -200,6 +222,32 @@ TEST_CASE("no normal moves farther than the angle, and none is parted from its e
         CHECK(after.emplace(std::pair(v, z.mesh.normals()->of_corner[corner]), a).first->second ==
               a);
       }
+    }
+  }
+}
+
+TEST_CASE("what becomes one normal spans no more than the angle, however wide that is") {
+  for (const double angle : {10.0, 30.0, 50.0}) {
+    for (const double apart : {0.5 * angle, 0.99 * angle, 1.03 * angle, 1.14 * angle}) {
+      CAPTURE(angle);
+      CAPTURE(apart);
+      // A fan around a vertex whose normals lie on a circle of that width.
+      Mesh mesh;
+      mesh.positions = {{0, 0, 0}};
+      AttributeLayer normals{"normal", AttributeRole::Normal, Interpolation::Direction, 3, {}, {}};
+      constexpr std::uint32_t kCount = 12;
+      for (std::uint32_t i = 0; i < kCount; ++i) {
+        const double around = 2 * std::numbers::pi * i / kCount, away = radians(apart / 2);
+        mesh.positions.push_back({std::cos(around), std::sin(around), 0});
+        mesh.triangles.push_back({VertexId{0}, VertexId{i + 1}, VertexId{(i + 1) % kCount + 1}});
+        for (const double x : {std::sin(away) * std::cos(around), std::sin(away) * std::sin(around),
+                               std::cos(away)}) {
+          normals.values.push_back(float(x));
+        }
+        normals.of_corner.insert(normals.of_corner.end(), 3, AttributeId{i});
+      }
+      join_normals(normals, mesh, angle);
+      CHECK((normals.value_count() == 1) == (apart < angle));
     }
   }
 }
