@@ -13,6 +13,14 @@ double along_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
   return squared_length > 0 ? std::clamp(dot(p - a, ab) / squared_length, 0.0, 1.0) : 0.0;
 }
 
+// Whether ab is shorter than what it is the base of, in a needle: digits would be lost.
+bool needs_longer_base(const Vec3d& a, const Vec3d& b, const Vec3d& c, double squared_height) {
+  constexpr double kThin = 1e-6;  // squared
+  const Vec3d ab = b - a, bc = c - b, ca = a - c;
+  const double base = dot(ab, ab), longest = std::max(dot(bc, bc), dot(ca, ca));
+  return base < longest && std::min(squared_height, base) < kThin * longest;
+}
+
 }  // namespace
 
 ClosestPoint closest_point(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -24,6 +32,10 @@ ClosestPoint closest_point(const Vec3d& p, const Vec3d& a, const Vec3d& b, const
     const double lean = dot(ac, ab) / base;
     const Vec3d height = ac - ab * lean;
     const double squared_height = dot(height, height);
+    if (needs_longer_base(a, b, c, squared_height)) {  // at most twice: the longest never does
+      const ClosestPoint turned = closest_point(p, b, c, a);
+      return {turned.squared_distance, {turned.weights[2], turned.weights[0], turned.weights[1]}};
+    }
     if (squared_height > 0) {
       const double w = dot(ap, height) / squared_height;
       const double v = dot(ap, ab) / base - w * lean;

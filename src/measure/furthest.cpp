@@ -240,7 +240,7 @@ class Search {
       }
       const double bound = most + kFromACorner * longest_side(corner);
       if (bound <= enough) return;
-      all[t] = {std::nextafter(float(bound), 8.0F), std::uint32_t(t)};
+      all[t] = {std::nextafter(float(bound), HUGE_VALF), std::uint32_t(t)};
     });
     std::erase_if(all, [](const Waiting& w) { return w.bound == 0; });
     if (all.empty()) return;

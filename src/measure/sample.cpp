@@ -9,7 +9,7 @@ namespace {
 
 // splitmix64, as a hash: 0 <= result < 1.
 double random(std::uint64_t seed, std::uint64_t i) {
-  std::uint64_t z = (seed << 40) + (i + 1) * 0x9e3779b97f4a7c15u;
+  std::uint64_t z = (seed << 40 ^ seed >> 24) + (i + 1) * 0x9e3779b97f4a7c15u;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return double((z ^ (z >> 31)) >> 11) * 0x1p-53;

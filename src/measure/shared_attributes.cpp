@@ -72,18 +72,17 @@ bool look_alike(const Material& a, const Material& b) {
 std::vector<std::string> names_of(const std::vector<Material>& materials,
                                   const std::vector<Material>& others) {
   std::vector<std::string> names;
-  std::vector<bool> is_taken(others.size());
+  std::vector<bool> is_taken(others.size());  // or has a name that one of `materials` has
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    is_taken[k] = others[k].name.empty() || have_name(materials, others[k].name);
+  }
   for (const Material& material : materials) {
     if (!material.name.empty()) {
       names.push_back(material.name);
       continue;
     }
     std::size_t k = 0;
-    while (k < others.size() &&
-           (is_taken[k] || others[k].name.empty() || have_name(materials, others[k].name) ||
-            !look_alike(material, others[k]))) {
-      ++k;
-    }
+    while (k < others.size() && (is_taken[k] || !look_alike(material, others[k]))) ++k;
     if (k < others.size()) {
       is_taken[k] = true;
       names.push_back(others[k].name);
