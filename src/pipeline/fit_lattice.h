@@ -20,7 +20,7 @@
 
 namespace crease {
 
-inline constexpr int kMaxAskedBits = 16, kMaxLatticeBits = 22;
+inline constexpr int kMaxAskedBits = 16, kMaxLatticeBits = 24;
 
 // `values` finite; bits from 1 to kMaxLatticeBits; blend_bits at most bits, 0 for no grain. Time
 // O(n log n), or O(n) in case (1).

@@ -124,14 +124,14 @@ int blend_bits(AttributeRole role, int bits) {
 }
 
 // What is asked for is of one texture. Where it repeats, a quarter of those steps a texture is the
-// least, so that its texels lie still: a house of 80 repeats was off by two of 1024.
+// least, so that its texels lie still: a house of 80 repeats was off by two of 1024. A float has 24
+// bits in all.
 int bits_over_range(AttributeRole role, std::span<const float> values, int bits) {
-  constexpr int kMostMore = kMaxLatticeBits - kMaxAskedBits;
   if (role != AttributeRole::TexCoord || values.empty()) return bits;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   int repeats = 0;  // in [2^(repeats - 1), 2^repeats)
   std::frexp(double(*high) - double(*low), &repeats);
-  return bits + std::clamp(repeats - 2, 0, kMostMore);
+  return bits + std::clamp(repeats - 2, 0, std::max(0, kMaxLatticeBits - bits));
 }
 
 LayerCoding lattice_coding(const AttributeLayer& layer, int bits) {
