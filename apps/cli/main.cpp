@@ -7,6 +7,7 @@
 #include "cli/output.h"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -102,6 +103,7 @@ int run_main(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
 
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes fails as a full disk does
   Common common;
   const std::vector<Command> commands = {add_build(app, common),    add_info(app, common),
                                          add_extract(app, common),  add_compare(app, common),

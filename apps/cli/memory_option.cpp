@@ -44,7 +44,6 @@ void watch_for_lost_pages(const std::filesystem::path& folder, const Common& com
   action.sa_sigaction = on_lost_page;
   action.sa_flags = SA_SIGINFO;
   sigaction(SIGBUS, &action, nullptr);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes fails as a full disk does
 }
 
 std::filesystem::path choose_folder(const std::filesystem::path& output) {

@@ -79,6 +79,11 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
   if (!place.ok()) return place.failure();
   std::FILE* file = place->aside.empty() ? std::fopen(path.c_str(), "wb") : open_new(place->aside);
   if (file == nullptr) return cannot_write(path, std::strerror(errno));
+  // What is replaced was readable for some; others are not let in.
+  struct ::stat replaced {};
+  if (!place->aside.empty() && ::stat(place->target.c_str(), &replaced) == 0) {
+    ::fchmod(::fileno(file), replaced.st_mode & 0777);
+  }
   return OutputFile(file, path, std::move(place->target), std::move(place->aside));
 }
 

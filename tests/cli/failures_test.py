@@ -15,7 +15,6 @@ import tool
 
 
 def limit_file_size():
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (10000, 10000))
 
 
@@ -320,6 +319,14 @@ class Failures(tool.Case):
                 self.assertTrue(pathlib.Path(self.path(link)).read_bytes().startswith(begin))
             self.assertTrue(os.path.isfile(self.path("there/y" + ending)))
         self.assertEqual([f for f in self.files() if ".part" in f], [])
+
+    def test_who_may_read_an_output_may_read_its_next(self):
+        for command, ending, _ in self.outputs():
+            out = self.write("x" + ending, "before")
+            for mode in (0o600, 0o640):
+                os.chmod(out, mode)
+                self.run_tool(*command, "-o", out)
+                self.assertEqual(os.stat(out).st_mode & 0o777, mode, ending)
 
     def test_what_goes_to_standard_output_is_not_mixed_with_what_is_said(self):
         for command, ending, _ in self.outputs():
