@@ -49,10 +49,13 @@ std::string snapped_lines(const Built& built) {
   for (const SnappedLayer& layer : built.snapped) {
     lines += "\n  " + layer.layer + ": " + layer.precision;
     if (layer.error_max > 0) {
-      lines += ", off by " + in_length(layer.error_max) + " at most, " +
-               in_length(layer.error_mean) + " on average";
+      const bool is_normal = layer.layer == "normal";
+      lines += ", off by " + in_length(layer.error_max) + (is_normal ? " degrees" : "") +
+               " at most, " + in_length(layer.error_mean) + " on average";
     }
-    if (layer.joined > 0) lines += "; " + grouped(layer.joined) + " values became another's";
+    if (layer.joined > 0) {
+      lines += "; " + grouped(layer.joined) + " values became equal to others of their vertices";
+    }
   }
   return lines;
 }

@@ -263,7 +263,9 @@ Result<GltfScene> walk_scene(const Source& source, const Json& json) {
   tell_left_out(json, reached, scene.notes);
   if (skinned > 0) {
     place_others(source, nodes, scene.to_world_of_node);
-    scene.notes.push_back(std::to_string(skinned) + " skinned meshes taken as their joints stand");
+    scene.notes.push_back(
+        (skinned == 1 ? "a skinned mesh" : std::to_string(skinned) + " skinned meshes") +
+        std::string(" taken as the joints stand, without joints and weights"));
   }
   if (hidden > 0) {
     scene.notes.push_back(std::to_string(hidden) +

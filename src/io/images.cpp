@@ -41,12 +41,26 @@ Result<std::vector<std::byte>> read_image(const std::filesystem::path& folder,
     return fail(failure.error, failure.message + (is_outside ? " (--textures DIR)" : ""));
   }
   if (image_type(file->bytes).empty()) {
-    return fail(Error::NotSupported, in_quotes(name) + " is neither a PNG nor a JPEG");
+    return fail(Error::NotSupported, in_quotes(name) + " " + other_image_type(file->bytes));
   }
   return std::move(file->bytes);
 }
 
 }  // namespace
+
+std::string other_image_type(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::string words = "is neither a PNG nor a JPEG";
+  if (text.starts_with("RIFF") &&
+      text.substr(std::min<std::size_t>(8, text.size())).starts_with("WEBP")) {
+    words += ", but WebP";
+  } else if (text.starts_with("\xabKTX")) {
+    words += ", but KTX";
+  } else if (text.starts_with("DDS ")) {
+    words += ", but DDS";
+  }
+  return words;
+}
 
 std::string_view image_type(std::span<const std::byte> bytes) {
   static constexpr std::array<unsigned char, 8> kPng{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};

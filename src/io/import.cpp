@@ -128,6 +128,10 @@ Result<RawMesh> read_raw(std::span<const std::byte> bytes, const std::string& na
     return fail(Error::NotSupported,
                 name + ": is a .crease file, not a mesh; it cannot be read from a pipe");
   }
+  if (!read && source.text().starts_with("ISO-10303-21")) {
+    return fail(Error::NotSupported, name + ": byte 0: STEP has no triangles; export one of " +
+                                         std::string(kKnown) + " from a CAD program");
+  }
   if (!read) {
     return fail(Error::NotSupported,
                 name + ": byte 0: not a format known here (" + std::string(kKnown) + ")");

@@ -51,7 +51,8 @@ TEST_CASE("glTF: a skinned mesh without weights stands where its first joint put
   GltfBuilder b = two_joints();
   const Imported in = import_text(b.gltf(), "a.gltf");
   CHECK(corner(in.mesh, 0, 0) == Vec3d{0, 3, 5});
-  CHECK(has_note(in.report, "1 skinned meshes taken as their joints stand"));
+  CHECK(
+      has_note(in.report, "a skinned mesh taken as the joints stand, without joints and weights"));
   CHECK(has_note(in.report, "1 primitives without JOINTS_0 and WEIGHTS_0"));
   // Bound where the joint is: all is as stored. The second joint has no matrix.
   b.json["skins"][0]["inverseBindMatrices"] =
@@ -76,7 +77,8 @@ TEST_CASE("glTF: the joints of a vertex move it by their weights, whatever other
   CHECK(corner(in.mesh, 0, 1) == Vec3d{1.25, 3, 1.25});
   CHECK(corner(in.mesh, 0, 2) == Vec3d{0, 5, 5});
   CHECK(in.report.notes ==
-        std::vector<std::string>{"1 skinned meshes taken as their joints stand"});
+        std::vector<std::string>{
+            "a skinned mesh taken as the joints stand, without joints and weights"});
 
   // Half of the second vertex by a further set; sums other than one are shares.
   attributes_of(b)["JOINTS_1"] = b.add<std::uint16_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}, "VEC4");

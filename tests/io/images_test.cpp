@@ -106,7 +106,8 @@ TEST_CASE("glTF: an image that is none, or not there, is a note and no failure")
     REQUIRE(in.report.notes.size() == 1);
     return in.report.notes[0];
   };
-  CHECK(note_of(webp) == "texture left out: m.glb: images[0]: is neither a PNG nor a JPEG");
+  CHECK(note_of(webp) ==
+        "texture left out: m.glb: images[0]: is neither a PNG nor a JPEG, but WebP");
   CHECK(note_of(painted({{{"bufferView", 17}}})) ==
         "texture left out: m.glb: images[0].bufferView: no such bufferView");
   GltfBuilder none = painted({});
