@@ -76,11 +76,12 @@ struct CompareOptions {
 };
 
 // Both meshes need triangles and normals. The result does not depend on the number of threads.
-// Fails where `progress` asks it to stop, and with BadValue for more samples than that and
-// where the two are further apart than 1000 times the larger one's diagonal: one is in other units
-// then, or somewhere else. Time
-// O(samples log triangles) and what the largest distance takes, at most 9 closest points a triangle
-// for the meshes and levels that were measured; memory about 150 bytes a triangle.
+// Fails where `progress` asks it to stop, and with BadValue for more samples than that and where
+// the two are further apart than 1000 times the larger one's diagonal: one is in other units then,
+// or somewhere else. Time O(samples log triangles) and what the largest distance takes, at most 9
+// closest points a triangle for the meshes and levels that were measured. A sample from which all
+// triangles are about as near, a thousand times the other's size away, looks at all of them. Memory
+// about 150 bytes a triangle.
 Result<Comparison> compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options);
 
 // Whether no point of either mesh is further from the other than `distance` and a billionth of

@@ -18,7 +18,7 @@ using simplification::Row;
 // As the simplifier has them.
 constexpr double kNormalWeight = 0.9;
 constexpr double kThin = 1e-4;
-constexpr std::size_t kMostACorner = 4;
+constexpr std::size_t kMostACorner = 4;  // wedges, of a block; honest ones have two
 
 bool have_all(const std::uint32_t* wedges) {
   return wedges[0] != kNone && wedges[1] != kNone && wedges[2] != kNone;

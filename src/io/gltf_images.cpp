@@ -98,7 +98,7 @@ std::string GltfImages::take_image(std::size_t index) {
   while (is_file(name)) name = unused_name(images, name + " inside");
   Result<std::vector<std::byte>> bytes = bytes_of(image, place);
   if (bytes.ok() && image_type(*bytes).empty()) {
-    bytes = fail_at_place(Error::NotSupported, source_, place, other_image_type(*bytes));
+    bytes = fail_at_place(Error::NotSupported, source_, place, why_no_image(*bytes));
   }
   if (!bytes.ok()) {
     notes.push_back("texture left out: " + bytes.failure().message);

@@ -41,18 +41,17 @@ Result<std::vector<std::byte>> read_image(const std::filesystem::path& folder,
     return fail(failure.error, failure.message + (is_outside ? " (--textures DIR)" : ""));
   }
   if (image_type(file->bytes).empty()) {
-    return fail(Error::NotSupported, in_quotes(name) + " " + other_image_type(file->bytes));
+    return fail(Error::NotSupported, in_quotes(name) + " " + why_no_image(file->bytes));
   }
   return std::move(file->bytes);
 }
 
 }  // namespace
 
-std::string other_image_type(std::span<const std::byte> bytes) {
+std::string why_no_image(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::string words = "is neither a PNG nor a JPEG";
-  if (text.starts_with("RIFF") &&
-      text.substr(std::min<std::size_t>(8, text.size())).starts_with("WEBP")) {
+  if (text.starts_with("RIFF") && text.size() >= 12 && text.substr(8, 4) == "WEBP") {
     words += ", but WebP";
   } else if (text.starts_with("\xabKTX")) {
     words += ", but KTX";

@@ -18,7 +18,7 @@ inline constexpr std::size_t kMaxImages = 4096;  // of a model; names are looked
 std::string_view image_type(std::span<const std::byte> bytes);
 
 // For what has none: "is neither a PNG nor a JPEG, but WebP", as far as its first bytes tell.
-std::string other_image_type(std::span<const std::byte> bytes);
+std::string why_no_image(std::span<const std::byte> bytes);
 
 // `name`, or with a number behind it, so that no image has it.
 std::string unused_name(std::span<const ImageFile> images, const std::string& name);
